@@ -1,0 +1,181 @@
+//! The lowest modes of `K x = lambda M x`.
+//!
+//! Knows K symmetric positive semidefinite and M symmetric positive semidefinite. Does not know what vibrates.
+
+use super::inertia::count_below;
+use super::lanczos::{BlockLanczos, Ritz, SymmetricOperator};
+use super::{Factor, FemError, SymmetricMatrix};
+use faer::{Mat, MatMut};
+
+/// Modes in rising order of eigenvalue.
+#[derive(Debug, Clone)]
+pub struct EigenPairs {
+    /// Eigenvalues lambda [1/s^2 where K and M are a stiffness and a mass].
+    pub lambda: Vec<f64>,
+    /// Shapes, a column each, `x^T M x = 1`.
+    pub shapes: Mat<f64>,
+}
+
+/// Residual `|A y - mu y| / mu` at which a pair has converged; its eigenvalue is then exact to the square of it.
+const CONVERGED: f64 = 1e-10;
+
+/// Residual that rounding leaves of an operator of norm 1: no pair is asked for more.
+const ROUNDING: f64 = 1e-14;
+
+/// Pairs that converge beyond those asked for, so that a gap can be found above the last.
+const GUARD: usize = 2;
+
+/// Relative distance of neighbouring eigenvalues from which a shift between them tells them apart.
+const GAP: f64 = 1e-6;
+
+/// Inverse eigenvalues `mu = s / (lambda + s)` below this belong to a mass that is not there.
+const MASSLESS: f64 = 1e-13;
+
+/// The `count` lowest modes by shift-invert block Lanczos: with `K + s M = L L^T`, the largest eigenvalues of
+/// `A = s L^-1 M L^-T` are `mu = s / (lambda + s)`. A shift `s > 0` admits a K that is singular (a body floating free);
+/// it should be of the size of the lowest non-zero eigenvalue.
+///
+/// That no mode is missed, however many lie close together, is checked by Sylvester's law of inertia: `K - sigma M` must
+/// have as many negative pivots as modes were found below sigma. Where it has more, the search goes on with fresh
+/// directions.
+///
+/// # Errors
+/// [`FemError::Shift`], [`FemError::NotPositiveDefinite`] where `K + s M` is not, [`FemError::Eigen`] where not all converge or M has fewer
+/// modes, [`FemError::BadFactor`] where the check finds no sigma at which it can count.
+pub fn lowest_modes(k: &SymmetricMatrix, m: &SymmetricMatrix, count: usize, s: f64) -> Result<EigenPairs, FemError> {
+    let n = k.order();
+    if !(s.is_finite() && s > 0.0) {
+        return Err(FemError::Shift { value: s });
+    }
+    let factor = Factor::new(&SymmetricMatrix::combine(&[(1.0, k), (s, m)])?)?;
+    let operator = ShiftInvert { m, factor: &factor, s };
+    let count = count.min(n);
+    let (mu, mut shapes) = if n < 4 * count + 240 {
+        dense(&operator, count)?
+    } else {
+        krylov(k, &operator, count)?
+    };
+    let modes = mu.iter().filter(|&&mu| mu > MASSLESS).count();
+    if modes < count {
+        return Err(FemError::Eigen {
+            asked: count,
+            converged: modes,
+        });
+    }
+    factor.backward(shapes.as_mut());
+    for j in 0..count {
+        let x: Vec<f64> = shapes.col(j).iter().copied().collect();
+        let norm = m.form(&x, &x).sqrt();
+        shapes.col_mut(j).iter_mut().for_each(|x| *x /= norm);
+    }
+    Ok(EigenPairs {
+        lambda: mu.iter().map(|mu| s / mu - s).collect(),
+        shapes,
+    })
+}
+
+/// The largest eigenvalues of the operator, counted, and their vectors.
+fn krylov(k: &SymmetricMatrix, operator: &ShiftInvert<'_>, count: usize) -> Result<(Vec<f64>, Mat<f64>), FemError> {
+    let most = 10 * count + 400;
+    // a Ritz problem costs the cube of the basis: it is solved every few blocks only
+    let pause = 1 + count / 32;
+    let mut lanczos = BlockLanczos::new(operator);
+    let mut converged = 0;
+    while lanczos.size() < most && lanczos.can_grow() {
+        for _ in 0..pause {
+            if lanczos.can_grow() {
+                lanczos.grow();
+            }
+        }
+        if lanczos.size() < count + GUARD {
+            continue;
+        }
+        let ritz = lanczos.ritz().ok_or(FemError::Eigen {
+            asked: count,
+            converged: 0,
+        })?;
+        converged = leading_converged(&ritz);
+        // a mass of low rank ends the search: nothing but zeros is left
+        let exhausted = ritz.values.get(converged).is_none_or(|&mu| mu < MASSLESS);
+        if converged < count + GUARD && !(exhausted && converged >= count) {
+            continue;
+        }
+        if complete(k, operator, &ritz.values[..converged], count)? {
+            return Ok((ritz.values[..count].to_vec(), lanczos.vectors(&ritz, count)));
+        }
+        lanczos.widen();
+    }
+    Err(FemError::Eigen {
+        asked: count,
+        converged: converged.min(count),
+    })
+}
+
+fn leading_converged(ritz: &Ritz) -> usize {
+    let small = |(mu, residual): &(&f64, &f64)| **residual <= (CONVERGED * **mu).max(ROUNDING);
+    ritz.values.iter().zip(&ritz.residuals).take_while(small).count()
+}
+
+/// Whether as many modes lie below a gap as were found there: above the last mode asked for, or, where that one lies
+/// amid close neighbours, below them.
+fn complete(k: &SymmetricMatrix, operator: &ShiftInvert<'_>, mu: &[f64], count: usize) -> Result<bool, FemError> {
+    let lambda: Vec<f64> = mu.iter().map(|mu| operator.s / mu - operator.s).collect();
+    let gap = |j: usize| (lambda[j] - lambda[j - 1]) / (lambda[j] + operator.s);
+    let above = (count..lambda.len())
+        .max_by(|&i, &j| gap(i).total_cmp(&gap(j)))
+        .filter(|&j| gap(j) > GAP);
+    let Some(found) = above.or_else(|| (1..count.min(lambda.len())).rev().find(|&j| gap(j) > GAP)) else {
+        return Ok(true);
+    };
+    let mut failure = None;
+    for share in [0.5, 0.3, 0.7] {
+        let sigma = lambda[found - 1] + share * (lambda[found] - lambda[found - 1]);
+        match count_below(k, operator.m, sigma) {
+            Ok(counted) if counted == found => return Ok(true),
+            Ok(counted) if counted > found => return Ok(false),
+            Ok(counted) => {
+                failure = Some(FemError::Eigen {
+                    asked: found,
+                    converged: counted,
+                })
+            }
+            Err(error) => failure = Some(error),
+        }
+    }
+    failure.map_or(Ok(true), Err)
+}
+
+/// Small problems: all eigenvalues of the operator written out.
+fn dense(operator: &ShiftInvert<'_>, count: usize) -> Result<(Vec<f64>, Mat<f64>), FemError> {
+    let n = operator.order();
+    let mut a = Mat::<f64>::identity(n, n);
+    operator.apply(a.as_mut());
+    let evd = a.self_adjoint_eigen(faer::Side::Lower).map_err(|_| FemError::Eigen {
+        asked: count,
+        converged: 0,
+    })?;
+    let mu = (0..count).map(|j| evd.S().column_vector()[n - 1 - j]).collect();
+    Ok((mu, Mat::from_fn(n, count, |i, j| evd.U()[(i, n - 1 - j)])))
+}
+
+/// `s L^-1 P M P^T L^-T`.
+#[derive(Debug)]
+struct ShiftInvert<'a> {
+    m: &'a SymmetricMatrix,
+    factor: &'a Factor,
+    s: f64,
+}
+
+impl SymmetricOperator for ShiftInvert<'_> {
+    fn order(&self) -> usize {
+        self.m.order()
+    }
+
+    fn apply(&self, mut x: MatMut<'_, f64>) {
+        self.factor.backward(x.as_mut());
+        let mut y = Mat::zeros(x.nrows(), x.ncols());
+        self.m.multiply_columns(x.as_ref(), y.as_mut());
+        self.factor.forward(y.as_mut());
+        x.copy_from(faer::Scale(self.s) * &y);
+    }
+}

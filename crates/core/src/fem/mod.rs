@@ -1,0 +1,96 @@
+//! Finite elements: shells and beams in space, their assembly, factorisation and eigenvalues.
+//!
+//! Knows nodes, elements and sparse matrices. Has never heard of a bridge, of water or of a vehicle. Six degrees of
+//! freedom a node, in the order u_x, u_y, u_z, theta_x, theta_y, theta_z.
+
+mod assembly;
+mod beam;
+mod eigen;
+mod factor;
+mod frame;
+mod inertia;
+mod lanczos;
+mod membrane;
+mod mesh;
+mod plate;
+mod shell;
+mod sparse;
+
+pub use assembly::{MassKind, assemble};
+pub use beam::{Beam, BeamSection};
+pub use eigen::{EigenPairs, lowest_modes};
+pub use factor::Factor;
+pub use frame::QuadFrame;
+pub use inertia::count_below;
+pub use mesh::{DOFS_PER_NODE, Mesh, NodeId};
+pub use shell::{Shell, ShellSection};
+pub use sparse::{SparseRow, SymmetricMatrix};
+
+use thiserror::Error;
+
+/// Why finite elements gave no answer.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FemError {
+    /// A matrix that must be positive definite is not.
+    #[error("matrix of {dofs} degrees of freedom is not positive definite (pivot {pivot})")]
+    NotPositiveDefinite {
+        /// Degrees of freedom.
+        dofs: usize,
+        /// Pivot at which the factorisation stopped.
+        pivot: usize,
+    },
+    /// A factorisation solved its probe badly.
+    #[error("factorisation of {dofs} degrees of freedom leaves a residual of {residual:.1e}, allowed {allowed:.1e}")]
+    BadFactor {
+        /// Degrees of freedom.
+        dofs: usize,
+        /// Relative residual of the probe.
+        residual: f64,
+        /// Residual allowed.
+        allowed: f64,
+    },
+    /// An element that cannot carry a field: no area, no length, a corner of more than 180 degrees, or a section that no
+    /// material has.
+    #[error("element {element} is degenerate: {measure} = {value:.3e}")]
+    Degenerate {
+        /// Number of the element in its list.
+        element: usize,
+        /// What is wrong.
+        measure: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A shift that cannot make a singular stiffness definite.
+    #[error("the shift of an eigenvalue problem must be positive and finite, not {value}")]
+    Shift {
+        /// The shift.
+        value: f64,
+    },
+    /// Fewer eigenvalues converged than were asked for.
+    #[error("{converged} of {asked} eigenvalues converged")]
+    Eigen {
+        /// Eigenvalues asked for.
+        asked: usize,
+        /// Eigenvalues that converged.
+        converged: usize,
+    },
+    /// Storage for a matrix or factor could not be had.
+    #[error("no memory for a matrix of {dofs} degrees of freedom")]
+    OutOfMemory {
+        /// Degrees of freedom.
+        dofs: usize,
+    },
+}
+
+/// Refuses an element whose `measure` is not as it must be.
+fn require(element: usize, measure: &'static str, value: f64, holds: bool) -> Result<(), FemError> {
+    if value.is_finite() && holds {
+        Ok(())
+    } else {
+        Err(FemError::Degenerate {
+            element,
+            measure,
+            value,
+        })
+    }
+}
