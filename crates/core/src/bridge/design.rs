@@ -1,0 +1,332 @@
+//! A bridge as its file writes it: modules, water, hinges, connectors, supports, condensation.
+//!
+//! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
+
+use crate::input::{InvalidInput, not_negative, positive, within};
+use crate::module::ModuleDesign;
+use crate::water::WaterDistribution;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A bridge of identical modules.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BridgeDesign {
+    /// Name of the bridge.
+    pub name: String,
+    /// Where the numbers come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// Number of modules.
+    pub modules: usize,
+    /// The module.
+    pub module: ModuleDesign,
+    /// Hydrostatic stiffness p_b: pressure per metre of sinking [Pa/m]. Either this or `draft_buoyancy`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hydrostatic_stiffness_pa_m: Option<f64>,
+    /// Draft-buoyancy table, whose slope at the still-water draft gives p_b.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draft_buoyancy: Option<DraftBuoyancy>,
+    /// Added mass per metre of bridge [kg/m]. Either this or `todd`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub added_mass_kg_m: Option<f64>,
+    /// Todd's formula for the added mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub todd: Option<Todd>,
+    /// How both waters are shared among the nodes of the wetted bottom.
+    #[serde(default)]
+    pub water_distribution: WaterDistribution,
+    /// Hinges at the bottom of every joint.
+    pub hinges: Hinges,
+    /// Connectors at the deck of every joint.
+    pub connectors: Connectors,
+    /// Supports of the two ends.
+    #[serde(default)]
+    pub supports: Supports,
+    /// Still-water draft [m], for reporting whether the bottom emerged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draft_m: Option<f64>,
+    /// Height of the deck above the still water [m], for reporting whether the deck was submerged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub freeboard_m: Option<f64>,
+    /// How a module is condensed to a super-element.
+    #[serde(default)]
+    pub condensation: Condensation,
+}
+
+/// Buoyancy of one module against draft.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DraftBuoyancy {
+    /// Drafts, increasing [m].
+    pub draft_m: Vec<f64>,
+    /// Buoyancy of a module at each draft [N].
+    pub buoyancy_n: Vec<f64>,
+    /// The draft at which the unloaded module floats [m].
+    pub still_water_draft_m: f64,
+}
+
+/// Todd's formula, `m_a = 1/2 pi rho_w C J (B/2)^2` per metre.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Todd {
+    /// Density of the water rho_w [kg/m^3].
+    pub water_density_kg_m3: f64,
+    /// Section coefficient C.
+    pub section_coefficient: f64,
+    /// Three-dimensional correction J.
+    pub three_dimensional_correction: f64,
+}
+
+/// Hinges of a joint: at each place the three translations of the two bottom nodes are tied.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hinges {
+    /// Places across [m].
+    pub y_m: Vec<f64>,
+}
+
+/// Connectors of a joint: at each place one tension and one compression truss along x between the two deck nodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Connectors {
+    /// Places across [m].
+    pub y_m: Vec<f64>,
+    /// Stiffness of one truss [N/m].
+    pub stiffness_n_m: f64,
+    /// Elongation at which the tension truss begins to pull [m], unless the study says otherwise.
+    pub gap_tension_m: f64,
+    /// Shortening at which the compression truss begins to push [m], unless the study says otherwise.
+    pub gap_compression_m: f64,
+}
+
+/// A direction of translation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// Along the bridge.
+    X,
+    /// Across the bridge.
+    Y,
+    /// Up.
+    Z,
+}
+
+/// Directions held at the two ends: z at all nodes of the bottom edge, x and y at its hinge places.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Supports {
+    /// At the left end.
+    pub left: Vec<Direction>,
+    /// At the right end.
+    pub right: Vec<Direction>,
+}
+
+impl Default for Supports {
+    /// The paper's: all three translations at the left end, y and z at the right.
+    fn default() -> Self {
+        Self {
+            left: vec![Direction::X, Direction::Y, Direction::Z],
+            right: vec![Direction::Y, Direction::Z],
+        }
+    }
+}
+
+/// Masters and modes of the super-element. Hinges, connectors, the deck's z and the ends' bottom edges are always
+/// masters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Condensation {
+    /// Fixed-master modes kept (Craig-Bampton); 0 is Guyan's condensation.
+    #[serde(default = "default_fixed_master_modes")]
+    pub fixed_master_modes: usize,
+    /// Whether z of all bottom nodes, which carry the water, are masters too.
+    #[serde(default)]
+    pub bottom_masters: bool,
+}
+
+fn default_fixed_master_modes() -> usize {
+    16
+}
+
+impl Default for Condensation {
+    fn default() -> Self {
+        Self {
+            fixed_master_modes: default_fixed_master_modes(),
+            bottom_masters: false,
+        }
+    }
+}
+
+impl BridgeDesign {
+    /// Refuses numbers that describe no bridge.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        if !(1..=500).contains(&self.modules) {
+            return Err(InvalidInput::new(
+                "modules",
+                self.modules,
+                "a whole number from 1 to 500",
+            ));
+        }
+        self.module.check().map_err(|e| e.under("module"))?;
+        self.check_water()?;
+        let half = 0.5 * self.module.breadth_m;
+        places("hinges.y_m", &self.hinges.y_m, half)?;
+        self.connectors.check(half).map_err(|e| e.under("connectors"))?;
+        for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
+            if let Some(value) = value {
+                positive(key, value)?;
+            }
+        }
+        if self.condensation.fixed_master_modes > 400 {
+            return Err(InvalidInput::new(
+                "condensation.fixed_master_modes",
+                self.condensation.fixed_master_modes,
+                "a whole number from 0 to 400",
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_water(&self) -> Result<(), InvalidInput> {
+        match (self.hydrostatic_stiffness_pa_m, &self.draft_buoyancy) {
+            (Some(p_b), None) => positive("hydrostatic_stiffness_pa_m", p_b).map(|_| ())?,
+            (None, Some(table)) => table.check().map_err(|e| e.under("draft_buoyancy"))?,
+            (found, _) => {
+                let found = if found.is_some() { "both" } else { "neither" };
+                return Err(InvalidInput::new(
+                    "hydrostatic_stiffness_pa_m",
+                    found,
+                    "either this or draft_buoyancy",
+                ));
+            }
+        }
+        match (self.added_mass_kg_m, &self.todd) {
+            (Some(m_a), None) => not_negative("added_mass_kg_m", m_a).map(|_| ()),
+            (None, Some(todd)) => todd.check().map_err(|e| e.under("todd")),
+            (found, _) => {
+                let found = if found.is_some() { "both" } else { "neither" };
+                Err(InvalidInput::new("added_mass_kg_m", found, "either this or todd"))
+            }
+        }
+    }
+
+    /// Length of the bridge [m].
+    pub fn length_m(&self) -> f64 {
+        self.modules as f64 * self.module.length_m
+    }
+
+    /// Number of positions: the module ends.
+    pub fn positions(&self) -> usize {
+        self.modules + 1
+    }
+
+    /// Place of a position (from 1) along the bridge [m].
+    pub fn position_x_m(&self, position: usize) -> f64 {
+        (position as f64 - 1.0) * self.module.length_m
+    }
+
+    /// p_b [Pa/m], from the value or the table.
+    pub fn p_b(&self) -> f64 {
+        match (self.hydrostatic_stiffness_pa_m, &self.draft_buoyancy) {
+            (Some(p_b), _) => p_b,
+            (None, Some(table)) => table.slope_n_m() / (self.module.length_m * self.module.breadth_m),
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// m_a per metre of bridge [kg/m], from the value or Todd's formula.
+    pub fn m_a(&self) -> f64 {
+        match (self.added_mass_kg_m, &self.todd) {
+            (Some(m_a), _) => m_a,
+            (None, Some(todd)) => todd.added_mass_kg_m(self.module.breadth_m),
+            (None, None) => f64::NAN,
+        }
+    }
+}
+
+fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
+    if y.is_empty() {
+        return Err(InvalidInput::new(key, "an empty list", "at least one place across"));
+    }
+    for (i, &y) in y.iter().enumerate() {
+        within(&format!("{key}[{i}]"), y, -half, half)?;
+    }
+    Ok(())
+}
+
+impl Connectors {
+    fn check(&self, half: f64) -> Result<(), InvalidInput> {
+        places("y_m", &self.y_m, half)?;
+        positive("stiffness_n_m", self.stiffness_n_m)?;
+        not_negative("gap_tension_m", self.gap_tension_m)?;
+        not_negative("gap_compression_m", self.gap_compression_m)?;
+        Ok(())
+    }
+}
+
+impl DraftBuoyancy {
+    fn check(&self) -> Result<(), InvalidInput> {
+        if self.draft_m.len() < 2 {
+            return Err(InvalidInput::new(
+                "draft_m",
+                format!("{} entries", self.draft_m.len()),
+                "at least two drafts",
+            ));
+        }
+        if self.buoyancy_n.len() != self.draft_m.len() {
+            return Err(InvalidInput::new(
+                "buoyancy_n",
+                format!("{} entries", self.buoyancy_n.len()),
+                format!("{} entries, one a draft", self.draft_m.len()),
+            ));
+        }
+        for (key, list) in [("draft_m", &self.draft_m), ("buoyancy_n", &self.buoyancy_n)] {
+            for (i, w) in list.windows(2).enumerate() {
+                not_negative(&format!("{key}[{i}]"), w[0])?;
+                if !(w[1].is_finite() && w[1] > w[0]) {
+                    return Err(InvalidInput::new(
+                        format!("{key}[{}]", i + 1),
+                        w[1],
+                        format!("above {}", w[0]),
+                    ));
+                }
+            }
+        }
+        let last = self.draft_m[self.draft_m.len() - 1];
+        within("still_water_draft_m", self.still_water_draft_m, self.draft_m[0], last).map(|_| ())
+    }
+
+    /// Slope of the table at the still-water draft [N/m]: of the segment that holds it, of the two neighbours' mean
+    /// on a table point.
+    pub fn slope_n_m(&self) -> f64 {
+        let slope = |i: usize| (self.buoyancy_n[i + 1] - self.buoyancy_n[i]) / (self.draft_m[i + 1] - self.draft_m[i]);
+        let at = self.still_water_draft_m;
+        let segments: Vec<f64> = (0..self.draft_m.len() - 1)
+            .filter(|&i| self.draft_m[i] <= at && at <= self.draft_m[i + 1])
+            .map(slope)
+            .collect();
+        segments.iter().sum::<f64>() / segments.len() as f64
+    }
+}
+
+impl Todd {
+    fn check(&self) -> Result<(), InvalidInput> {
+        positive("water_density_kg_m3", self.water_density_kg_m3)?;
+        positive("section_coefficient", self.section_coefficient)?;
+        positive("three_dimensional_correction", self.three_dimensional_correction)?;
+        Ok(())
+    }
+
+    /// `m_a = 1/2 pi rho_w C J (B/2)^2` [kg/m].
+    pub fn added_mass_kg_m(&self, breadth_m: f64) -> f64 {
+        0.5 * std::f64::consts::PI
+            * self.water_density_kg_m3
+            * self.section_coefficient
+            * self.three_dimensional_correction
+            * (0.5 * breadth_m).powi(2)
+    }
+}

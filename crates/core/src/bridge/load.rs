@@ -1,0 +1,109 @@
+//! What a vehicle at a place does to the track: weights on rows, and the masses that ride along.
+//!
+//! Knows points, patches and rows. Does not know solvers or time.
+
+use super::Track;
+use crate::fem::SparseRow;
+use crate::vehicle::{GRAVITY_M_S2, Inertia, Vehicle};
+
+/// A mass that rides along: the row on which its force acts and the rows that make its acceleration
+/// `r u'' + 2 V r_x u' + V^2 r_xx u`.
+#[derive(Debug, Clone)]
+pub struct Rider {
+    /// Mass [kg].
+    pub mass_kg: f64,
+    /// Axle it belongs to.
+    pub axle: usize,
+    /// r, where the force acts and the acceleration is taken.
+    pub row: SparseRow,
+    /// r_x and r_xx, where convective.
+    pub derivatives: Option<(SparseRow, SparseRow)>,
+}
+
+/// A vehicle on the track at one instant.
+#[derive(Debug, Clone, Default)]
+pub struct Load {
+    /// Downward force of the weights on each track column, as one row [N].
+    pub weight: SparseRow,
+    /// The masses.
+    pub riders: Vec<Rider>,
+    /// Weight of each axle that is on the bridge [N], and whether all its points are.
+    pub axles: Vec<(f64, bool)>,
+}
+
+impl Load {
+    /// A vehicle of weight `load_n` with its front at `front_x_m`. A point off the bridge neither loads nor weighs.
+    pub fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64) -> Self {
+        let mut load = Self {
+            axles: vec![(0.0, true); vehicle.axles],
+            ..Self::default()
+        };
+        let mut weight = Vec::new();
+        for patch in &vehicle.patches {
+            let mut mean: Vec<(usize, f64)> = Vec::new();
+            let mut share_on = 0.0;
+            for point in &patch.points {
+                let Some(row) = track.row(front_x_m + point.ahead_m, point.y_m) else {
+                    load.axles[patch.axle].1 = false;
+                    continue;
+                };
+                let w = load_n * point.share;
+                load.axles[patch.axle].0 += w;
+                weight.extend(row.0.iter().map(|&(c, v)| (c, v * w)));
+                share_on += point.share;
+                match vehicle.inertia {
+                    Inertia::None => {}
+                    Inertia::Local => {
+                        let mass_kg = w / GRAVITY_M_S2;
+                        load.riders.push(Rider {
+                            mass_kg,
+                            axle: patch.axle,
+                            row,
+                            derivatives: None,
+                        });
+                    }
+                    Inertia::Convective => mean.extend(row.0.iter().map(|&(c, v)| (c, v * point.share))),
+                }
+            }
+            if vehicle.inertia == Inertia::Convective && share_on > 0.0 {
+                let scaled = mean.into_iter().map(|(c, v)| (c, v / share_on)).collect();
+                load.riders.push(Rider {
+                    mass_kg: load_n * share_on / GRAVITY_M_S2,
+                    axle: patch.axle,
+                    row: SparseRow::from_entries(scaled),
+                    derivatives: Some(derivatives(track, patch, front_x_m + patch.ahead_m)),
+                });
+            }
+        }
+        load.weight = SparseRow::from_entries(weight);
+        load
+    }
+}
+
+/// r_x and r_xx of the row averaged over a patch centred at `x`: differences of the row and of its slope between the
+/// patch's ends, over its length.
+fn derivatives(track: &Track, patch: &crate::vehicle::Patch, x: f64) -> (SparseRow, SparseRow) {
+    let ys: Vec<f64> = {
+        let mut ys: Vec<f64> = patch.points.iter().map(|p| p.y_m).collect();
+        ys.dedup();
+        ys.sort_by(f64::total_cmp);
+        ys.dedup();
+        ys
+    };
+    let per = 1.0 / (patch.length_m * ys.len() as f64);
+    let difference = |of: &dyn Fn(f64, f64) -> Option<SparseRow>| {
+        let mut terms = Vec::new();
+        for &y in &ys {
+            for (end, sign) in [(0.5, per), (-0.5, -per)] {
+                if let Some(row) = of(x + end * patch.length_m, y) {
+                    terms.push((sign, row));
+                }
+            }
+        }
+        SparseRow::combine(&terms.iter().map(|(s, r)| (*s, r)).collect::<Vec<_>>())
+    };
+    (
+        difference(&|x, y| track.row(x, y)),
+        difference(&|x, y| track.slope_row(x, y)),
+    )
+}

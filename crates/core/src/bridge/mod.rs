@@ -1,0 +1,47 @@
+//! The bridge: modules in a row, tied at their hinges, held at their supports, with connectors and a track.
+//!
+//! The one place where module, water, connector and vehicle meet. Does not know time, contact or response.
+
+mod assembly;
+mod design;
+mod load;
+mod prepared;
+mod product;
+mod row;
+mod track;
+
+pub use assembly::{Bridge, ConnectorPlace};
+pub use design::{BridgeDesign, Condensation, Connectors, Direction, DraftBuoyancy, Hinges, Supports, Todd};
+pub use load::{Load, Rider};
+pub use prepared::PreparedModule;
+use thiserror::Error;
+pub use track::Track;
+
+/// Which matrices a module contributes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Model {
+    /// Every degree of freedom of the shells and beams.
+    Full,
+    /// The condensed module.
+    SuperElement,
+}
+
+/// Whether the ends are held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Ends {
+    /// Floating free, as in the paper's table of modes.
+    Free,
+    /// Held as the design's supports say, as in statics and crossings.
+    Supported,
+}
+
+/// Why a bridge could not be built.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum BridgeError {
+    /// A number of the design is refused.
+    #[error(transparent)]
+    Design(#[from] crate::input::InvalidInput),
+    /// The finite elements failed.
+    #[error(transparent)]
+    Fem(#[from] crate::fem::FemError),
+}

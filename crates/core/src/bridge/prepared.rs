@@ -1,0 +1,223 @@
+//! A module made ready for a row of its like: structure, water and, where asked, condensation.
+//!
+//! Knows which nodes carry hinges, connectors, wheels, supports and water. Does not know neighbours.
+
+use super::{BridgeDesign, BridgeError, Model};
+use crate::fem::{MassKind, NodeId, SparseRow, SymmetricMatrix, assemble};
+use crate::module::{Grid, mesh_module};
+use crate::superelement::SuperElement;
+use crate::water::spread;
+use std::collections::BTreeSet;
+
+/// Translation along the bridge, across it, and up, as directions of a node's dofs.
+pub(super) const X: usize = 0;
+pub(super) const Y: usize = 1;
+pub(super) const Z: usize = 2;
+
+/// The two ends of a module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Left,
+    Right,
+}
+
+/// A module made ready for assembly: its matrices and what is needed to place it in a row. Built once for a design and
+/// shared by all modules and all jobs.
+#[derive(Debug)]
+pub struct PreparedModule {
+    pub(super) model: Model,
+    pub(super) grid: Grid,
+    /// Structure and water.
+    pub(super) k: SymmetricMatrix,
+    /// Structure and water.
+    pub(super) m: SymmetricMatrix,
+    /// For each dof of the full module its place among the dofs of `k`, where it is one.
+    direct: Vec<Option<usize>>,
+    condensed: Option<SuperElement>,
+    /// Resultants of the water's force on the module for unit dofs: up, about x, about y (through the module's left
+    /// end, centre line).
+    pub(super) water: [SparseRow; 3],
+    /// Surge, sway and yaw about the left end's centre: motions against which neither plates nor water do anything.
+    pub(super) horizontal_rigid: [Vec<f64>; 3],
+    structural_mass_kg: f64,
+    roll_inertia_kg_m2: f64,
+    full_dofs: usize,
+}
+
+impl PreparedModule {
+    /// Meshes the module, adds the water and, for the super-element, condenses it.
+    ///
+    /// # Errors
+    /// [`BridgeError`].
+    pub fn new(design: &BridgeDesign, model: Model) -> Result<Self, BridgeError> {
+        design.check()?;
+        let extra: Vec<f64> = design
+            .hinges
+            .y_m
+            .iter()
+            .chain(&design.connectors.y_m)
+            .copied()
+            .collect();
+        let meshed = mesh_module(&design.module, &extra);
+        let (grid, mesh) = (meshed.grid, meshed.mesh);
+        let (structure, mass) = assemble(&mesh, MassKind::Consistent)?;
+        let heave: Vec<f64> = (0..mesh.dofs()).map(|i| if i % 6 == Z { 1.0 } else { 0.0 }).collect();
+        let structural_mass_kg = mass.form(&heave, &heave);
+
+        let n = mesh.dofs();
+        let m_a_area = design.m_a() / design.module.breadth_m;
+        let on_z = |entries: Vec<(NodeId, NodeId, f64)>| {
+            let entries: Vec<_> = entries.iter().map(|(a, b, v)| (a.dof(Z), b.dof(Z), *v)).collect();
+            SymmetricMatrix::from_entries(n, &entries)
+        };
+        let k_b = on_z(spread(&grid, design.p_b(), design.water_distribution))?;
+        let m_b = on_z(spread(&grid, m_a_area, design.water_distribution))?;
+        let k = SymmetricMatrix::combine(&[(1.0, &structure), (1.0, &k_b)])?;
+        let m = SymmetricMatrix::combine(&[(1.0, &mass), (1.0, &m_b)])?;
+        let roll: Vec<f64> = (0..n)
+            .map(|i| match (mesh.nodes[i / 6], i % 6) {
+                (p, Z) => p.y,
+                (p, Y) => 0.5 * design.module.depth_m - p.z,
+                (_, 3) => 1.0,
+                _ => 0.0,
+            })
+            .collect();
+        let roll_inertia_kg_m2 = m.form(&roll, &roll);
+        // water pushes down on a module that rises: force -k_b u at each node
+        let full_water = [|_: f64, _: f64| 1.0, |_, y| y, |x: f64, _| -x].map(|arm: fn(f64, f64) -> f64| {
+            let mut total = vec![0.0; n];
+            for (i, j, v) in k_b.entries() {
+                let place = mesh.nodes[i / 6];
+                total[j] -= v * arm(place.x, place.y);
+            }
+            total
+        });
+
+        let full_rigid = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|[surge, sway, yaw]| -> Vec<f64> {
+            (0..n)
+                .map(|i| match (mesh.nodes[i / 6], i % 6) {
+                    (p, X) => surge - yaw * p.y,
+                    (p, Y) => sway + yaw * p.x,
+                    (_, 5) => yaw,
+                    _ => 0.0,
+                })
+                .collect()
+        });
+
+        let (condensed, direct, k, m) = match model {
+            Model::Full => (None, (0..n).map(Some).collect(), k, m),
+            Model::SuperElement => {
+                let masters = masters(design, &grid);
+                let condensed = SuperElement::condense(&k, &m, &masters, design.condensation.fixed_master_modes)?;
+                let mut direct = vec![None; n];
+                for (place, &dof) in condensed.masters.iter().enumerate() {
+                    direct[dof] = Some(place);
+                }
+                let (k, m) = (condensed.k.clone(), condensed.m.clone());
+                (Some(condensed), direct, k, m)
+            }
+        };
+        let water = full_water.map(|total| match &condensed {
+            None => SparseRow(total.into_iter().enumerate().filter(|e| e.1 != 0.0).collect()),
+            Some(c) => {
+                let t = &c.transformation;
+                let column = |j: usize| total.iter().enumerate().map(|(i, v)| v * t[(i, j)]).sum::<f64>();
+                SparseRow((0..t.ncols()).map(|j| (j, column(j))).collect())
+            }
+        });
+        let horizontal_rigid = full_rigid.map(|motion| {
+            let mut own = vec![0.0; k.order()];
+            for (i, place) in direct.iter().enumerate() {
+                if let Some(place) = *place {
+                    own[place] = motion[i];
+                }
+            }
+            own
+        });
+        Ok(Self {
+            model,
+            grid,
+            k,
+            m,
+            direct,
+            condensed,
+            water,
+            horizontal_rigid,
+            structural_mass_kg,
+            roll_inertia_kg_m2,
+            full_dofs: n,
+        })
+    }
+
+    /// `r^T M r` of a unit heave, structure alone [kg].
+    pub fn structural_mass_kg(&self) -> f64 {
+        self.structural_mass_kg
+    }
+
+    /// Inertia of a unit roll about the axis at mid-depth, water included [kg m^2].
+    pub(crate) fn roll_inertia_kg_m2(&self) -> f64 {
+        self.roll_inertia_kg_m2
+    }
+
+    /// Degrees of freedom.
+    pub fn dofs(&self) -> usize {
+        self.k.order()
+    }
+
+    /// Degrees of freedom before condensation.
+    pub fn full_dofs(&self) -> usize {
+        self.full_dofs
+    }
+
+    /// Place of a node's translation among the dofs, where it is one of them.
+    pub(super) fn dof(&self, node: NodeId, direction: usize) -> Option<usize> {
+        self.direct[node.dof(direction)]
+    }
+
+    /// A node's translation in terms of the dofs: itself, or a row of the transformation.
+    pub(super) fn row(&self, node: NodeId, direction: usize) -> SparseRow {
+        match (self.dof(node, direction), &self.condensed) {
+            (Some(dof), _) => SparseRow(vec![(dof, 1.0)]),
+            (None, Some(c)) => {
+                let i = node.dof(direction);
+                SparseRow(
+                    (0..c.transformation.ncols())
+                        .map(|j| (j, c.transformation[(i, j)]))
+                        .collect(),
+                )
+            }
+            (None, None) => SparseRow::default(),
+        }
+    }
+
+    /// Line along the module of one of its ends.
+    pub(super) fn end_line(&self, side: Side) -> usize {
+        match side {
+            Side::Left => 0,
+            Side::Right => self.grid.x.len() - 1,
+        }
+    }
+}
+
+/// Masters of a module: hinges, connectors, the deck's z, z of the ends' bottom edges, and where asked of all bottom nodes.
+fn masters(design: &BridgeDesign, grid: &Grid) -> Vec<usize> {
+    let (nx, ny) = (grid.x.len(), grid.y.len());
+    let mut masters = BTreeSet::new();
+    for ix in [0, nx - 1] {
+        for iy in design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y)) {
+            masters.extend([X, Y, Z].map(|d| grid.bottom(ix, iy).dof(d)));
+        }
+        for iy in design.connectors.y_m.iter().filter_map(|&y| grid.y_line(y)) {
+            masters.insert(grid.deck(ix, iy).dof(X));
+        }
+    }
+    for ix in 0..nx {
+        for iy in 0..ny {
+            masters.insert(grid.deck(ix, iy).dof(Z));
+            if design.condensation.bottom_masters || ix == 0 || ix == nx - 1 {
+                masters.insert(grid.bottom(ix, iy).dof(Z));
+            }
+        }
+    }
+    masters.into_iter().collect()
+}

@@ -1,0 +1,263 @@
+//! From the box's design to its mesh.
+//!
+//! Knows lines, plates and beams. Every line of a wall, a stiffener or a given extra place is a mesh line.
+
+use super::ModuleDesign;
+use crate::fem::{BeamSection, Mesh, NodeId, ShellSection};
+use nalgebra::Vector3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Lines closer than this are one line [m].
+const SAME_LINE_M: f64 = 1e-6;
+
+/// The structured grid of deck and bottom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Lines along the module, from 0 to the length [m].
+    pub x: Vec<f64>,
+    /// Lines across, from minus to plus half the breadth [m].
+    pub y: Vec<f64>,
+    deck: Vec<NodeId>,
+    bottom: Vec<NodeId>,
+}
+
+impl Grid {
+    /// Deck node at lines `ix`, `iy`.
+    pub fn deck(&self, ix: usize, iy: usize) -> NodeId {
+        self.deck[ix * self.y.len() + iy]
+    }
+
+    /// Bottom node at lines `ix`, `iy`.
+    pub fn bottom(&self, ix: usize, iy: usize) -> NodeId {
+        self.bottom[ix * self.y.len() + iy]
+    }
+
+    /// Number of the line across at `y_m`, where there is one.
+    pub fn y_line(&self, y_m: f64) -> Option<usize> {
+        line(&self.y, y_m)
+    }
+
+    /// Bottom cells: their corner nodes in cyclic order and their area [m^2].
+    pub fn bottom_cells(&self) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
+        cells(self.x.len(), self.y.len()).map(|(i, j)| {
+            let area = (self.x[i + 1] - self.x[i]) * (self.y[j + 1] - self.y[j]);
+            (
+                [
+                    self.bottom(i, j),
+                    self.bottom(i + 1, j),
+                    self.bottom(i + 1, j + 1),
+                    self.bottom(i, j + 1),
+                ],
+                area,
+            )
+        })
+    }
+}
+
+/// A module's mesh and its grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModuleMesh {
+    /// Nodes, shells, beams.
+    pub mesh: Mesh,
+    /// Deck and bottom.
+    pub grid: Grid,
+}
+
+/// Meshes a checked design, with extra lines across at `extra_y` [m].
+pub fn mesh_module(design: &ModuleDesign, extra_y: &[f64]) -> ModuleMesh {
+    Builder::new(design, extra_y).build()
+}
+
+fn line(lines: &[f64], at: f64) -> Option<usize> {
+    lines.iter().position(|&l| (l - at).abs() <= SAME_LINE_M)
+}
+
+fn cells(nx: usize, ny: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..nx - 1).flat_map(move |i| (0..ny - 1).map(move |j| (i, j)))
+}
+
+/// Sorted lines without near-duplicates, each interval divided into `parts(length)` equal parts.
+fn divide(mut lines: Vec<f64>, parts: impl Fn(f64) -> usize) -> Vec<f64> {
+    lines.sort_by(f64::total_cmp);
+    lines.dedup_by(|a, b| (*a - *b).abs() <= SAME_LINE_M);
+    let mut divided = vec![lines[0]];
+    for w in lines.windows(2) {
+        let n = parts(w[1] - w[0]).max(1);
+        divided.extend((1..n).map(|k| w[0] + (w[1] - w[0]) * k as f64 / n as f64));
+        divided.push(w[1]);
+    }
+    divided
+}
+
+struct Builder<'a> {
+    design: &'a ModuleDesign,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    z: Vec<f64>,
+    mesh: Mesh,
+    nodes: BTreeMap<(usize, usize, usize), NodeId>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(design: &'a ModuleDesign, extra_y: &[f64]) -> Self {
+        let (l, half) = (design.length_m, 0.5 * design.breadth_m);
+        let mut x = vec![0.0, l];
+        x.extend(&design.transverse_walls.x_m);
+        x.extend(&design.stiffeners.transverse_x_m);
+        let longest = l / design.mesh.elements_along as f64;
+        let x = divide(x, |length| (length / longest - 1e-6).ceil() as usize);
+        let mut y = vec![-half, half, 0.0];
+        y.extend(&design.longitudinal_walls.y_m);
+        y.extend(&design.stiffeners.longitudinal_y_m);
+        y.extend(extra_y);
+        let y = divide(y, |_| design.mesh.elements_between_lines);
+        let over = design.mesh.elements_over_depth;
+        let z = (0..=over).map(|k| design.depth_m * k as f64 / over as f64).collect();
+        Self {
+            design,
+            x,
+            y,
+            z,
+            mesh: Mesh::default(),
+            nodes: BTreeMap::new(),
+        }
+    }
+
+    fn node(&mut self, ix: usize, iy: usize, iz: usize) -> NodeId {
+        let place = Vector3::new(self.x[ix], self.y[iy], self.z[iz]);
+        let mesh = &mut self.mesh;
+        *self.nodes.entry((ix, iy, iz)).or_insert_with(|| mesh.add_node(place))
+    }
+
+    fn plate(&self, thickness_m: f64) -> ShellSection {
+        let material = &self.design.material;
+        ShellSection {
+            thickness_m,
+            youngs_modulus_pa: material.youngs_modulus_pa,
+            poissons_ratio: material.poissons_ratio,
+            density_kg_m3: material.density_kg_m3,
+        }
+    }
+
+    fn build(mut self) -> ModuleMesh {
+        let (nx, ny, top) = (self.x.len(), self.y.len(), self.z.len() - 1);
+        let level = |b: &mut Self, iz: usize| -> Vec<NodeId> {
+            (0..nx)
+                .flat_map(|i| (0..ny).map(move |j| (i, j)))
+                .map(|(i, j)| b.node(i, j, iz))
+                .collect()
+        };
+        let bottom = level(&mut self, 0);
+        let deck = level(&mut self, top);
+        for (iz, thickness) in [(0, self.design.bottom_thickness_m), (top, self.design.deck_thickness_m)] {
+            let section = self.plate(thickness);
+            for (i, j) in cells(nx, ny) {
+                let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| self.node(i, j, iz));
+                self.mesh.add_shell(corners, section);
+            }
+        }
+        self.longitudinal_plates();
+        self.transverse_plates();
+        self.stiffeners();
+        let grid = Grid {
+            x: self.x,
+            y: self.y,
+            deck,
+            bottom,
+        };
+        ModuleMesh { mesh: self.mesh, grid }
+    }
+
+    fn longitudinal_plates(&mut self) {
+        let walls = &self.design.longitudinal_walls;
+        let mut plates: Vec<(usize, f64)> = walls
+            .y_m
+            .iter()
+            .filter_map(|&y| line(&self.y, y))
+            .map(|j| (j, walls.thickness_m))
+            .collect();
+        plates.extend([
+            (0, self.design.side_thickness_m),
+            (self.y.len() - 1, self.design.side_thickness_m),
+        ]);
+        for (j, thickness) in plates {
+            let section = self.plate(thickness);
+            for (i, k) in cells(self.x.len(), self.z.len()) {
+                let corners = [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)].map(|(i, k)| self.node(i, j, k));
+                self.mesh.add_shell(corners, section);
+            }
+        }
+    }
+
+    fn transverse_plates(&mut self) {
+        let walls = &self.design.transverse_walls;
+        let mut plates: Vec<(usize, f64)> = walls
+            .x_m
+            .iter()
+            .filter_map(|&x| line(&self.x, x))
+            .map(|i| (i, walls.thickness_m))
+            .collect();
+        plates.extend([
+            (0, self.design.end_thickness_m),
+            (self.x.len() - 1, self.design.end_thickness_m),
+        ]);
+        for (i, thickness) in plates {
+            let section = self.plate(thickness);
+            for (j, k) in cells(self.y.len(), self.z.len()) {
+                let corners = [(j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)].map(|(j, k)| self.node(i, j, k));
+                self.mesh.add_shell(corners, section);
+            }
+        }
+    }
+
+    /// Beams along the lines of deck and bottom, posts on sides and end walls at the same lines.
+    fn stiffeners(&mut self) {
+        let stiffeners = &self.design.stiffeners;
+        let material = &self.design.material;
+        let section = BeamSection {
+            area_m2: stiffeners.area_m2,
+            i_y_m4: stiffeners.second_moment_m4,
+            i_z_m4: stiffeners.second_moment_m4,
+            torsion_m4: stiffeners.torsion_constant_m4,
+            shear_area_m2: stiffeners.shear_area_m2,
+            youngs_modulus_pa: material.youngs_modulus_pa,
+            poissons_ratio: material.poissons_ratio,
+            density_kg_m3: material.density_kg_m3,
+        };
+        let across: BTreeSet<usize> = stiffeners
+            .transverse_x_m
+            .iter()
+            .filter_map(|&x| line(&self.x, x))
+            .collect();
+        let along: BTreeSet<usize> = stiffeners
+            .longitudinal_y_m
+            .iter()
+            .filter_map(|&y| line(&self.y, y))
+            .collect();
+        let (nx, ny, top) = (self.x.len(), self.y.len(), self.z.len() - 1);
+        for iz in [0, top] {
+            for &i in &across {
+                for j in 0..ny - 1 {
+                    self.beam([(i, j, iz), (i, j + 1, iz)], section, Vector3::z());
+                }
+            }
+            for &j in &along {
+                for i in 0..nx - 1 {
+                    self.beam([(i, j, iz), (i + 1, j, iz)], section, Vector3::z());
+                }
+            }
+        }
+        let mut posts: BTreeSet<(usize, usize)> = across.iter().flat_map(|&i| [(i, 0), (i, ny - 1)]).collect();
+        posts.extend(along.iter().flat_map(|&j| [(0, j), (nx - 1, j)]));
+        for (i, j) in posts {
+            for k in 0..top {
+                self.beam([(i, j, k), (i, j, k + 1)], section, Vector3::x());
+            }
+        }
+    }
+
+    fn beam(&mut self, ends: [(usize, usize, usize); 2], section: BeamSection, up: Vector3<f64>) {
+        let nodes = ends.map(|(i, j, k)| self.node(i, j, k));
+        self.mesh.add_beam(nodes, section, up);
+    }
+}

@@ -1,0 +1,211 @@
+//! A pontoon module as a bridge file writes it: box, walls, stiffeners, material, mesh.
+//!
+//! Knows which numbers describe the box and refuses those that cannot. Does not know water, hinges or connectors.
+
+use crate::input::{InvalidInput, not_negative, positive, within};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A closed box of plates with walls and stiffeners; x along the bridge from 0 to `length_m`, y across from the centre
+/// line, z up from the bottom plate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModuleDesign {
+    /// Length along the bridge [m].
+    pub length_m: f64,
+    /// Breadth across the bridge [m].
+    pub breadth_m: f64,
+    /// Depth from bottom plate to deck plate [m].
+    pub depth_m: f64,
+    /// Thickness of the deck plate [m].
+    pub deck_thickness_m: f64,
+    /// Thickness of the bottom plate [m].
+    pub bottom_thickness_m: f64,
+    /// Thickness of the two side plates [m].
+    pub side_thickness_m: f64,
+    /// Thickness of the two end plates [m].
+    pub end_thickness_m: f64,
+    /// Longitudinal walls inside the box.
+    #[serde(default)]
+    pub longitudinal_walls: LongitudinalWalls,
+    /// Transverse walls inside the box.
+    #[serde(default)]
+    pub transverse_walls: TransverseWalls,
+    /// Beams on the plates.
+    #[serde(default)]
+    pub stiffeners: Stiffeners,
+    /// Material of plates and beams.
+    pub material: Material,
+    /// How finely the box is meshed.
+    pub mesh: MeshDesign,
+}
+
+/// Vertical walls along the bridge.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LongitudinalWalls {
+    /// Thickness [m].
+    pub thickness_m: f64,
+    /// Places across [m].
+    pub y_m: Vec<f64>,
+}
+
+/// Vertical walls across the bridge.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TransverseWalls {
+    /// Thickness [m].
+    pub thickness_m: f64,
+    /// Places along [m].
+    pub x_m: Vec<f64>,
+}
+
+/// Beams on deck and bottom along given lines, and as posts on sides and end walls at the same lines.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stiffeners {
+    /// Cross-section area [m^2].
+    pub area_m2: f64,
+    /// Second moment of area about both axes [m^4].
+    pub second_moment_m4: f64,
+    /// Torsion constant [m^4].
+    pub torsion_constant_m4: f64,
+    /// Shear area, both directions [m^2]; absent: no shear deformation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_area_m2: Option<f64>,
+    /// Places of the transverse beams along the module [m].
+    pub transverse_x_m: Vec<f64>,
+    /// Places of the longitudinal beams across the module [m].
+    pub longitudinal_y_m: Vec<f64>,
+}
+
+/// Linear elastic isotropic material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Young's modulus [Pa].
+    pub youngs_modulus_pa: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+    /// Density [kg/m^3], fittings included.
+    pub density_kg_m3: f64,
+}
+
+/// Mesh of the box. Every line that carries a wall, a stiffener, a hinge or a connector is a mesh line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshDesign {
+    /// Least number of elements along the module; no element is longer than the length over this number.
+    pub elements_along: usize,
+    /// Elements between two neighbouring lines across.
+    #[serde(default = "one")]
+    pub elements_between_lines: usize,
+    /// Elements over the depth.
+    pub elements_over_depth: usize,
+}
+
+fn one() -> usize {
+    1
+}
+
+impl ModuleDesign {
+    /// Refuses numbers that describe no box.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        positive("length_m", self.length_m)?;
+        positive("breadth_m", self.breadth_m)?;
+        positive("depth_m", self.depth_m)?;
+        positive("deck_thickness_m", self.deck_thickness_m)?;
+        positive("bottom_thickness_m", self.bottom_thickness_m)?;
+        positive("side_thickness_m", self.side_thickness_m)?;
+        positive("end_thickness_m", self.end_thickness_m)?;
+        let half = 0.5 * self.breadth_m;
+        lines(
+            "longitudinal_walls",
+            "y_m",
+            &self.longitudinal_walls.y_m,
+            -half,
+            half,
+            Some(self.longitudinal_walls.thickness_m),
+        )?;
+        lines(
+            "transverse_walls",
+            "x_m",
+            &self.transverse_walls.x_m,
+            0.0,
+            self.length_m,
+            Some(self.transverse_walls.thickness_m),
+        )?;
+        self.stiffeners.check(self.length_m, half)?;
+        self.material.check().map_err(|e| e.under("material"))?;
+        self.mesh.check().map_err(|e| e.under("mesh"))
+    }
+}
+
+fn lines(of: &str, key: &str, places: &[f64], from: f64, to: f64, thickness: Option<f64>) -> Result<(), InvalidInput> {
+    for (i, &place) in places.iter().enumerate() {
+        within(&format!("{of}.{key}[{i}]"), place, from - 1e-9, to + 1e-9)?;
+    }
+    match thickness {
+        Some(t) if !places.is_empty() => positive(&format!("{of}.thickness_m"), t).map(|_| ()),
+        _ => Ok(()),
+    }
+}
+
+impl Stiffeners {
+    fn check(&self, length_m: f64, half_breadth_m: f64) -> Result<(), InvalidInput> {
+        lines(
+            "stiffeners",
+            "transverse_x_m",
+            &self.transverse_x_m,
+            0.0,
+            length_m,
+            None,
+        )?;
+        lines(
+            "stiffeners",
+            "longitudinal_y_m",
+            &self.longitudinal_y_m,
+            -half_breadth_m,
+            half_breadth_m,
+            None,
+        )?;
+        if self.transverse_x_m.is_empty() && self.longitudinal_y_m.is_empty() {
+            return Ok(());
+        }
+        positive("stiffeners.area_m2", self.area_m2)?;
+        positive("stiffeners.second_moment_m4", self.second_moment_m4)?;
+        positive("stiffeners.torsion_constant_m4", self.torsion_constant_m4)?;
+        if let Some(area) = self.shear_area_m2 {
+            positive("stiffeners.shear_area_m2", area)?;
+        }
+        Ok(())
+    }
+}
+
+impl Material {
+    fn check(&self) -> Result<(), InvalidInput> {
+        positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
+        not_negative("poissons_ratio", self.poissons_ratio)?;
+        within("poissons_ratio", self.poissons_ratio, 0.0, 0.499)?;
+        positive("density_kg_m3", self.density_kg_m3)?;
+        Ok(())
+    }
+}
+
+impl MeshDesign {
+    fn check(&self) -> Result<(), InvalidInput> {
+        for (key, n) in [
+            ("elements_along", self.elements_along),
+            ("elements_between_lines", self.elements_between_lines),
+            ("elements_over_depth", self.elements_over_depth),
+        ] {
+            if !(1..=200).contains(&n) {
+                return Err(InvalidInput::new(key, n, "a whole number from 1 to 200"));
+            }
+        }
+        Ok(())
+    }
+}

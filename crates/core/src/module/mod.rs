@@ -1,0 +1,10 @@
+//! The pontoon's geometry as finite elements.
+//!
+//! Knows how a box of plates, walls and stiffeners becomes a mesh with named grids of deck and bottom nodes. Does not
+//! know water, hinges, connectors or neighbours.
+
+mod box_mesh;
+mod design;
+
+pub use box_mesh::{Grid, ModuleMesh, mesh_module};
+pub use design::{LongitudinalWalls, Material, MeshDesign, ModuleDesign, Stiffeners, TransverseWalls};

@@ -1,0 +1,129 @@
+//! The super-element: a module condensed to its masters and a few fixed-master modes.
+//!
+//! Knows matrices and a list of masters. Does not know what the masters are for.
+
+use crate::fem::{Factor, FemError, SymmetricMatrix, lowest_modes};
+use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
+
+/// `k' = T^T k T`, `m' = T^T m T` with `T = [I 0; -k22^-1 k21  Phi]` (masters 1, slaves 2) [36-44].
+///
+/// Phi are the lowest modes of the slaves with the masters held (Craig, Bampton: AIAA Journal 6, 1968, 1313-1319); none of
+/// them is Guyan's condensation. Rayleigh damping condenses with its parts: `c' = a k' + b m'`.
+#[derive(Debug, Clone)]
+pub struct SuperElement {
+    /// Masters, as dofs of the full module, in the order of the condensed dofs.
+    pub masters: Vec<usize>,
+    /// Condensed stiffness; masters first, then modes.
+    pub k: SymmetricMatrix,
+    /// Condensed mass.
+    pub m: SymmetricMatrix,
+    /// T: a row for each dof of the full module.
+    pub transformation: Mat<f64>,
+}
+
+/// Shift of the fixed-master eigenproblem [1/s^2]: the square of 1 Hz, below any fixed-master mode of a module.
+const SHIFT: f64 = 39.5;
+
+impl SuperElement {
+    /// Condenses stiffness `k` and mass `m` to `masters` and `modes` fixed-master modes.
+    ///
+    /// # Errors
+    /// [`FemError`] where the slaves' stiffness is not positive definite: the masters leave a mechanism.
+    pub fn condense(
+        k: &SymmetricMatrix,
+        m: &SymmetricMatrix,
+        masters: &[usize],
+        modes: usize,
+    ) -> Result<Self, FemError> {
+        let n = k.order();
+        let mut master = vec![None; n];
+        for (place, &dof) in masters.iter().enumerate() {
+            master[dof] = Some(place);
+        }
+        let slaves: Vec<usize> = (0..n).filter(|&i| master[i].is_none()).collect();
+        let mut slave = vec![None; n];
+        for (place, &dof) in slaves.iter().enumerate() {
+            slave[dof] = Some(place);
+        }
+        let (n1, n2) = (masters.len(), slaves.len());
+        let modes = modes.min(n2);
+        let k22 = restrict(k, &slave, n2)?;
+        let mut x = Mat::<f64>::zeros(n2, n1);
+        for (j, &dof) in masters.iter().enumerate() {
+            for (i, value) in k.column(dof) {
+                if let Some(i) = slave[i] {
+                    x[(i, j)] = -value;
+                }
+            }
+        }
+        Factor::new(&k22)?.solve_columns(x.as_mut());
+        let mut transformation = Mat::<f64>::zeros(n, n1 + modes);
+        for (j, &dof) in masters.iter().enumerate() {
+            transformation[(dof, j)] = 1.0;
+        }
+        for (i, &dof) in slaves.iter().enumerate() {
+            for j in 0..n1 {
+                transformation[(dof, j)] = x[(i, j)];
+            }
+        }
+        let mut lambda = Vec::new();
+        if modes > 0 {
+            let m22 = restrict(m, &slave, n2)?;
+            let fixed = lowest_modes(&k22, &m22, modes, SHIFT)?;
+            for (i, &dof) in slaves.iter().enumerate() {
+                for j in 0..modes {
+                    transformation[(dof, n1 + j)] = fixed.shapes[(i, j)];
+                }
+            }
+            lambda = fixed.lambda;
+        }
+        // k' has no coupling between masters and modes, and the modes' own block is diagonal: written, not computed.
+        let static_part = transformation.as_ref().subcols(0, n1);
+        let k11 = congruence(k, static_part);
+        let mut entries = dense_entries(k11.as_ref());
+        entries.extend(lambda.iter().enumerate().map(|(j, &l)| (n1 + j, n1 + j, l)));
+        let condensed_k = SymmetricMatrix::from_entries(n1 + modes, &entries)?;
+        let condensed_m = congruence(m, transformation.as_ref());
+        let condensed_m = SymmetricMatrix::from_entries(n1 + modes, &dense_entries(condensed_m.as_ref()))?;
+        Ok(Self {
+            masters: masters.to_vec(),
+            k: condensed_k,
+            m: condensed_m,
+            transformation,
+        })
+    }
+}
+
+/// The part of a matrix among the dofs that `place` keeps.
+fn restrict(a: &SymmetricMatrix, place: &[Option<usize>], n: usize) -> Result<SymmetricMatrix, FemError> {
+    let entries: Vec<_> = a
+        .entries()
+        .filter_map(|(i, j, v)| place[i].zip(place[j]).map(|(i, j)| (i, j, v)))
+        .collect();
+    SymmetricMatrix::from_entries(n, &entries)
+}
+
+/// `T^T A T`.
+fn congruence(a: &SymmetricMatrix, t: MatRef<'_, f64>) -> Mat<f64> {
+    let mut at = Mat::<f64>::zeros(t.nrows(), t.ncols());
+    a.multiply_columns(t, at.as_mut());
+    let mut result = Mat::<f64>::zeros(t.ncols(), t.ncols());
+    matmul(
+        result.as_mut(),
+        Accum::Replace,
+        t.transpose(),
+        at.as_ref(),
+        1.0,
+        Par::Seq,
+    );
+    result
+}
+
+/// All entries of a dense matrix, made symmetric.
+fn dense_entries(a: MatRef<'_, f64>) -> Vec<(usize, usize, f64)> {
+    let n = a.ncols();
+    (0..n)
+        .flat_map(|j| (0..n).map(move |i| (i, j, 0.5 * (a[(i, j)] + a[(j, i)]))))
+        .filter(|e| e.2 != 0.0)
+        .collect()
+}
