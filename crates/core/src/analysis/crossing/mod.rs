@@ -1,0 +1,198 @@
+//! Crossings by direct integration: the reference solver.
+//!
+//! Knows one vehicle on one bridge at one time step, on any model. Does not know studies or threads. What a faster solver
+//! must answer is the same [`Crossing`] with the same [`CrossingResponse`].
+
+mod observe;
+mod step;
+
+use super::AnalysisError;
+use super::modes::Rayleigh;
+use crate::bridge::{Bridge, Load, Track};
+use crate::connector::{Connection, Law};
+use crate::fem::{FemError, SymmetricMatrix};
+use crate::flexibility::Flexibility;
+use crate::response::{CrossingResponse, Record};
+use crate::scheme::Scheme;
+use crate::vehicle::Vehicle;
+use observe::Observer;
+use std::sync::{Arc, OnceLock};
+use step::{Instant, Stepper};
+
+/// What all crossings of a solver share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrossingSettings {
+    /// Time step [s].
+    pub time_step_s: f64,
+    /// Spectral radius of the generalized-alpha scheme, 0 to 1.
+    pub spectral_radius: f64,
+    /// Rayleigh coefficients `C = a K + b M`.
+    pub rayleigh: Rayleigh,
+    /// Newton solutions allowed in a step.
+    pub newton_limit: usize,
+    /// How often a step may be halved.
+    pub bisection_limit: usize,
+}
+
+/// One crossing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crossing {
+    /// How the connectors work.
+    pub connection: Connection,
+    /// Stiffness of one truss [N/m].
+    pub connector_stiffness_n_m: f64,
+    /// Weight of the vehicle [N].
+    pub load_n: f64,
+    /// Speed [m/s].
+    pub speed_m_s: f64,
+    /// How long to go on after the last point has left [s].
+    pub tail_s: f64,
+    /// Histories to keep.
+    pub record: Record,
+}
+
+/// A bridge made ready for crossings of one vehicle at one time step. Shared read-only between jobs and threads.
+#[derive(Debug)]
+pub struct CrossingSolver {
+    bridge: Arc<Bridge>,
+    vehicle: Vehicle,
+    track: Track,
+    settings: CrossingSettings,
+    /// The step's matrix for each number of halvings, factorised when first needed.
+    levels: Vec<OnceLock<Result<Level, FemError>>>,
+}
+
+/// One step length.
+#[derive(Debug)]
+struct Level {
+    scheme: Scheme,
+    flexibility: Flexibility,
+}
+
+impl CrossingSolver {
+    /// Factorises once for the bridge, the time step and the tracks of the vehicle.
+    ///
+    /// # Errors
+    /// [`AnalysisError::Factor`].
+    pub fn new(bridge: &Arc<Bridge>, vehicle: &Vehicle, settings: &CrossingSettings) -> Result<Self, AnalysisError> {
+        let track = Track::new(bridge, vehicle.points().map(|p| p.y_m));
+        let levels = (0..=settings.bisection_limit).map(|_| OnceLock::new()).collect();
+        let solver = Self {
+            bridge: Arc::clone(bridge),
+            vehicle: vehicle.clone(),
+            track,
+            settings: *settings,
+            levels,
+        };
+        solver.level(0)?;
+        Ok(solver)
+    }
+
+    /// Steps that a crossing will take, bisections apart.
+    pub fn steps(bridge_length_m: f64, vehicle: &Vehicle, time_step_s: f64, speed_m_s: f64, tail_s: f64) -> usize {
+        let (before, after) = span(bridge_length_m, vehicle, time_step_s, speed_m_s, tail_s);
+        before + after
+    }
+
+    /// Solves one crossing. The front is at x = 0 at t = 0; the motion starts from rest at the step before the first point
+    /// reaches the bridge.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotConverged`] with time and connector, [`AnalysisError::NotFinite`], [`AnalysisError::Factor`].
+    pub fn solve(&self, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
+        let h = self.settings.time_step_s;
+        let law = Law {
+            k: crossing.connector_stiffness_n_m,
+            connection: crossing.connection,
+        };
+        let (before, after) = span(
+            self.bridge.design().length_m(),
+            &self.vehicle,
+            h,
+            crossing.speed_m_s,
+            crossing.tail_s,
+        );
+        let stepper = Stepper {
+            bridge: &self.bridge,
+            rayleigh: self.settings.rayleigh,
+            law,
+            speed_m_s: crossing.speed_m_s,
+        };
+        let mut observer = Observer::new(&self.bridge, &crossing.record);
+        let start_s = -(before as f64) * h;
+        let mut now = stepper.at_rest(start_s, self.load(crossing, start_s));
+        observer.note_history(&now);
+        for n in 1..=before + after {
+            let to_s = (n as f64 - before as f64) * h;
+            now = self.advance(&stepper, crossing, &mut observer, now, to_s, 0)?;
+            observer.note_history(&now);
+        }
+        Ok(observer.finish())
+    }
+
+    /// One step to `to_s`, halved where the contact does not settle.
+    fn advance(
+        &self,
+        stepper: &Stepper<'_>,
+        crossing: &Crossing,
+        observer: &mut Observer<'_>,
+        now: Instant,
+        to_s: f64,
+        halvings: usize,
+    ) -> Result<Instant, AnalysisError> {
+        let level = self.level(halvings)?;
+        let load = self.load(crossing, to_s);
+        match stepper.step(level, &now, load, to_s, self.settings.newton_limit) {
+            Ok(next) => {
+                if !next.is_finite() {
+                    return Err(AnalysisError::NotFinite { time_s: to_s });
+                }
+                observer.note_step(&now, &next);
+                Ok(next)
+            }
+            Err(stuck) if halvings == self.settings.bisection_limit => {
+                let place = &self.bridge.connectors[stuck.connector];
+                Err(AnalysisError::NotConverged {
+                    time_s: to_s,
+                    connector: stuck.connector + 1,
+                    joint: place.joint,
+                    y_m: place.y_m,
+                    bisections: halvings,
+                })
+            }
+            Err(stuck) => {
+                observer.note_bisection(stuck.iterations);
+                let middle_s = now.time_s + 0.5 * (to_s - now.time_s);
+                let middle = self.advance(stepper, crossing, observer, now, middle_s, halvings + 1)?;
+                self.advance(stepper, crossing, observer, middle, to_s, halvings + 1)
+            }
+        }
+    }
+
+    fn load(&self, crossing: &Crossing, time_s: f64) -> Load {
+        Load::new(&self.track, &self.vehicle, crossing.load_n, crossing.speed_m_s * time_s)
+    }
+
+    fn level(&self, halvings: usize) -> Result<&Level, AnalysisError> {
+        let level = self.levels[halvings].get_or_init(|| {
+            let h = self.settings.time_step_s / (1_u64 << halvings) as f64;
+            let scheme = Scheme::new(h, self.settings.spectral_radius);
+            let (c_m, c_c, c_k) = scheme.effective();
+            let Rayleigh { a, b } = self.settings.rayleigh;
+            let matrix = SymmetricMatrix::combine(&[(c_m + c_c * b, &self.bridge.m), (c_k + c_c * a, &self.bridge.k)])?;
+            let flexibility = Flexibility::new(&matrix, &self.bridge, &self.track)?;
+            Ok(Level { scheme, flexibility })
+        });
+        level.as_ref().map_err(|error| AnalysisError::Factor(error.clone()))
+    }
+}
+
+/// Steps before t = 0, while points ahead of the front come onto the bridge, and from there to the end.
+fn span(bridge_length_m: f64, vehicle: &Vehicle, h: f64, speed_m_s: f64, tail_s: f64) -> (usize, usize) {
+    let steps = |seconds: f64| (seconds / h - 1e-9).ceil().max(0.0) as usize;
+    let before = steps(vehicle.ahead_m() / speed_m_s);
+    (
+        before,
+        steps((bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s),
+    )
+}

@@ -1,0 +1,165 @@
+//! What a crossing reports, gathered step by step.
+//!
+//! Knows the bridge's observed rows and what is kept of each. Does not know the scheme.
+
+use super::step::Instant;
+use crate::bridge::Bridge;
+use crate::response::{
+    CrossingResponse, EnergyBalance, ForcePeaks, History, JointPeaks, Peak, PositionPeaks, Quantity, Record, Statistics,
+};
+
+/// Gathers the response of one crossing.
+#[derive(Debug)]
+pub(super) struct Observer<'a> {
+    bridge: &'a Bridge,
+    positions: Vec<PositionPeaks>,
+    joints: Vec<JointPeaks>,
+    edge: f64,
+    roll: f64,
+    min_contact_force_n: f64,
+    bottom_emerged: Option<bool>,
+    deck_submerged: Option<bool>,
+    statistics: Statistics,
+    energy: EnergyBalance,
+    history_time_s: Vec<f64>,
+    histories: Vec<History>,
+}
+
+impl<'a> Observer<'a> {
+    pub(super) fn new(bridge: &'a Bridge, record: &Record) -> Self {
+        let design = bridge.design();
+        let positions = (1..=design.positions())
+            .map(|position| PositionPeaks {
+                position,
+                x_m: design.position_x_m(position),
+                deflection: Peak::default(),
+                uplift: Peak::default(),
+            })
+            .collect();
+        let per_joint = |y: &Vec<f64>| y.iter().map(|&y| (y, ForcePeaks::default())).collect();
+        let joints = (2..=design.modules)
+            .map(|joint| JointPeaks {
+                joint,
+                sum: ForcePeaks::default(),
+                connectors: per_joint(&design.connectors.y_m),
+            })
+            .collect();
+        let of = |quantity: Quantity, list: &[usize]| -> Vec<History> {
+            list.iter()
+                .map(|&position| History {
+                    quantity,
+                    position,
+                    values: Vec::new(),
+                })
+                .collect()
+        };
+        let mut histories = of(Quantity::Deflection, &record.positions);
+        histories.extend(of(Quantity::Force, &record.joints));
+        Self {
+            bridge,
+            positions,
+            joints,
+            edge: 0.0,
+            roll: 0.0,
+            min_contact_force_n: f64::INFINITY,
+            bottom_emerged: design.draft_m.map(|_| false),
+            deck_submerged: design.freeboard_m.map(|_| false),
+            statistics: Statistics::default(),
+            energy: EnergyBalance::default(),
+            history_time_s: Vec::new(),
+            histories,
+        }
+    }
+
+    /// Takes note of a halved step and the Newton solutions it cost.
+    pub(super) fn note_bisection(&mut self, iterations: usize) {
+        self.statistics.bisections += 1;
+        self.statistics.newton_iterations += iterations;
+    }
+
+    /// Takes note of the motion after an accepted step.
+    pub(super) fn note_step(&mut self, old: &Instant, new: &Instant) {
+        self.statistics.steps += 1;
+        self.statistics.newton_iterations += new.newton_iterations;
+        self.statistics.contact_switches += old.states.iter().zip(&new.states).filter(|(a, b)| a != b).count();
+        self.energy.kinetic = new.spent.kinetic;
+        self.energy.strain = new.spent.strain;
+        self.energy.connectors = new.spent.connectors;
+        self.energy.rayleigh += new.spent.rayleigh;
+        self.energy.numerical += new.spent.numerical;
+        self.energy.work += new.spent.work;
+        self.energy.close();
+        self.note_peaks(new);
+    }
+
+    fn note_peaks(&mut self, now: &Instant) {
+        let (t, u) = (now.time_s, &now.u);
+        for (peaks, row) in self.positions.iter_mut().zip(&self.bridge.positions) {
+            let z = row.dot(u);
+            peaks.deflection.take(-z, t);
+            peaks.uplift.take(z, t);
+        }
+        let per_joint = self.bridge.design().connectors.y_m.len();
+        for (joint, forces) in self.joints.iter_mut().zip(now.forces.chunks(per_joint)) {
+            joint.sum.take(forces.iter().sum(), t);
+            for ((_, peaks), &force) in joint.connectors.iter_mut().zip(forces) {
+                peaks.take(force, t);
+            }
+        }
+        for row in &self.bridge.edges {
+            self.edge = self.edge.max(-row.dot(u));
+        }
+        for row in &self.bridge.rolls {
+            self.roll = self.roll.max(row.dot(u).abs());
+        }
+        let design = self.bridge.design();
+        if let Some(draft) = design.draft_m {
+            let emerged = self.bridge.bottom_corners.iter().any(|row| row.dot(u) > draft);
+            self.bottom_emerged = self.bottom_emerged.map(|before| before || emerged);
+        }
+        if let Some(freeboard) = design.freeboard_m {
+            let submerged = self.bridge.deck_corners.iter().any(|row| -row.dot(u) > freeboard);
+            self.deck_submerged = self.deck_submerged.map(|before| before || submerged);
+        }
+        for (axle, &(weight, whole)) in now.load.axles.iter().enumerate() {
+            if whole {
+                let riders = now.load.riders.iter().zip(&now.inertia);
+                let inertia: f64 = riders.filter(|(r, _)| r.axle == axle).map(|(_, q)| q).sum();
+                self.min_contact_force_n = self.min_contact_force_n.min(weight + inertia);
+            }
+        }
+    }
+
+    /// Records the histories asked for at a whole step.
+    pub(super) fn note_history(&mut self, now: &Instant) {
+        if self.histories.is_empty() {
+            return;
+        }
+        self.history_time_s.push(now.time_s);
+        let per_joint = self.bridge.design().connectors.y_m.len();
+        for history in &mut self.histories {
+            history.values.push(match history.quantity {
+                Quantity::Deflection => -self.bridge.positions[history.position - 1].dot(&now.u),
+                Quantity::Force => now.forces[(history.position - 2) * per_joint..][..per_joint]
+                    .iter()
+                    .sum(),
+            });
+        }
+    }
+
+    pub(super) fn finish(self) -> CrossingResponse {
+        CrossingResponse {
+            positions: self.positions,
+            joints: self.joints,
+            peak_edge_deflection_m: self.edge,
+            peak_roll_rad: self.roll,
+            min_contact_force_n: self.min_contact_force_n,
+            bottom_emerged: self.bottom_emerged,
+            deck_submerged: self.deck_submerged,
+            statistics: self.statistics,
+            energy: self.energy.summary(),
+            history_time_s: self.history_time_s,
+            histories: self.histories,
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! One step of the generalized-alpha scheme with contact and riding masses.
+//!
+//! Knows the balance at alpha and its energies. Does not know when to stop or what is reported.
+
+use super::Level;
+use crate::analysis::modes::Rayleigh;
+use crate::bridge::{Bridge, Load, Rider};
+use crate::connector::{Law, State};
+use crate::contact::{ContactProblem, NotSettled};
+use crate::fem::SparseRow;
+use nalgebra::{DMatrix, DVector};
+
+/// The motion at one time, with what the next step and the energy balance need of it.
+#[derive(Debug, Clone)]
+pub(super) struct Instant {
+    pub time_s: f64,
+    pub u: Vec<f64>,
+    pub v: Vec<f64>,
+    pub a: Vec<f64>,
+    /// K u, M v, M a.
+    pub ku: Vec<f64>,
+    pub mv: Vec<f64>,
+    pub ma: Vec<f64>,
+    /// State, force and elongation of each connector.
+    pub states: Vec<State>,
+    pub forces: Vec<f64>,
+    pub elongations: Vec<f64>,
+    pub load: Load,
+    /// Inertia force of each rider, `m (r u'' + ...)` [N].
+    pub inertia: Vec<f64>,
+    pub newton_iterations: usize,
+    /// Energies of the step that led here.
+    pub spent: Spent,
+}
+
+/// Energies of one step [J].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Spent {
+    pub kinetic: f64,
+    pub strain: f64,
+    pub connectors: f64,
+    /// Increments over the step.
+    pub rayleigh: f64,
+    pub numerical: f64,
+    pub work: f64,
+}
+
+impl Instant {
+    pub(super) fn is_finite(&self) -> bool {
+        self.spent.kinetic.is_finite() && self.spent.strain.is_finite()
+    }
+}
+
+/// What stays the same through a crossing.
+#[derive(Debug)]
+pub(super) struct Stepper<'a> {
+    pub bridge: &'a Bridge,
+    pub rayleigh: Rayleigh,
+    pub law: Law,
+    pub speed_m_s: f64,
+}
+
+impl Stepper<'_> {
+    /// Rest under the vehicle's first place.
+    pub(super) fn at_rest(&self, time_s: f64, load: Load) -> Instant {
+        let zero = vec![0.0; self.bridge.dofs()];
+        let connectors = self.bridge.connectors.len();
+        let riders = load.riders.len();
+        Instant {
+            time_s,
+            u: zero.clone(),
+            v: zero.clone(),
+            a: zero.clone(),
+            ku: zero.clone(),
+            mv: zero.clone(),
+            ma: zero,
+            states: vec![self.law.state(0.0); connectors],
+            forces: vec![0.0; connectors],
+            elongations: vec![0.0; connectors],
+            load,
+            inertia: vec![0.0; riders],
+            newton_iterations: 0,
+            spent: Spent::default(),
+        }
+    }
+
+    /// One step: predict, meet the contact, correct, account.
+    pub(super) fn step(
+        &self,
+        level: &Level,
+        old: &Instant,
+        load: Load,
+        time_s: f64,
+        newton_limit: usize,
+    ) -> Result<Instant, NotSettled> {
+        let s = &level.scheme;
+        let flexibility = &level.flexibility;
+
+        // the step without new connector and inertia forces:  A d = f - M (y_m + b y_v) - K (u_0 + a y_v)
+        let mut d = self.known_forces(level, old);
+        flexibility.add_track_force(&load.weight, -(1.0 - s.alpha_f), &mut d);
+        flexibility.factor.solve(&mut d);
+
+        // the connectors and the riding masses, together
+        let problem = self.contact_problem(level, old, &load, &d);
+        let contact = problem.solve(&self.law, &old.states, newton_limit)?;
+        for (i, force) in contact.forces.iter().enumerate() {
+            flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * force, &mut d);
+        }
+        let mut inertia = SparseRow::default();
+        for (rider, q) in load.riders.iter().zip(&contact.riders) {
+            inertia.0.extend(rider.row.0.iter().map(|&(c, r)| (c, -q * r)));
+        }
+        flexibility.add_track_response(&SparseRow::from_entries(inertia.0), &mut d);
+
+        // the new instant
+        let n = d.len();
+        let mut new = Instant {
+            time_s,
+            u: (0..n).map(|i| old.u[i] + d[i]).collect(),
+            v: (0..n)
+                .map(|i| s.c_v * d[i] + s.v_v * old.v[i] + s.v_a * old.a[i])
+                .collect(),
+            a: (0..n)
+                .map(|i| s.c_a * d[i] + s.a_v * old.v[i] + s.a_a * old.a[i])
+                .collect(),
+            ku: vec![0.0; n],
+            mv: vec![0.0; n],
+            ma: vec![0.0; n],
+            states: contact.states,
+            forces: contact.forces,
+            elongations: contact.elongations,
+            load,
+            inertia: contact.riders.iter().map(|q| q / (1.0 - s.alpha_m)).collect(),
+            newton_iterations: contact.iterations,
+            spent: Spent::default(),
+        };
+        self.bridge.times_k.multiply(&new.u, &mut new.ku);
+        self.bridge.times_m.multiply(&new.v, &mut new.mv);
+        self.bridge.times_m.multiply(&new.a, &mut new.ma);
+        new.spent = self.account(level, old, &new, &d);
+        Ok(new)
+    }
+
+    /// All forces of the balance at alpha that do not wait for the new instant.
+    fn known_forces(&self, level: &Level, old: &Instant) -> Vec<f64> {
+        let (s, Rayleigh { a, b }) = (&level.scheme, self.rayleigh);
+        let (on_v, on_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
+        let y_v: Vec<f64> = old.v.iter().zip(&old.a).map(|(v, a)| on_v * v + on_a * a).collect();
+        let mut f = vec![0.0; y_v.len()];
+        self.bridge.times_k.multiply(&y_v, &mut f);
+        let m_v = (1.0 - s.alpha_m) * s.a_v + b * on_v;
+        let m_a = (1.0 - s.alpha_m) * s.a_a + s.alpha_m + b * on_a;
+        for (i, f) in f.iter_mut().enumerate() {
+            *f = -a * *f - old.ku[i] - m_v * old.mv[i] - m_a * old.ma[i];
+        }
+        for (connector, force) in self.bridge.connectors.iter().zip(&old.forces) {
+            connector.row.add_to(-s.alpha_f * force, &mut f);
+        }
+        level.flexibility.add_track_force(&old.load.weight, -s.alpha_f, &mut f);
+        for (rider, q) in old.load.riders.iter().zip(&old.inertia) {
+            level.flexibility.add_track_force(&rider.row, -s.alpha_m * q, &mut f);
+        }
+        f
+    }
+
+    /// The small system of the step. Riders are measured in displacement: `q' / ((1 - alpha_m) m c_a) = g . d + known`
+    /// with `g = r + (2 V c_v/c_a) r_x + (V^2/c_a) r_xx` and `q' = (1 - alpha_m) q`.
+    fn contact_problem(&self, level: &Level, old: &Instant, load: &Load, d: &[f64]) -> ContactProblem {
+        let (s, flexibility) = (&level.scheme, &level.flexibility);
+        let connectors = &self.bridge.connectors;
+        let (nc, nr) = (connectors.len(), load.riders.len());
+        let measures: Vec<SparseRow> = load.riders.iter().map(|rider| self.measure(level, rider)).collect();
+        let mut riders = DMatrix::from_fn(nr, nr, |i, j| {
+            flexibility.track_to_track(&measures[i], &load.riders[j].row)
+        });
+        for (i, rider) in load.riders.iter().enumerate() {
+            riders[(i, i)] += 1.0 / ((1.0 - s.alpha_m) * rider.mass_kg * s.c_a);
+        }
+        let known = |rider: &Rider| {
+            let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| -> f64 {
+                row.0.iter().map(|&(c, v)| v * x(flexibility.track_dof(c))).sum()
+            };
+            let mut total = on(&rider.row, &|i| s.a_v * old.v[i] + s.a_a * old.a[i]);
+            if let Some((r_x, r_xx)) = &rider.derivatives {
+                let speed = self.speed_m_s;
+                total += 2.0 * speed * on(r_x, &|i| s.v_v * old.v[i] + s.v_a * old.a[i]);
+                total += speed * speed * on(r_xx, &|i| old.u[i]);
+            }
+            total / s.c_a
+        };
+        ContactProblem {
+            e_free: connectors
+                .iter()
+                .zip(&old.elongations)
+                .map(|(c, e)| e + c.row.dot(d))
+                .collect(),
+            connectors: DMatrix::from_fn(nc, nc, |i, j| flexibility.value(i, j)),
+            weight: 1.0 - s.alpha_f,
+            connectors_riders: DMatrix::from_fn(nc, nr, |i, r| flexibility.connector_to_track(i, &load.riders[r].row)),
+            riders_connectors: DMatrix::from_fn(nr, nc, |r, i| flexibility.connector_to_track(i, &measures[r])),
+            riders,
+            riders_free: DVector::from_iterator(
+                nr,
+                load.riders
+                    .iter()
+                    .zip(&measures)
+                    .map(|(rider, g)| flexibility.track_dot(g, d) + known(rider)),
+            ),
+        }
+    }
+
+    fn measure(&self, level: &Level, rider: &Rider) -> SparseRow {
+        let s = &level.scheme;
+        match &rider.derivatives {
+            None => rider.row.clone(),
+            Some((r_x, r_xx)) => {
+                let speed = self.speed_m_s;
+                SparseRow::combine(&[
+                    (1.0, &rider.row),
+                    (2.0 * speed * s.c_v / s.c_a, r_x),
+                    (speed * speed / s.c_a, r_xx),
+                ])
+            }
+        }
+    }
+
+    /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives
+    /// beyond the change of its energy is numerical dissipation.
+    fn account(&self, level: &Level, old: &Instant, new: &Instant, d: &[f64]) -> Spent {
+        let (s, flexibility) = (&level.scheme, &level.flexibility);
+        let kinetic = 0.5 * dot(&new.v, &new.mv);
+        let strain = 0.5 * dot(&new.u, &new.ku);
+        let connectors: f64 = new.elongations.iter().map(|&e| self.law.energy(e)).sum();
+        let (mut inertia, mut stiffness, mut damping_m, mut damping_k) = (0.0, 0.0, 0.0, 0.0);
+        for i in 0..d.len() {
+            inertia += d[i] * s.at_m(new.ma[i], old.ma[i]);
+            stiffness += d[i] * s.at_f(new.ku[i], old.ku[i]);
+            damping_m += d[i] * s.at_f(new.mv[i], old.mv[i]);
+            damping_k += s.at_f(new.v[i], old.v[i]) * (new.ku[i] - old.ku[i]);
+        }
+        let springs: f64 = (0..new.forces.len())
+            .map(|i| (new.elongations[i] - old.elongations[i]) * s.at_f(new.forces[i], old.forces[i]))
+            .sum();
+        let riders = |instant: &Instant| -> f64 {
+            instant
+                .load
+                .riders
+                .iter()
+                .zip(&instant.inertia)
+                .map(|(r, q)| q * flexibility.track_dot(&r.row, d))
+                .sum()
+        };
+        let weights = s.at_f(
+            flexibility.track_dot(&new.load.weight, d),
+            flexibility.track_dot(&old.load.weight, d),
+        );
+        Spent {
+            kinetic,
+            strain,
+            connectors,
+            rayleigh: self.rayleigh.a * damping_k + self.rayleigh.b * damping_m,
+            numerical: (inertia + old.spent.kinetic - kinetic)
+                + (stiffness + old.spent.strain - strain)
+                + (springs + old.spent.connectors - connectors),
+            work: -weights - s.at_m(riders(new), riders(old)),
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,55 @@
+//! What can be asked of a bridge: its modes, a static load, a crossing.
+//!
+//! Knows the questions and puts solver and response together. Does not know studies, files or threads.
+
+use thiserror::Error;
+
+pub mod crossing;
+pub mod modes;
+pub mod statics;
+
+/// Why an analysis gave no answer.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum AnalysisError {
+    /// The contact did not settle at any step size allowed.
+    #[error(
+        "contact not settled at t = {time_s:.6} s in connector {connector} (joint {joint}, y = {y_m} m) after {bisections} bisections"
+    )]
+    NotConverged {
+        /// Time of the step's end [s].
+        time_s: f64,
+        /// Connector number, from 1, joints from left to right.
+        connector: usize,
+        /// Position number of its joint.
+        joint: usize,
+        /// Its place across [m].
+        y_m: f64,
+        /// Bisections made.
+        bisections: usize,
+    },
+    /// The contact of a static case did not settle.
+    #[error("static contact not settled after {iterations} Newton solutions, load at x = {load_x_m} m")]
+    StaticNotConverged {
+        /// Newton solutions made.
+        iterations: usize,
+        /// Place of the load's centre [m].
+        load_x_m: f64,
+    },
+    /// A number left the finite range.
+    #[error("response not finite at t = {time_s:.6} s")]
+    NotFinite {
+        /// Time [s].
+        time_s: f64,
+    },
+    /// The bridge's matrices could not be factorised.
+    #[error(transparent)]
+    Factor(#[from] crate::fem::FemError),
+    /// A mode that the analysis needs was not found.
+    #[error("mode '{name}' is not among the lowest {searched} modes")]
+    ModeMissing {
+        /// The mode's name.
+        name: String,
+        /// How many were searched.
+        searched: usize,
+    },
+}

@@ -1,0 +1,254 @@
+//! Natural frequencies and named shapes.
+//!
+//! Knows how a shape is told from another by where its kinetic energy is. Does not know how the bridge was built.
+
+use super::AnalysisError;
+use crate::bridge::Bridge;
+use crate::fem::{EigenPairs, SymmetricMatrix, lowest_modes};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// One named mode.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode {
+    /// Natural frequency [Hz].
+    pub frequency_hz: f64,
+    /// Name of the shape: `heave`, `pitch`, `roll`, `surge`, `sway`, `yaw`, or `vertical bending n`, `torsion n`,
+    /// `horizontal bending n`, `axial n`, `local n`, numbered by frequency within their family.
+    pub name: String,
+    /// Share of the kinetic energy in the sections' vertical motion.
+    pub vertical_share: f64,
+    /// Share in the sections' roll.
+    pub torsion_share: f64,
+    /// Share in the sections' lateral motion at mid-depth.
+    pub horizontal_share: f64,
+    /// Share in the sections' motion along the bridge.
+    pub axial_share: f64,
+}
+
+/// Rayleigh coefficients of `C = a K + b M`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rayleigh {
+    /// Stiffness-proportional part [s].
+    pub a: f64,
+    /// Mass-proportional part [1/s].
+    pub b: f64,
+}
+
+/// Shift of the eigenproblem [1/s^2]: the square of 0.1 Hz, below the 0.3 Hz at which bridges heave.
+const SHIFT: f64 = 0.4;
+
+/// Below this frequency a mode is a motion that nothing restores [Hz].
+const RIGID_BELOW_HZ: f64 = 1e-3;
+
+/// A family's share of the kinetic energy below which a shape is local to plates.
+const LOCAL_BELOW: f64 = 0.3;
+
+/// Share of a profile that must be rigid for the shape to be called rigid.
+const RIGID_SHARE: f64 = 0.95;
+
+/// The lowest `count` modes with the linear connection (both trusses of a connector at work), and their shapes.
+///
+/// # Errors
+/// [`AnalysisError::Factor`].
+pub fn modes(bridge: &Bridge, count: usize) -> Result<(Vec<Mode>, EigenPairs), AnalysisError> {
+    let mut pairs = lowest_modes(&linear_stiffness(bridge)?, &bridge.m, count, SHIFT)?;
+    name_unrestored(bridge, &mut pairs);
+    let mut names = Names::default();
+    let modes = (0..pairs.lambda.len())
+        .map(|j| {
+            let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
+            let frequency_hz = pairs.lambda[j].max(0.0).sqrt() / (2.0 * PI);
+            let motion = Motion::of(bridge, &shape);
+            Mode {
+                frequency_hz,
+                name: names.next(&motion, frequency_hz < RIGID_BELOW_HZ),
+                vertical_share: motion.vertical.share,
+                torsion_share: motion.torsion.share,
+                horizontal_share: motion.horizontal.share,
+                axial_share: motion.axial.share,
+            }
+        })
+        .collect();
+    Ok((modes, pairs))
+}
+
+/// Motions that nothing restores share one eigenvalue, so that any mixture of them is a mode: where there are three they
+/// are turned into surge, sway and yaw.
+fn name_unrestored(bridge: &Bridge, pairs: &mut EigenPairs) {
+    let below = (2.0 * PI * RIGID_BELOW_HZ).powi(2);
+    if pairs.lambda.len() < 3 || pairs.lambda[2].abs() > below || pairs.lambda.get(3).is_some_and(|l| l.abs() <= below)
+    {
+        return;
+    }
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for motion in &bridge.horizontal_rigid {
+        let mut shape = motion.clone();
+        for other in &basis {
+            let along = bridge.m.form(other, &shape);
+            shape.iter_mut().zip(other).for_each(|(s, o)| *s -= along * o);
+        }
+        let norm = bridge.m.form(&shape, &shape).sqrt();
+        shape.iter_mut().for_each(|s| *s /= norm);
+        basis.push(shape);
+    }
+    for (j, shape) in basis.iter().enumerate() {
+        pairs.lambda[j] = 0.0;
+        for (i, s) in shape.iter().enumerate() {
+            pairs.shapes[(i, j)] = *s;
+        }
+    }
+}
+
+/// K with the linear connection: `K + sum of 2 k b b^T`.
+pub(super) fn linear_stiffness(bridge: &Bridge) -> Result<SymmetricMatrix, AnalysisError> {
+    let k = 2.0 * bridge.design().connectors.stiffness_n_m;
+    let mut entries: Vec<_> = bridge.k.entries().collect();
+    for connector in &bridge.connectors {
+        for &(i, a) in &connector.row.0 {
+            entries.extend(connector.row.0.iter().map(|&(j, b)| (i, j, k * a * b)));
+        }
+    }
+    Ok(SymmetricMatrix::from_entries(bridge.dofs(), &entries)?)
+}
+
+/// `a, b` that give `ratio` of critical damping at two frequencies [31-33]:
+/// `ratio = a omega / 2 + b / (2 omega)` at both.
+pub fn rayleigh(ratio: f64, frequencies_hz: [f64; 2]) -> Rayleigh {
+    let [w1, w2] = frequencies_hz.map(|f| 2.0 * PI * f);
+    let a = 2.0 * ratio / (w1 + w2);
+    Rayleigh { a, b: a * w1 * w2 }
+}
+
+/// The first two vertical bending frequencies of the linearly connected bridge floating free [Hz].
+///
+/// # Errors
+/// [`AnalysisError::ModeMissing`] where the lowest modes hold no two, as for a single module.
+pub fn bending_frequencies_hz(free: &Bridge) -> Result<[f64; 2], AnalysisError> {
+    let searched = 16;
+    let (modes, _) = modes(free, searched)?;
+    let find = |n: usize| {
+        let name = format!("vertical bending {n}");
+        let mode = modes.iter().find(|m| m.name == name).map(|m| m.frequency_hz);
+        mode.ok_or(AnalysisError::ModeMissing { name, searched })
+    };
+    Ok([find(1)?, find(2)?])
+}
+
+/// Names in order of frequency.
+#[derive(Default)]
+struct Names {
+    count: BTreeMap<&'static str, usize>,
+}
+
+impl Names {
+    fn next(&mut self, motion: &Motion, unrestored: bool) -> String {
+        let families = [
+            ("vertical bending", &motion.vertical, Some(("heave", "pitch"))),
+            ("torsion", &motion.torsion, Some(("roll", "torsion"))),
+            ("horizontal bending", &motion.horizontal, Some(("sway", "yaw"))),
+            ("axial", &motion.axial, Some(("surge", "axial"))),
+        ];
+        let mut best = families[0];
+        for family in &families[1..] {
+            if family.1.share > best.1.share {
+                best = *family;
+            }
+        }
+        let (family, profile, rigid) = best;
+        if profile.share < LOCAL_BELOW && !unrestored {
+            return self.number("local");
+        }
+        if let Some((even, odd)) = rigid {
+            if profile.even > RIGID_SHARE || (unrestored && profile.even >= profile.odd) {
+                return even.to_owned();
+            }
+            let tilts = family != "torsion" && family != "axial";
+            if tilts && (profile.even + profile.odd > RIGID_SHARE || unrestored) {
+                return odd.to_owned();
+            }
+        }
+        self.number(family)
+    }
+
+    fn number(&mut self, family: &'static str) -> String {
+        let n = self.count.entry(family).or_insert(0);
+        *n += 1;
+        format!("{family} {n}")
+    }
+}
+
+/// A motion of the sections along the bridge: its share of the kinetic energy, and how much of it is constant (`even`)
+/// and linear (`odd`) in x.
+#[derive(Debug, Clone, Copy, Default)]
+struct Profile {
+    share: f64,
+    even: f64,
+    odd: f64,
+}
+
+/// The four motions of the sections in a shape of unit modal mass.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motion {
+    vertical: Profile,
+    torsion: Profile,
+    horizontal: Profile,
+    axial: Profile,
+}
+
+impl Motion {
+    fn of(bridge: &Bridge, shape: &[f64]) -> Self {
+        let design = bridge.design();
+        let (mut z, mut roll) = (Vec::new(), Vec::new());
+        for (x, across) in &bridge.sections {
+            let values: Vec<(f64, f64)> = across.iter().map(|(y, row)| (*y, row.dot(shape))).collect();
+            z.push((*x, values.iter().map(|v| v.1).sum::<f64>() / values.len() as f64));
+            roll.push((
+                *x,
+                values.iter().map(|(y, z)| y * z).sum::<f64>() / values.iter().map(|(y, _)| y * y).sum::<f64>(),
+            ));
+        }
+        // roll of the stations at module ends, to take the lateral motion from the hinges to mid-depth
+        let per_module = bridge.sections.len() / design.modules;
+        let end_roll = |i: usize| roll[(i / 2) * per_module + if i % 2 == 0 { 0 } else { per_module - 1 }].1;
+        let half_depth = 0.5 * design.module.depth_m;
+        let hinges = bridge.hinge_lines.iter().enumerate();
+        let y: Vec<(f64, f64)> = hinges
+            .clone()
+            .map(|(i, (x, _, row))| (*x, row.dot(shape) - half_depth * end_roll(i)))
+            .collect();
+        let x: Vec<(f64, f64)> = hinges.map(|(_, (x, row, _))| (*x, row.dot(shape))).collect();
+        let length = design.length_m();
+        let structure = bridge.structural_mass_kg_m;
+        Self {
+            vertical: Profile::new(structure + design.m_a(), &z, length),
+            torsion: Profile::new(bridge.roll_inertia_kg_m, &roll, length),
+            horizontal: Profile::new(structure, &y, length),
+            axial: Profile::new(structure, &x, length),
+        }
+    }
+}
+
+impl Profile {
+    /// Of values along x; two values at one x are the two sides of a joint.
+    fn new(inertia_per_m: f64, values: &[(f64, f64)], length: f64) -> Self {
+        let (mut square, mut mean, mut tilt) = (0.0, 0.0, 0.0);
+        for w in values.windows(2) {
+            let [(xa, a), (xb, b)] = [w[0], w[1]];
+            let dx = xb - xa;
+            square += dx * (a * a + a * b + b * b) / 3.0;
+            mean += dx * (a + b) / 2.0;
+            let [ta, tb] = [xa, xb].map(|x| 2.0 * x / length - 1.0);
+            tilt += dx * (2.0 * (ta * a + tb * b) + ta * b + tb * a) / 6.0;
+        }
+        if square <= 0.0 {
+            return Self::default();
+        }
+        // the integral of t^2 over the bridge is length / 3
+        Self {
+            share: inertia_per_m * square,
+            even: mean * mean / (length * square),
+            odd: 3.0 * tilt * tilt / (length * square),
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Static cases with the gap law.
+//!
+//! Knows one vehicle standing still on one bridge, on any model. Does not know motion.
+
+use super::AnalysisError;
+use crate::bridge::{Bridge, Load, Track};
+use crate::connector::{Connection, Law, State};
+use crate::contact::{ContactProblem, ContactSolution, NotSettled};
+use crate::fem::SparseRow;
+use crate::flexibility::Flexibility;
+use crate::response::{Equilibrium, JointForces, StaticResponse};
+use crate::vehicle::Vehicle;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// One static case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticCase {
+    /// How the connectors work.
+    pub connection: Connection,
+    /// Stiffness of one truss [N/m].
+    pub connector_stiffness_n_m: f64,
+    /// Weight of the vehicle [N].
+    pub load_n: f64,
+    /// Place of the vehicle's centre [m].
+    pub load_x_m: f64,
+}
+
+/// A bridge made ready for static cases of one vehicle. Shared read-only between jobs and threads.
+#[derive(Debug)]
+pub struct StaticSolver {
+    bridge: Arc<Bridge>,
+    vehicle: Vehicle,
+    track: Track,
+    flexibility: Flexibility,
+    /// What each position sees of unit forces at connectors and track.
+    positions: Vec<Vec<f64>>,
+}
+
+/// Newton solutions allowed before the load is halved.
+const NEWTON_LIMIT: usize = 60;
+
+/// How often the load may be halved.
+const HALVINGS: usize = 12;
+
+impl StaticSolver {
+    /// Factorises K once.
+    ///
+    /// # Errors
+    /// [`AnalysisError::Factor`] where K is singular: the supports leave a motion that nothing restores.
+    pub fn new(bridge: &Arc<Bridge>, vehicle: &Vehicle) -> Result<Self, AnalysisError> {
+        let track = Track::new(bridge, vehicle.points().map(|p| p.y_m));
+        let flexibility = Flexibility::new(&bridge.k, bridge, &track)?;
+        let positions = bridge.positions.iter().map(|row| flexibility.observe(row)).collect();
+        Ok(Self {
+            bridge: Arc::clone(bridge),
+            vehicle: vehicle.clone(),
+            track,
+            flexibility,
+            positions,
+        })
+    }
+
+    /// Solves `K u + B^T N(B u) = f`.
+    ///
+    /// # Errors
+    /// [`AnalysisError::StaticNotConverged`].
+    pub fn solve(&self, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
+        let load = self.load(case, case.load_x_m);
+        let contact = self.contact(case, &load, case.load_x_m)?;
+        let bridge = &self.bridge;
+        let mut u = vec![0.0; bridge.dofs()];
+        self.flexibility
+            .add_track_response(&SparseRow::combine(&[(-1.0, &load.weight)]), &mut u);
+        for (i, force) in contact.forces.iter().enumerate() {
+            self.flexibility.add_connector_response(i, -force, &mut u);
+        }
+        let design = bridge.design();
+        let joints = (2..=design.modules)
+            .zip(contact.forces.chunks(design.connectors.y_m.len()))
+            .map(|(joint, forces)| JointForces {
+                joint,
+                sum_n: forces.iter().sum(),
+                connectors: design
+                    .connectors
+                    .y_m
+                    .iter()
+                    .copied()
+                    .zip(forces.iter().copied())
+                    .collect(),
+            })
+            .collect();
+        let largest = |rows: &[SparseRow], value: &dyn Fn(f64) -> f64| {
+            rows.iter().map(|row| value(row.dot(&u))).fold(0.0_f64, f64::max)
+        };
+        Ok(StaticResponse {
+            deflection_m: bridge.positions.iter().map(|row| -row.dot(&u)).collect(),
+            joints,
+            peak_edge_deflection_m: largest(&bridge.edges, &|z| -z),
+            peak_roll_rad: largest(&bridge.rolls, &f64::abs),
+            influential_length_m: self.influential_length_m(&u, case.load_x_m),
+            bottom_emerged: design
+                .draft_m
+                .map(|draft| bridge.bottom_corners.iter().any(|row| row.dot(&u) > draft)),
+            deck_submerged: design
+                .freeboard_m
+                .map(|board| bridge.deck_corners.iter().any(|row| -row.dot(&u) > board)),
+            newton_iterations: contact.iterations,
+            equilibrium: self.equilibrium(case, &u),
+        })
+    }
+
+    /// Largest static deflection of any position over all places of the load along the bridge [m]: places half an element
+    /// apart (`load_x_m` of the case is not used).
+    ///
+    /// # Errors
+    /// [`AnalysisError::StaticNotConverged`].
+    pub fn creeping_peak_m(&self, case: &StaticCase) -> Result<f64, AnalysisError> {
+        let design = self.bridge.design();
+        let places = design.modules * design.module.mesh.elements_along * 2;
+        let mut peak = 0.0_f64;
+        for place in 0..=places {
+            let x = design.length_m() * place as f64 / places as f64;
+            let load = self.load(case, x);
+            let contact = self.contact(case, &load, x)?;
+            for seen in &self.positions {
+                let from_load: f64 = load
+                    .weight
+                    .0
+                    .iter()
+                    .map(|&(c, w)| w * seen[contact.forces.len() + c])
+                    .sum();
+                let from_connectors: f64 = contact.forces.iter().zip(seen).map(|(n, s)| n * s).sum();
+                peak = peak.max(from_load + from_connectors);
+            }
+        }
+        Ok(peak)
+    }
+
+    fn load(&self, case: &StaticCase, centre_x_m: f64) -> Load {
+        Load::new(
+            &self.track,
+            &self.vehicle,
+            case.load_n,
+            centre_x_m - self.vehicle.centre_ahead_m(),
+        )
+    }
+
+    /// The contact under a load; where Newton does not settle from open connectors, the load is brought on in parts.
+    fn contact(&self, case: &StaticCase, load: &Load, x: f64) -> Result<ContactSolution, AnalysisError> {
+        let law = Law {
+            k: case.connector_stiffness_n_m,
+            connection: case.connection,
+        };
+        let nc = self.bridge.connectors.len();
+        let e_full: Vec<f64> = (0..nc)
+            .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
+            .collect();
+        let mut problem = ContactProblem {
+            e_free: e_full.clone(),
+            connectors: DMatrix::from_fn(nc, nc, |i, j| self.flexibility.value(i, j)),
+            weight: 1.0,
+            connectors_riders: DMatrix::zeros(nc, 0),
+            riders_connectors: DMatrix::zeros(0, nc),
+            riders: DMatrix::zeros(0, 0),
+            riders_free: DVector::zeros(0),
+        };
+        let mut states = vec![State::Open; nc];
+        let (mut reached, mut part, mut halvings, mut iterations) = (0.0_f64, 1.0_f64, 0, 0);
+        loop {
+            let target = (reached + part).min(1.0);
+            problem.e_free = e_full.iter().map(|e| target * e).collect();
+            match problem.solve(&law, &states, NEWTON_LIMIT) {
+                Ok(solution) => {
+                    iterations += solution.iterations;
+                    if target >= 1.0 {
+                        return Ok(ContactSolution { iterations, ..solution });
+                    }
+                    states = solution.states;
+                    reached = target;
+                }
+                Err(NotSettled { iterations: spent, .. }) => {
+                    iterations += spent;
+                    halvings += 1;
+                    part *= 0.5;
+                    if halvings > HALVINGS {
+                        return Err(AnalysisError::StaticNotConverged {
+                            iterations,
+                            load_x_m: x,
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Between the first zero crossings left and right of the load, interpolated between nodes.
+    fn influential_length_m(&self, u: &[f64], load_x_m: f64) -> f64 {
+        let line: Vec<(f64, f64)> = self
+            .bridge
+            .centre_line
+            .iter()
+            .map(|(x, row)| (*x, -row.dot(u)))
+            .collect();
+        let zero = |from: &mut dyn Iterator<Item = &(f64, f64)>| -> Option<f64> {
+            let mut last: Option<(f64, f64)> = None;
+            for &(x, w) in from {
+                if let Some((x0, w0)) = last
+                    && w0 > 0.0
+                    && w <= 0.0
+                {
+                    return Some(x0 + (x - x0) * w0 / (w0 - w));
+                }
+                last = Some((x, w));
+            }
+            None
+        };
+        let (left, right): (Vec<_>, Vec<_>) = line.into_iter().partition(|&(x, _)| x < load_x_m);
+        let length = self.bridge.design().length_m();
+        let left_end = zero(&mut right.first().into_iter().chain(left.iter().rev())).unwrap_or(0.0);
+        let right_end = zero(&mut left.last().into_iter().chain(right.iter())).unwrap_or(length);
+        right_end - left_end
+    }
+
+    fn equilibrium(&self, case: &StaticCase, u: &[f64]) -> Equilibrium {
+        let mut result = Equilibrium::default();
+        let front = case.load_x_m - self.vehicle.centre_ahead_m();
+        for point in self.vehicle.points() {
+            let x = front + point.ahead_m;
+            if self.track.row(x, point.y_m).is_some() {
+                let force = -case.load_n * point.share;
+                add_force(&mut result.load, force, x, point.y_m);
+            }
+        }
+        result.water = std::array::from_fn(|i| self.bridge.water[i].dot(u));
+        for held in self.bridge.held.iter().filter(|h| h.vertical) {
+            add_force(&mut result.supports, held.row.dot(u), held.x_m, held.y_m);
+        }
+        result
+    }
+}
+
+/// Adds an upward force at (x, y) to resultants (force, moment about x, moment about y).
+fn add_force(to: &mut [f64; 3], force: f64, x: f64, y: f64) {
+    to[0] += force;
+    to[1] += y * force;
+    to[2] -= x * force;
+}

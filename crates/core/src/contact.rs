@@ -1,0 +1,132 @@
+//! The contact problem of one step or one static case: connectors that work or not, and masses that ride along.
+//!
+//! Knows a small piecewise-linear system. The active set decides the tangent; a state changes only between Newton
+//! solutions, never inside one. Does not know time.
+
+use crate::connector::{Law, State};
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
+
+/// The small system: `e = e_free - weight F N - G q`, `N = N(e)`, and for the riders `q / c = g_free - H N' - R q` in the
+/// scaled unknowns described at the fields.
+#[derive(Debug)]
+pub struct ContactProblem {
+    /// Elongations without connector and rider forces [m].
+    pub e_free: Vec<f64>,
+    /// Flexibility among the connectors [m/N].
+    pub connectors: DMatrix<f64>,
+    /// Weight of the new force in the balance: `N' = weight N` (1 in statics, `1 - alpha_f` in a step).
+    pub weight: f64,
+    /// Elongation from unit rider forces, connectors x riders.
+    pub connectors_riders: DMatrix<f64>,
+    /// What a rider's measure sees of unit connector forces, riders x connectors.
+    pub riders_connectors: DMatrix<f64>,
+    /// What a rider's measure sees of unit rider forces plus its own compliance on the diagonal, riders x riders.
+    pub riders: DMatrix<f64>,
+    /// Riders' measure without forces.
+    pub riders_free: DVector<f64>,
+}
+
+/// The answer of the small system.
+#[derive(Debug, Clone)]
+pub struct ContactSolution {
+    /// State of each connector.
+    pub states: Vec<State>,
+    /// Force of each connector, tension positive [N].
+    pub forces: Vec<f64>,
+    /// Elongation of each connector [m].
+    pub elongations: Vec<f64>,
+    /// Scaled rider forces q'.
+    pub riders: Vec<f64>,
+    /// Newton solutions.
+    pub iterations: usize,
+}
+
+/// The active set came back to one it had been before, or the limit was reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NotSettled {
+    /// A connector that still wanted to change.
+    pub connector: usize,
+    /// Newton solutions made.
+    pub iterations: usize,
+}
+
+impl ContactProblem {
+    /// Solves from a first guess of the states.
+    ///
+    /// # Errors
+    /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is singular.
+    pub fn solve(&self, law: &Law, first: &[State], limit: usize) -> Result<ContactSolution, NotSettled> {
+        let mut states: Vec<State> = match law.state(0.0) {
+            State::Both => vec![State::Both; first.len()],
+            _ => first.to_vec(),
+        };
+        let mut seen = BTreeSet::new();
+        let mut iterations = 0;
+        loop {
+            iterations += 1;
+            let not_settled = |connector| NotSettled { connector, iterations };
+            let solution = self.linear(law, &states).ok_or(not_settled(0))?;
+            let asked: Vec<State> = solution.elongations.iter().map(|&e| law.state(e)).collect();
+            match states.iter().zip(&asked).position(|(is, wants)| is != wants) {
+                None => return Ok(ContactSolution { iterations, ..solution }),
+                Some(connector) => {
+                    if iterations >= limit || !seen.insert(asked.clone()) {
+                        return Err(not_settled(connector));
+                    }
+                }
+            }
+            states = asked;
+        }
+    }
+
+    /// One Newton solution: the linear system of an active set.
+    fn linear(&self, law: &Law, states: &[State]) -> Option<ContactSolution> {
+        let active: Vec<usize> = (0..states.len()).filter(|&i| states[i] != State::Open).collect();
+        let (na, nr) = (active.len(), self.riders_free.len());
+        let lines: Vec<_> = states.iter().map(|&s| law.line(s)).collect();
+        let mut a = DMatrix::zeros(na + nr, na + nr);
+        let mut b = DVector::zeros(na + nr);
+        for (p, &i) in active.iter().enumerate() {
+            for (q, &j) in active.iter().enumerate() {
+                a[(p, q)] = self.connectors[(i, j)];
+            }
+            a[(p, p)] += 1.0 / (self.weight * lines[i].k);
+            for r in 0..nr {
+                a[(p, na + r)] = self.connectors_riders[(i, r)];
+                a[(na + r, p)] = self.riders_connectors[(r, i)];
+            }
+            b[p] = self.e_free[i] - lines[i].n0 / lines[i].k;
+        }
+        a.view_mut((na, na), (nr, nr)).copy_from(&self.riders);
+        b.rows_mut(na, nr).copy_from(&self.riders_free);
+        let x = if na + nr == 0 { b } else { a.lu().solve(&b)? };
+        let riders: Vec<f64> = x.rows(na, nr).iter().copied().collect();
+        let mut elongations = self.e_free.clone();
+        for (i, e) in elongations.iter_mut().enumerate() {
+            *e -= active
+                .iter()
+                .enumerate()
+                .map(|(p, &j)| self.connectors[(i, j)] * x[p])
+                .sum::<f64>();
+            *e -= riders
+                .iter()
+                .enumerate()
+                .map(|(r, q)| self.connectors_riders[(i, r)] * q)
+                .sum::<f64>();
+        }
+        let mut forces = vec![0.0; states.len()];
+        for (p, &i) in active.iter().enumerate() {
+            forces[i] = x[p] / self.weight;
+            // the active line holds exactly: the elongation follows from the force, without cancellation
+            elongations[i] = (forces[i] + lines[i].n0) / lines[i].k;
+        }
+        Some(ContactSolution {
+            states: states.to_vec(),
+            forces,
+            elongations,
+            riders,
+            iterations: 0,
+        })
+    }
+}

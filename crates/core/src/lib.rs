@@ -1,0 +1,29 @@
+//! Mechanics of nonlinearly connected floating bridges: numbers in, numbers out. No files, no clock, no threads, no
+//! randomness.
+//!
+//! The floors of the house, each knowing only those below it:
+//!
+//! | floor | module | charter |
+//! |---|---|---|
+//! | 0 | [`conventions`], [`input`] | axes, units, signs; what a refused number looks like |
+//! | 1 | [`fem`] | shells, beams, assembly, factorisation, eigenvalues; has never heard of a bridge |
+//! | 2 | [`module`], [`water`], [`superelement`] | the pontoon's geometry to finite elements, hydrostatics and added mass, condensation |
+//! | 3 | [`connector`], [`vehicle`], [`bridge`] | the gap law, the wheels, and the one place where they all meet |
+//! | 4 | [`scheme`], [`flexibility`], [`contact`] | time integration, the factorised bridge at its places, active-set Newton |
+//! | 5 | [`analysis`] | modes, statics, crossings |
+//! | 6 | [`response`] | peaks, histories, the energy balance |
+
+pub mod analysis;
+pub mod bridge;
+pub mod connector;
+pub mod contact;
+pub mod conventions;
+pub mod fem;
+pub mod flexibility;
+pub mod input;
+pub mod module;
+pub mod response;
+pub mod scheme;
+pub mod superelement;
+pub mod vehicle;
+pub mod water;

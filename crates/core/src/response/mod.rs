@@ -1,0 +1,137 @@
+//! What a crossing or a static case leaves behind: peaks, envelopes, histories, the energy balance.
+//!
+//! Knows numbers and where and when they occurred. Does not know how they were computed.
+
+mod energy;
+mod peaks;
+
+pub use energy::{EnergyBalance, EnergySummary};
+pub use peaks::{ForcePeaks, JointForces, JointPeaks, Peak, PositionPeaks};
+
+/// Counts of what the solver did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Time steps taken, bisected ones counted as taken.
+    pub steps: usize,
+    /// Newton solutions over all steps.
+    pub newton_iterations: usize,
+    /// Trusses that changed between open and working from one step to the next.
+    pub contact_switches: usize,
+    /// Steps that had to be halved.
+    pub bisections: usize,
+}
+
+/// What a history records.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Deflection of a position, positive downward [m].
+    Deflection,
+    /// Force of a joint, its connectors added, tension positive [N].
+    Force,
+}
+
+/// One recorded history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// What was recorded.
+    pub quantity: Quantity,
+    /// Position or joint number.
+    pub position: usize,
+    /// A value for each entry of the response's `history_time_s`.
+    pub values: Vec<f64>,
+}
+
+/// Which histories to keep.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Record {
+    /// Position numbers, 1 to modules + 1.
+    pub positions: Vec<usize>,
+    /// Joint numbers, 2 to modules.
+    pub joints: Vec<usize>,
+}
+
+/// The response to one crossing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrossingResponse {
+    /// Peaks of each position 1 to modules + 1, in order.
+    pub positions: Vec<PositionPeaks>,
+    /// Peaks of each joint 2 to modules, in order.
+    pub joints: Vec<JointPeaks>,
+    /// Largest downward deflection of the deck's two edges [m].
+    pub peak_edge_deflection_m: f64,
+    /// Largest roll of a module end, either sense [rad].
+    pub peak_roll_rad: f64,
+    /// Smallest contact force of an axle while all its points are on the bridge [N]; below zero it would have lifted off.
+    pub min_contact_force_n: f64,
+    /// Whether a corner of a module's bottom rose above the water; unknown without a draft.
+    pub bottom_emerged: Option<bool>,
+    /// Whether a corner of a module's deck went below the water; unknown without a freeboard.
+    pub deck_submerged: Option<bool>,
+    /// What the solver did.
+    pub statistics: Statistics,
+    /// The energy balance.
+    pub energy: EnergySummary,
+    /// Times of the histories [s]; empty where none was asked for.
+    pub history_time_s: Vec<f64>,
+    /// The histories, positions before joints.
+    pub histories: Vec<History>,
+}
+
+impl CrossingResponse {
+    /// The position with the largest deflection (the first of equals).
+    pub fn peak_deflection(&self) -> PositionPeaks {
+        largest(&self.positions, |p| p.deflection.value)
+    }
+
+    /// The position with the largest uplift (the first of equals).
+    pub fn peak_uplift(&self) -> PositionPeaks {
+        largest(&self.positions, |p| p.uplift.value)
+    }
+}
+
+/// The first entry with the largest key. The list is never empty.
+fn largest<T: Copy>(list: &[T], key: impl Fn(&T) -> f64) -> T {
+    let mut best = list[0];
+    for &entry in &list[1..] {
+        if key(&entry) > key(&best) {
+            best = entry;
+        }
+    }
+    best
+}
+
+/// The response to one static case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticResponse {
+    /// Deflection of each position 1 to modules + 1, positive downward [m].
+    pub deflection_m: Vec<f64>,
+    /// Forces of each joint 2 to modules, in order.
+    pub joints: Vec<JointForces>,
+    /// Largest downward deflection of the deck's two edges [m].
+    pub peak_edge_deflection_m: f64,
+    /// Largest roll of a module end, either sense [rad].
+    pub peak_roll_rad: f64,
+    /// Distance between the first zero crossings of the deflection left and right of the load, along the centre line
+    /// at the bottom [m]; the support where there is none.
+    pub influential_length_m: f64,
+    /// As for a crossing.
+    pub bottom_emerged: Option<bool>,
+    /// As for a crossing.
+    pub deck_submerged: Option<bool>,
+    /// Newton solutions.
+    pub newton_iterations: usize,
+    /// What carries the load.
+    pub equilibrium: Equilibrium,
+}
+
+/// Resultants about the origin (left end, centre line) in a static case: force up [N], moment about x [N m] and about
+/// y [N m]. Load, water and supports sum to zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Equilibrium {
+    /// The vehicle's weight.
+    pub load: [f64; 3],
+    /// The water's answer.
+    pub water: [f64; 3],
+    /// The supports' answer.
+    pub supports: [f64; 3],
+}

@@ -1,0 +1,75 @@
+//! Peaks with place and time.
+//!
+//! Knows how a running extreme is kept. Does not know where the numbers come from.
+
+/// A largest value and when it occurred. Starts from zero: a value that never rose above zero leaves `value = 0`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Peak {
+    /// The largest value so far, at least 0.
+    pub value: f64,
+    /// When it occurred [s].
+    pub time_s: f64,
+}
+
+impl Peak {
+    /// Takes `value` at `time_s` where it is larger than all before.
+    #[inline]
+    pub fn take(&mut self, value: f64, time_s: f64) {
+        if value > self.value {
+            *self = Self { value, time_s };
+        }
+    }
+}
+
+/// Peaks of a position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionPeaks {
+    /// Position number, from 1.
+    pub position: usize,
+    /// Its place along the bridge [m].
+    pub x_m: f64,
+    /// Downward [m].
+    pub deflection: Peak,
+    /// Upward [m].
+    pub uplift: Peak,
+}
+
+/// Peaks of a force, both as positive numbers [N].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ForcePeaks {
+    /// Largest compression.
+    pub compression: Peak,
+    /// Largest tension.
+    pub tension: Peak,
+}
+
+impl ForcePeaks {
+    /// Takes a force (tension positive) at `time_s`.
+    #[inline]
+    pub fn take(&mut self, force_n: f64, time_s: f64) {
+        self.compression.take(-force_n, time_s);
+        self.tension.take(force_n, time_s);
+    }
+}
+
+/// Peaks of a joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointPeaks {
+    /// Position number of the joint, 2 to modules.
+    pub joint: usize,
+    /// Peaks of the sum over its connectors.
+    pub sum: ForcePeaks,
+    /// Each connector's place across [m] and its own peaks.
+    pub connectors: Vec<(f64, ForcePeaks)>,
+}
+
+/// Forces of a joint in a static case, tension positive [N].
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointForces {
+    /// Position number of the joint, 2 to modules.
+    pub joint: usize,
+    /// Sum over its connectors.
+    pub sum_n: f64,
+    /// Each connector's place across [m] and its force.
+    pub connectors: Vec<(f64, f64)>,
+}

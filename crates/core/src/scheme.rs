@@ -1,0 +1,84 @@
+//! The generalized-alpha family of time integration.
+//!
+//! Knows the constants of one step, derived once from the spectral radius. Does not know matrices or contact.
+
+/// Constants of a step of length `h` (Chung, Hulbert: J. Appl. Mech. 60, 1993, 371-375): with the spectral radius
+/// `rho` at infinite frequency
+///
+/// `alpha_m = (2 rho - 1)/(rho + 1)`, `alpha_f = rho/(rho + 1)`, `gamma = 1/2 - alpha_m + alpha_f`,
+/// `beta = (1 - alpha_m + alpha_f)^2 / 4`.
+///
+/// The step reads, with `d = u_1 - u_0`,
+///
+/// `a_1 = c_a d + a_v v_0 + a_a a_0`, `v_1 = c_v d + v_v v_0 + v_a a_0`,
+/// `M a_alpha + C v_alpha + K u_alpha = f_alpha`, `x_alpha = (1 - alpha) x_1 + alpha x_0`,
+/// alpha_m for the acceleration, alpha_f for everything else. Newmark's trapezoidal rule is `rho = 1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scheme {
+    /// Length of the step [s].
+    pub h: f64,
+    /// Weight of the old acceleration.
+    pub alpha_m: f64,
+    /// Weight of the old velocity, displacement and force.
+    pub alpha_f: f64,
+    /// Newmark's gamma.
+    pub gamma: f64,
+    /// Newmark's beta.
+    pub beta: f64,
+    /// da_1/dd [1/s^2].
+    pub c_a: f64,
+    /// da_1/dv_0 [1/s].
+    pub a_v: f64,
+    /// da_1/da_0.
+    pub a_a: f64,
+    /// dv_1/dd [1/s].
+    pub c_v: f64,
+    /// dv_1/dv_0.
+    pub v_v: f64,
+    /// dv_1/da_0 [s].
+    pub v_a: f64,
+}
+
+impl Scheme {
+    /// The constants for a step `h` [s] and spectral radius `rho` from 0 to 1.
+    pub fn new(h: f64, rho: f64) -> Self {
+        let alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
+        let alpha_f = rho / (rho + 1.0);
+        let gamma = 0.5 - alpha_m + alpha_f;
+        let beta = 0.25 * (1.0 - alpha_m + alpha_f).powi(2);
+        Self {
+            h,
+            alpha_m,
+            alpha_f,
+            gamma,
+            beta,
+            c_a: 1.0 / (beta * h * h),
+            a_v: -1.0 / (beta * h),
+            a_a: 1.0 - 0.5 / beta,
+            c_v: gamma / (beta * h),
+            v_v: 1.0 - gamma / beta,
+            v_a: h * (1.0 - 0.5 * gamma / beta),
+        }
+    }
+
+    /// Factors of M, C and K in the matrix of the step.
+    pub fn effective(&self) -> (f64, f64, f64) {
+        (
+            (1.0 - self.alpha_m) * self.c_a,
+            (1.0 - self.alpha_f) * self.c_v,
+            1.0 - self.alpha_f,
+        )
+    }
+
+    /// `(1 - alpha_m) new + alpha_m old`.
+    #[inline]
+    pub fn at_m(&self, new: f64, old: f64) -> f64 {
+        (1.0 - self.alpha_m) * new + self.alpha_m * old
+    }
+
+    /// `(1 - alpha_f) new + alpha_f old`.
+    #[inline]
+    pub fn at_f(&self, new: f64, old: f64) -> f64 {
+        (1.0 - self.alpha_f) * new + self.alpha_f * old
+    }
+}
