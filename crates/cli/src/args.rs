@@ -1,0 +1,166 @@
+//! The words that are understood.
+//!
+//! Knows flags and their help. Does not know what they lead to.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use pontoon_study::spec::ModelSpec;
+use std::path::PathBuf;
+
+/// Parametric studies of the hydroelastic response of floating ribbon bridges.
+///
+/// Exit status: 0 all good; 1 done, but a job failed; 2 input refused; 3 could not go on.
+#[derive(Debug, Parser)]
+#[command(
+    name = "pontoon",
+    version,
+    propagate_version = true,
+    after_help = "Example:\n  pontoon run studies/fu2005      runs a study and writes its tables to results/fu2005"
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What every command takes.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Common {
+    /// How to write results on standard output.
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+    /// No progress and no notes on standard error; errors and failed jobs remain.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+}
+
+/// How results are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Runs a study and writes its tables.
+    ///
+    /// Every job is checked before anything runs or is written. Jobs run in parallel; a job that fails is a row with its
+    /// reason, the others go on. The folder of results then holds jobs.parquet, positions.parquet, connectors.parquet,
+    /// summary.csv, manifest.json and, where asked for, histories.parquet.
+    #[command(
+        after_help = "Examples:\n  pontoon run studies/fu2005\n  pontoon run studies/smoke --out /tmp/smoke --threads 2 --format json"
+    )]
+    Run(RunArguments),
+    /// Says what would run: jobs, distinct bridges, steps, expected time. Writes nothing.
+    #[command(after_help = "Example:\n  pontoon plan studies/fu2005")]
+    Plan(PlanArguments),
+    /// Natural frequencies with the name of each shape.
+    ///
+    /// The bridge floats free, linearly connected, unless told otherwise.
+    #[command(
+        after_help = "Examples:\n  pontoon modes studies/bridges/fu2005.json --count 20\n  pontoon modes studies/bridges/fu2005.json --module --count 6"
+    )]
+    Modes(ModesArguments),
+    /// The JSON Schema of a file, for an editor or a checker.
+    #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
+    Schema(SchemaArguments),
+}
+
+/// What `run` takes.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// The study: a study.json or the folder that holds it.
+    #[arg(value_name = "STUDY")]
+    pub study: PathBuf,
+    /// Folder of the results; results/<study name> where absent.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads; as many as the machine has where absent. The tables do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// What `plan` takes.
+#[derive(Debug, Args)]
+pub struct PlanArguments {
+    /// The study: a study.json or the folder that holds it.
+    #[arg(value_name = "STUDY")]
+    pub study: PathBuf,
+}
+
+/// What `modes` takes.
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    /// The bridge file.
+    #[arg(value_name = "BRIDGE")]
+    pub bridge: PathBuf,
+    /// Model of the modules.
+    #[arg(long, value_enum, default_value_t = ModelArgument::Full)]
+    pub model: ModelArgument,
+    /// How many modes, from the lowest.
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub count: u16,
+    /// The bridge on its supports in place of floating free.
+    #[arg(long, conflicts_with = "module")]
+    pub supports: bool,
+    /// A single module floating alone in place of the bridge.
+    #[arg(long)]
+    pub module: bool,
+}
+
+/// Model of the modules.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModelArgument {
+    /// Every degree of freedom of the shells and beams.
+    Full,
+    /// The condensed module.
+    SuperElement,
+}
+
+impl From<ModelArgument> for ModelSpec {
+    fn from(model: ModelArgument) -> Self {
+        match model {
+            ModelArgument::Full => Self::Full,
+            ModelArgument::SuperElement => Self::SuperElement,
+        }
+    }
+}
+
+/// What `schema` takes.
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// Of which file.
+    #[arg(value_enum)]
+    pub of: SchemaOf,
+}
+
+/// The files that have a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SchemaOf {
+    /// A study file.
+    Study,
+    /// A bridge file.
+    Bridge,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn every_command_has_an_example_and_is_well_formed() {
+        let mut command = Arguments::command();
+        command.clone().debug_assert();
+        for sub in command.get_subcommands_mut() {
+            let help = sub.render_long_help().to_string();
+            assert!(help.contains("Example"), "{help}");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! A file a command: what it asks of the study's rooms and how it answers.
+
+pub mod modes;
+pub mod plan;
+pub mod run;
+pub mod schema;

@@ -1,0 +1,45 @@
+//! `pontoon modes`: natural frequencies with the name of each shape.
+
+use crate::Ending;
+use crate::args::{Common, Format, ModesArguments};
+use crate::words;
+use anyhow::Result;
+use pontoon_study::Refusal;
+use pontoon_study::modes::{ModesError, ModesRequest, modes as find};
+use pontoon_study::spec::read_bridge;
+use serde_json::{Value, json};
+
+/// Finds the lowest modes of a bridge file.
+pub fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
+    let file = read_bridge(&arguments.bridge)?;
+    let request = ModesRequest {
+        model: arguments.model.into(),
+        count: usize::from(arguments.count),
+        supports: arguments.supports,
+        module: arguments.module,
+    };
+    let found = find(&file, request).map_err(|error| match error {
+        ModesError::Bridge(pontoon_study::modes::BridgeError::Design(refused)) => {
+            anyhow::Error::from(Refusal::of(&file.file, "", refused))
+        }
+        other => other.into(),
+    })?;
+    words::result(&match common.format {
+        Format::Json => format!("{:#}\n", json!(found)),
+        Format::Text => {
+            let columns = [
+                "number",
+                "frequency_hz",
+                "shape",
+                "vertical_share",
+                "torsion_share",
+                "horizontal_share",
+                "axial_share",
+            ];
+            let row = |mode: &Value| columns.iter().map(|column| mode[column].clone()).collect();
+            let rows: Vec<Vec<Value>> = found.iter().map(|mode| row(&json!(mode))).collect();
+            words::table(&columns.map(str::to_owned), &rows)
+        }
+    })?;
+    Ok(Ending::Good)
+}

@@ -1,0 +1,94 @@
+//! `pontoon run`: a study to its tables.
+
+use crate::Ending;
+use crate::args::{Common, Format, RunArguments};
+use crate::progress::Shown;
+use crate::words;
+use anyhow::{Context, Result};
+use pontoon_study::plan::{Job, Jobs};
+use pontoon_study::run::{Outcome, run as run_jobs};
+use pontoon_study::tables::{Folder, Manifest, Moment, SummaryTable, write};
+use pontoon_study::{Refusal, Study};
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+
+/// Failed jobs that are written out on standard error; all are in the table.
+const FAILURES_SHOWN: usize = 10;
+
+/// Checks every job, runs them, writes the tables and prints the summary.
+pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
+    let study = Study::open(&arguments.study)?;
+    let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("results").join(&study.spec.name));
+    let folder = Folder::create(&out).context("no folder for the results")?;
+    let started = Moment::now();
+    let shown = Shown::fitting(common.quiet);
+    let outcome = run_jobs(&study, &jobs, arguments.threads.map_or(0, usize::from), &shown)?;
+    shown.finish();
+    let manifest = Manifest::new(&study, &jobs, &outcome, started, Moment::now());
+    let summary = write(&study, &jobs, &outcome, &manifest, &folder).context("results not written")?;
+    failures(&outcome);
+    words::result(&match common.format {
+        Format::Text => text(&summary, &outcome, &out),
+        Format::Json => object(&study, &summary, &outcome, &out),
+    })?;
+    Ok(if outcome.failed() == 0 {
+        Ending::Good
+    } else {
+        Ending::Short
+    })
+}
+
+fn failures(outcome: &Outcome) {
+    let failed = outcome
+        .records
+        .iter()
+        .filter_map(|r| r.reason.as_ref().map(|reason| (r.job, reason)));
+    for (job, reason) in failed.take(FAILURES_SHOWN) {
+        words::note(&format!("job {job} failed: {reason}"));
+    }
+    if let Some(more) = outcome.failed().checked_sub(FAILURES_SHOWN).filter(|more| *more > 0) {
+        words::note(&format!("and {more} more: see the column reason of jobs.parquet"));
+    }
+}
+
+fn text(summary: &SummaryTable, outcome: &Outcome, out: &Path) -> String {
+    let counts = format!(
+        "jobs {}, failed {}; condensations {}, offline part {}, jobs {} on {} threads\nresults in {}\n",
+        outcome.records.len(),
+        outcome.failed(),
+        outcome.condensations,
+        words::duration(outcome.offline_s),
+        words::duration(outcome.jobs_s),
+        outcome.threads,
+        out.display()
+    );
+    format!("{}\n{counts}", words::table(&summary.columns, &summary.rows))
+}
+
+fn object(study: &Study, summary: &SummaryTable, outcome: &Outcome, out: &Path) -> String {
+    let row = |cells: &Vec<Value>| -> Value {
+        summary
+            .columns
+            .iter()
+            .cloned()
+            .zip(cells.iter().cloned())
+            .collect::<Map<_, _>>()
+            .into()
+    };
+    let object = json!({
+        "study": study.spec.name,
+        "results": out.display().to_string(),
+        "jobs": outcome.records.len(),
+        "failed": outcome.failed(),
+        "condensations": outcome.condensations,
+        "threads": outcome.threads,
+        "offline_s": outcome.offline_s,
+        "jobs_s": outcome.jobs_s,
+        "summary": summary.rows.iter().map(row).collect::<Vec<_>>(),
+    });
+    format!("{object:#}\n")
+}

@@ -1,0 +1,106 @@
+//! Aligned tables, times, and what goes where when a reader has left.
+//!
+//! Knows text. Does not know what it says.
+
+use serde_json::Value;
+use std::io::{self, ErrorKind, Write};
+
+/// Writes results on standard output. A reader that has left (a closed pipe) wants no more, which is no error.
+///
+/// # Errors
+/// What the system says of any other failure.
+pub fn result(text: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
+}
+
+/// Writes a line on standard error, where it is nobody's loss if nobody reads it.
+pub fn note(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{line}");
+}
+
+/// A table with its columns aligned, numbers to the right; a last line end.
+pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
+    let cells: Vec<Vec<String>> = rows
+        .iter()
+        .map(|row| columns.iter().zip(row).map(|(c, v)| cell(c, v)).collect())
+        .collect();
+    let width = |i: usize| {
+        let longest = cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0);
+        longest.max(columns[i].chars().count())
+    };
+    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
+    let numbers: Vec<bool> = (0..columns.len())
+        .map(|i| rows.iter().all(|row| !row[i].is_string()))
+        .collect();
+    let line = |row: &[String]| {
+        let mut text = String::new();
+        for (i, cell) in row.iter().enumerate() {
+            let gap = if i == 0 { "" } else { "  " };
+            let width = widths[i];
+            text += &if numbers[i] {
+                format!("{gap}{cell:>width$}")
+            } else {
+                format!("{gap}{cell:<width$}")
+            };
+        }
+        text.trim_end().to_owned() + "\n"
+    };
+    cells.iter().fold(line(columns), |text, row| text + &line(row))
+}
+
+/// How a cell is written for people: axes as they are, computed lengths to a tenth of a millimetre, forces to a newton.
+fn cell(column: &str, value: &Value) -> String {
+    match value {
+        Value::Null => "-".to_owned(),
+        Value::String(word) => word.clone(),
+        Value::Number(n) => match n.as_f64() {
+            Some(x) if column.starts_with("peak_") && column.ends_with("_m") => format!("{x:.4}"),
+            Some(x) if column.starts_with("peak_") && column.ends_with("_n") => format!("{x:.0}"),
+            Some(x) if column == "frequency_hz" => format!("{x:.5}"),
+            Some(x) if column.ends_with("_share") => format!("{x:.4}"),
+            _ => n.to_string(),
+        },
+        other => other.to_string(),
+    }
+}
+
+/// A duration for people.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn numbers_stand_to_the_right_and_nothing_is_a_dash() {
+        let columns = ["connection", "speed_m_s", "peak_deflection_m"].map(str::to_owned);
+        let rows = [
+            vec![json!("linear"), json!(3), json!(0.14)],
+            vec![json!("nonlinear"), json!(6.09), json!(null)],
+        ];
+        let expected = "connection  speed_m_s  peak_deflection_m\n\
+                        linear              3             0.1400\n\
+                        nonlinear        6.09                  -\n";
+        assert_eq!(table(&columns, &rows), expected);
+    }
+
+    #[test]
+    fn durations_are_in_the_unit_that_fits() {
+        assert_eq!(
+            [1.25, 75.0, 600.0, 9000.0].map(duration),
+            ["1.2 s", "75 s", "10 min", "2.5 h"]
+        );
+    }
+}

@@ -1,0 +1,9 @@
+//! The program from outside: words, exit statuses, files.
+//!
+//! Stands beside the binary because cargo names a package's binary to that package's own tests alone.
+
+#![allow(clippy::unwrap_used)]
+
+mod refusals;
+mod results;
+mod stage;

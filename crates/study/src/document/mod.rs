@@ -1,0 +1,11 @@
+//! JSON documents: strict reading, typed reading, values at a path.
+//!
+//! Knows JSON and where in it something stands. Does not know what any key means.
+
+mod path;
+mod strict;
+mod typed;
+
+pub use path::{DocumentPath, leaves};
+pub use strict::{canonical, canonical_text, read};
+pub use typed::typed;

@@ -1,0 +1,136 @@
+//! Paths into a document: `module.stiffeners.longitudinal_y_m[0]`.
+//!
+//! Knows how a path is written, how a value is read and set at it, and which paths a document has. Does not know
+//! which paths make sense: reading the document as its type decides that.
+
+use serde_json::{Map, Value};
+
+/// A step of a path.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Step {
+    Key(String),
+    Place(usize),
+}
+
+/// A path into a document.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DocumentPath(Vec<Step>);
+
+impl DocumentPath {
+    /// Reads a path; `None` where it is not well formed.
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut steps = Vec::new();
+        for segment in text.split('.') {
+            let (key, mut places) = match segment.find('[') {
+                Some(i) => segment.split_at(i),
+                None => (segment, ""),
+            };
+            if key.is_empty() {
+                return None;
+            }
+            steps.push(Step::Key(key.to_owned()));
+            while !places.is_empty() {
+                let (place, rest) = places.strip_prefix('[')?.split_once(']')?;
+                steps.push(Step::Place(place.parse().ok()?));
+                places = rest;
+            }
+        }
+        Some(Self(steps))
+    }
+
+    /// The value at the path, if there is one.
+    pub fn get<'a>(&self, document: &'a Value) -> Option<&'a Value> {
+        self.0.iter().try_fold(document, |at, step| match step {
+            Step::Key(key) => at.get(key),
+            Step::Place(place) => at.get(place),
+        })
+    }
+
+    /// Puts a value at the path, making objects on the way where there are none.
+    ///
+    /// # Errors
+    /// What stands in the way, as text: a list that is too short, a key of something that is not an object.
+    pub fn set(&self, document: &mut Value, value: Value) -> Result<(), String> {
+        let mut at = document;
+        for step in &self.0 {
+            at = match (step, at) {
+                (Step::Key(key), Value::Object(map)) => map.entry(key.clone()).or_insert(Value::Null),
+                (Step::Key(key), at @ Value::Null) => {
+                    *at = Value::Object(Map::from_iter([(key.clone(), Value::Null)]));
+                    &mut at[key]
+                }
+                (Step::Key(key), _) => return Err(format!("no object to hold '{key}'")),
+                (Step::Place(place), Value::Array(list)) => {
+                    let length = list.len();
+                    list.get_mut(*place)
+                        .ok_or(format!("no place [{place}] in a list of {length}"))?
+                }
+                (Step::Place(place), _) => return Err(format!("no list to hold [{place}]")),
+            };
+        }
+        *at = value;
+        Ok(())
+    }
+}
+
+/// The paths of all values of a document that are not objects, each under `prefix`; lists as wholes and by place.
+pub fn leaves(prefix: &str, document: &Value, out: &mut Vec<String>) {
+    match document {
+        Value::Object(map) => map
+            .iter()
+            .for_each(|(key, value)| leaves(&format!("{prefix}.{key}"), value, out)),
+        Value::Array(list) => {
+            out.push(prefix.to_owned());
+            list.iter()
+                .enumerate()
+                .for_each(|(i, value)| leaves(&format!("{prefix}[{i}]"), value, out));
+        }
+        _ => out.push(prefix.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn path(text: &str) -> DocumentPath {
+        DocumentPath::parse(text).unwrap()
+    }
+
+    #[test]
+    fn what_is_set_is_read_back_and_nothing_else_changes() {
+        let mut document = json!({"a": {"b": [1, {"c": 2}]}, "d": 3});
+        path("a.b[1].c").set(&mut document, json!(7)).unwrap();
+        assert_eq!(path("a.b[1].c").get(&document), Some(&json!(7)));
+        assert_eq!(document, json!({"a": {"b": [1, {"c": 7}]}, "d": 3}));
+    }
+
+    #[test]
+    fn objects_are_made_on_the_way_but_lists_are_not_lengthened() {
+        let mut document = json!({"l": [1]});
+        path("x.y").set(&mut document, json!(1)).unwrap();
+        assert_eq!(document["x"]["y"], json!(1));
+        assert!(
+            path("l[1]")
+                .set(&mut document, json!(1))
+                .unwrap_err()
+                .contains("list of 1")
+        );
+        assert!(path("l.k").set(&mut document, json!(1)).is_err());
+    }
+
+    #[test]
+    fn what_is_not_a_path_is_not_read() {
+        for text in ["", ".a", "a..b", "a[", "a[x]", "a[0]b", "[0]"] {
+            assert_eq!(DocumentPath::parse(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn leaves_are_all_values_that_are_not_objects() {
+        let mut out = Vec::new();
+        leaves("v", &json!({"a": {"b": 1}, "l": [1, 2]}), &mut out);
+        assert_eq!(out, ["v.a.b", "v.l", "v.l[0]", "v.l[1]"]);
+    }
+}

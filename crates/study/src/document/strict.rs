@@ -1,0 +1,193 @@
+//! Reading a file as JSON, strictly: nothing that a reader might silently drop or repair passes.
+//!
+//! Knows that a key written twice, a number out of range and a NaN are errors. Does not know keys.
+
+use crate::refusal::Refusal;
+use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+use std::fmt;
+use std::path::Path;
+
+/// Reads a file as one JSON document.
+///
+/// # Errors
+/// [`Refusal`] where the file cannot be read, is not JSON, names a key twice or holds a number that is not finite.
+pub fn read(file: &Path) -> Result<Value, Refusal> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|e| Refusal::new(file, "", format!("no readable file ({e})"), "a JSON file"))?;
+    parse(file, &text)
+}
+
+fn parse(file: &Path, text: &str) -> Result<Value, Refusal> {
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize::<_, Strict>(&mut reader).map_err(|error| {
+        let path = error.path().to_string();
+        refusal(
+            file,
+            text,
+            if path == "." { String::new() } else { path },
+            error.inner(),
+        )
+    })?;
+    reader.end().map_err(|e| refusal(file, text, String::new(), &e))?;
+    Ok(value.0)
+}
+
+fn refusal(file: &Path, text: &str, key: String, error: &serde_json::Error) -> Refusal {
+    let place = format!("line {}, column {}", error.line(), error.column());
+    let token = token_at(text, error.line(), error.column());
+    let message = error.to_string();
+    let message = message.split(" at line ").next().unwrap_or_default();
+    if let Some(name) = message.strip_prefix(TWICE) {
+        return Refusal::new(file, key, format!("the key '{name}' twice ({place})"), "each key once");
+    }
+    let number = token.trim_start_matches(['-', '+']).to_ascii_lowercase();
+    if message.contains("out of range") || number.starts_with("nan") || number.starts_with("inf") {
+        return Refusal::new(file, key, format!("{token} ({place})"), "a finite number");
+    }
+    Refusal::new(file, key, format!("'{token}' ({place}: {message})"), "JSON")
+}
+
+/// The bare word or number at a place that the reader complained about.
+fn token_at(text: &str, line: usize, column: usize) -> String {
+    let line = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+    let bare = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'+' | b'-' | b'_');
+    let bytes = line.as_bytes();
+    let mut from = column.saturating_sub(1).min(bytes.len());
+    let mut to = from;
+    while from > 0 && bare(bytes[from - 1]) {
+        from -= 1;
+    }
+    while to < bytes.len() && bare(bytes[to]) {
+        to += 1;
+    }
+    if from == to {
+        line.get(from..).unwrap_or_default().chars().take(1).collect()
+    } else {
+        line[from..to].to_owned()
+    }
+}
+
+/// How the message of a key written twice begins.
+const TWICE: &str = "key written twice: ";
+
+/// A JSON value whose objects name each key once.
+struct Strict(Value);
+
+impl<'de> Deserialize<'de> for Strict {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(StrictVisitor).map(Self)
+    }
+}
+
+struct StrictVisitor;
+
+impl<'de> Visitor<'de> for StrictVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, v: bool) -> Result<Value, E> {
+        Ok(Value::Bool(v))
+    }
+
+    fn visit_i64<E>(self, v: i64) -> Result<Value, E> {
+        Ok(v.into())
+    }
+
+    fn visit_u64<E>(self, v: u64) -> Result<Value, E> {
+        Ok(v.into())
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, v: f64) -> Result<Value, E> {
+        Number::from_f64(v)
+            .map(Value::Number)
+            .ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E>(self, v: &str) -> Result<Value, E> {
+        Ok(Value::String(v.to_owned()))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(Strict(value)) = seq.next_element()? {
+            list.push(value);
+        }
+        Ok(Value::Array(list))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some(key) = map.next_key::<String>()? {
+            if object.contains_key(&key) {
+                return Err(A::Error::custom(format!("{TWICE}{key}")));
+            }
+            let Strict(value) = map.next_value()?;
+            object.insert(key, value);
+        }
+        Ok(Value::Object(object))
+    }
+}
+
+/// The same value with whole numbers written as whole numbers (`3.0` as `3`, `-0.0` as `0`), so that equal values have
+/// equal texts.
+pub fn canonical(value: &Value) -> Value {
+    match value {
+        Value::Number(n) => match n.as_f64() {
+            Some(x) if n.is_f64() && x.fract() == 0.0 && x.abs() < 9.0e15 => Value::from(x as i64),
+            _ => value.clone(),
+        },
+        Value::Array(list) => Value::Array(list.iter().map(canonical).collect()),
+        Value::Object(map) => Value::Object(map.iter().map(|(k, v)| (k.clone(), canonical(v))).collect()),
+        other => other.clone(),
+    }
+}
+
+/// The text of the canonical value, on one line.
+pub fn canonical_text(value: &Value) -> String {
+    canonical(value).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> Refusal {
+        parse(Path::new("f.json"), text).unwrap_err()
+    }
+
+    #[test]
+    fn a_key_written_twice_is_refused_with_its_path() {
+        let e = refused(r#"{"a": {"b": 1, "b": 2}}"#);
+        assert!(e.found.contains("'b' twice"), "{e}");
+        assert!(e.key.starts_with('a'), "{e}");
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_refused_with_path_and_token() {
+        for token in ["1e999", "-1e999", "NaN", "Infinity", "-Infinity"] {
+            let e = refused(&format!("{{\n  \"a\": {{ \"b\": [1, {token}] }}\n}}"));
+            assert_eq!(e.key, "a.b[1]", "{token}: {e}");
+            assert_eq!(e.allowed, "a finite number", "{token}: {e}");
+            assert!(e.found.starts_with(token), "{token}: {e}");
+        }
+    }
+
+    #[test]
+    fn text_after_the_document_is_refused() {
+        assert_eq!(refused("{} x").allowed, "JSON");
+    }
+
+    #[test]
+    fn equal_numbers_have_equal_canonical_texts() {
+        let value: Value = serde_json::from_str(r#"{"b": [3.0, 3, -0.0, 0.5], "a": 1e3}"#).unwrap();
+        assert_eq!(canonical_text(&value), r#"{"b":[3,3,0,0.5],"a":1000}"#);
+    }
+}

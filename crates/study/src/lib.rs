@@ -1,0 +1,29 @@
+//! Studies of floating bridges: from a study file to tables.
+//!
+//! | module | charter |
+//! |---|---|
+//! | [`refusal`] | what a refused input looks like: file, key path, found, allowed, nearest known |
+//! | [`document`] | JSON documents: strict reading, typed reading, values at a path |
+//! | [`spec`] | the study file: its keys, its designs, the points they expand to |
+//! | [`plan`] | jobs: a point of a design made into a checked job, equal jobs merged |
+//! | [`run`] | jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record |
+//! | [`tables`] | records to files: Parquet tables, summary, manifest |
+//! | [`modes`] | natural frequencies of a bridge file |
+//! | [`schema`] | the JSON Schema of what a person writes |
+//!
+//! Knows files, threads and the clock. Does not know mechanics, and prints nothing.
+
+pub mod document;
+pub mod modes;
+pub mod plan;
+pub mod refusal;
+pub mod run;
+pub mod schema;
+pub mod spec;
+pub mod tables;
+
+pub use refusal::Refusal;
+pub use spec::Study;
+
+/// Version of this program, as tables and manifests carry it.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,136 @@
+//! One job: everything that its run needs, checked.
+//!
+//! Knows what a crossing and a static case ask of a point. Does not know how they are computed.
+
+use super::documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
+use crate::document::{DocumentPath, canonical};
+use pontoon_core::analysis::crossing::CrossingSolver;
+use pontoon_core::connector::Connection;
+use serde_json::Value;
+use std::sync::Arc;
+
+/// A job of a study.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// Its number, from 0, in the order of the file.
+    pub number: usize,
+    /// Its bridge.
+    pub bridge: Arc<BridgeEntry>,
+    /// Its vehicle.
+    pub vehicle: Arc<VehicleEntry>,
+    /// Its analysis.
+    pub analysis: Arc<AnalysisEntry>,
+    /// How the connectors work.
+    pub connection: Connection,
+    /// Weight of the vehicle [N].
+    pub load_n: f64,
+    /// What is asked.
+    pub task: Task,
+}
+
+/// What a job asks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Task {
+    /// A crossing.
+    Crossing {
+        /// Speed [m/s].
+        speed_m_s: f64,
+    },
+    /// A static case.
+    Static(Load),
+}
+
+/// Where the vehicle stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Load {
+    /// The position it was put on, where it was put on one.
+    pub position: Option<usize>,
+    /// Place of its centre [m].
+    pub x_m: f64,
+}
+
+impl Job {
+    /// Time steps of a crossing, bisected ones apart; 0 of a static case.
+    pub fn steps(&self) -> usize {
+        let analysis = &self.analysis.spec;
+        match (self.task, analysis.time_step_s, analysis.tail_s) {
+            (Task::Crossing { speed_m_s }, Some(step), Some(tail)) => CrossingSolver::steps(
+                self.bridge.design.length_m(),
+                &self.vehicle.vehicle,
+                step,
+                speed_m_s,
+                tail,
+            ),
+            _ => 0,
+        }
+    }
+
+    /// The gaps (tension, compression) [m]; none in the linear connection.
+    pub fn gaps_m(&self) -> Option<(f64, f64)> {
+        match self.connection {
+            Connection::Linear => None,
+            Connection::Nonlinear {
+                gap_tension_m,
+                gap_compression_m,
+            } => Some((gap_tension_m, gap_compression_m)),
+        }
+    }
+
+    /// The value of a column of the study, a short name or a path; null where it has no meaning.
+    pub fn column(&self, name: &str) -> Value {
+        canonical(&self.raw_column(name))
+    }
+
+    fn raw_column(&self, name: &str) -> Value {
+        let (load, speed) = match self.task {
+            Task::Crossing { speed_m_s } => (None, Some(speed_m_s)),
+            Task::Static(load) => (Some(load), None),
+        };
+        match name {
+            "connection" => self.gaps_m().map_or("linear", |_| "nonlinear").into(),
+            "gap_tension_m" => self.gaps_m().map(|g| g.0).into(),
+            "gap_compression_m" => self.gaps_m().map(|g| g.1).into(),
+            "load_n" => self.load_n.into(),
+            "speed_m_s" => speed.into(),
+            "load_position" => load.and_then(|l| l.position).into(),
+            "load_x_m" => load.map(|l| l.x_m).into(),
+            path => self.at(path).cloned().unwrap_or_default(),
+        }
+    }
+
+    fn at(&self, name: &str) -> Option<&Value> {
+        let (root, path) = name.split_once('.')?;
+        let document = match root {
+            "bridge" => &self.bridge.document,
+            "vehicle" => &self.vehicle.document,
+            _ => &self.analysis.document,
+        };
+        DocumentPath::parse(path)?.get(document)
+    }
+
+    /// Equal for jobs that are equal.
+    pub(super) fn identity(&self) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        let task = match self.task {
+            Task::Crossing { speed_m_s } => format!("speed_m_s {}", bits(speed_m_s)),
+            Task::Static(load) => format!("load_x_m {}", bits(load.x_m)),
+        };
+        let gaps = self.gaps_m().map(|(t, c)| format!("{} {}", bits(t), bits(c)));
+        for part in [
+            &self.bridge.hash,
+            &self.vehicle.document.to_string(),
+            &self.analysis.document.to_string(),
+            &format!("{gaps:?}"),
+            &bits(self.load_n),
+            &task,
+        ] {
+            hasher.update(part.as_bytes());
+            hasher.update(b"\n");
+        }
+        hasher.finalize()
+    }
+}
+
+fn bits(x: f64) -> String {
+    format!("{:016x}", (x + 0.0).to_bits())
+}

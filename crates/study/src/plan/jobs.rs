@@ -1,0 +1,217 @@
+//! The jobs of a study, one after the other.
+//!
+//! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and one hash a job.
+
+use super::documents::{BridgeEntry, Documents};
+use super::job::{Job, Load, Task};
+use crate::refusal::Refusal;
+use crate::spec::{AxisName, Kind, Point, Study, check_histories};
+use pontoon_core::connector::Connection;
+use serde_json::Value;
+use std::collections::HashSet;
+
+/// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
+pub struct Jobs<'a> {
+    study: &'a Study,
+    points: Box<dyn Iterator<Item = Point<'a>> + 'a>,
+    documents: Documents,
+    seen: HashSet<blake3::Hash>,
+}
+
+impl<'a> Jobs<'a> {
+    /// The jobs of a study.
+    pub fn new(study: &'a Study) -> Self {
+        let points = Box::new(study.blocks.iter().flat_map(|block| block.points()));
+        Self {
+            study,
+            points,
+            documents: Documents::default(),
+            seen: HashSet::new(),
+        }
+    }
+}
+
+impl Iterator for Jobs<'_> {
+    type Item = Result<Job, Refusal>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let point = self.points.next()?;
+            match self.job(&point) {
+                Ok(job) if self.seen.insert(job.identity()) => return Some(Ok(job)),
+                Ok(_) => {}
+                Err(refusal) => return Some(Err(refusal)),
+            }
+        }
+    }
+}
+
+impl Jobs<'_> {
+    fn job(&mut self, point: &Point<'_>) -> Result<Job, Refusal> {
+        let bridge = self.documents.bridge(self.study, point)?;
+        let vehicle = self.documents.vehicle(self.study, point, &bridge)?;
+        let analysis = self.documents.analysis(self.study, point)?;
+        check_histories(
+            &self.study.file,
+            &self.study.spec.record.histories,
+            bridge.design.modules,
+        )?;
+        let short = Short {
+            study: self.study,
+            point,
+        };
+        let connection = short.connection(&bridge)?;
+        let load_n = short.required("load_n")?;
+        let load_n = short.positive("load_n", load_n)?;
+        let task = match analysis.spec.kind {
+            Kind::Crossing => {
+                let speed_m_s = short.speed()?;
+                let length_m = bridge.design.module.length_m;
+                let step = analysis.spec.time_step_s.unwrap_or_default();
+                if step > length_m / speed_m_s {
+                    let key = short.key_or("analysis.time_step_s");
+                    let most = length_m / speed_m_s;
+                    let allowed = format!("above 0 and at most {most}, the passage of one module at {speed_m_s} m/s");
+                    return Err(Refusal::new(&self.study.file, key, step, allowed));
+                }
+                Task::Crossing { speed_m_s }
+            }
+            Kind::Static => Task::Static(short.place(&bridge)?),
+        };
+        Ok(Job {
+            number: self.seen.len(),
+            bridge,
+            vehicle,
+            analysis,
+            connection,
+            load_n,
+            task,
+        })
+    }
+}
+
+/// The axes with short names of one point.
+struct Short<'a> {
+    study: &'a Study,
+    point: &'a Point<'a>,
+}
+
+impl Short<'_> {
+    fn value(&self, name: &str) -> Option<&Value> {
+        let same = |varies: &AxisName| matches!(varies, AxisName::Short(short) if *short == name);
+        self.point
+            .values()
+            .find(|(axis, _)| same(&axis.varies))
+            .map(|(_, value)| value)
+    }
+
+    fn key(&self, name: &str) -> String {
+        format!("{}.{name}", self.point.block.key)
+    }
+
+    /// Where a path was set: at its axis, or in the study itself.
+    fn key_or(&self, path: &str) -> String {
+        let axis = self.point.block.axes.iter().any(|axis| axis.name == path);
+        if axis { self.key(path) } else { path.to_owned() }
+    }
+
+    fn refuse(&self, name: &str, found: impl ToString, allowed: impl Into<String>) -> Refusal {
+        Refusal::new(&self.study.file, self.key(name), found, allowed)
+    }
+
+    fn number(&self, name: &str) -> Result<Option<f64>, Refusal> {
+        match self.value(name) {
+            None => Ok(None),
+            Some(value) => value
+                .as_f64()
+                .map(Some)
+                .ok_or_else(|| self.refuse(name, value, "a number")),
+        }
+    }
+
+    fn required(&self, name: &str) -> Result<f64, Refusal> {
+        let missing = || {
+            Refusal::new(
+                &self.study.file,
+                &self.point.block.key,
+                format!("no {name}"),
+                format!("{name} as one of the axes"),
+            )
+        };
+        self.number(name)?.ok_or_else(missing)
+    }
+
+    fn positive(&self, name: &str, value: f64) -> Result<f64, Refusal> {
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.refuse(name, value, "a finite number above 0"))
+        }
+    }
+
+    fn absent(&self, name: &str, allowed: &str) -> Result<(), Refusal> {
+        self.value(name)
+            .map_or(Ok(()), |value| Err(self.refuse(name, value, allowed)))
+    }
+
+    fn connection(&self, bridge: &BridgeEntry) -> Result<Connection, Refusal> {
+        let gap = |name: &str, default: f64| match self.number(name)? {
+            Some(gap) if gap < 0.0 => Err(self.refuse(name, gap, "a finite number of at least 0")),
+            gap => Ok(gap.unwrap_or(default)),
+        };
+        let connectors = &bridge.design.connectors;
+        let gap_tension_m = gap("gap_tension_m", connectors.gap_tension_m)?;
+        let gap_compression_m = gap("gap_compression_m", connectors.gap_compression_m)?;
+        match self.value("connection").map(|v| (v, v.as_str())) {
+            None | Some((_, Some("nonlinear"))) => Ok(Connection::Nonlinear {
+                gap_tension_m,
+                gap_compression_m,
+            }),
+            Some((_, Some("linear"))) => Ok(Connection::Linear),
+            Some((_, Some(word))) => {
+                let known = ["linear".to_owned(), "nonlinear".to_owned()];
+                Err(Refusal::unknown(&self.study.file, self.key("connection"), word, &known))
+            }
+            Some((value, None)) => Err(self.refuse("connection", value, "linear or nonlinear")),
+        }
+    }
+
+    fn speed(&self) -> Result<f64, Refusal> {
+        for name in ["load_position", "load_x_m"] {
+            self.absent(name, "no place of the load in a study of crossings")?;
+        }
+        self.positive("speed_m_s", self.required("speed_m_s")?)
+    }
+
+    fn place(&self, bridge: &BridgeEntry) -> Result<Load, Refusal> {
+        self.absent("speed_m_s", "no speed in a static study")?;
+        let design = &bridge.design;
+        match (self.number("load_position")?, self.number("load_x_m")?) {
+            (Some(at), None) => {
+                let positions = design.positions();
+                let position = (1..=positions).find(|p| *p as f64 == at);
+                let position = position
+                    .ok_or_else(|| self.refuse("load_position", at, format!("a whole number from 1 to {positions}")))?;
+                Ok(Load {
+                    position: Some(position),
+                    x_m: design.position_x_m(position),
+                })
+            }
+            (None, Some(x_m)) if (0.0..=design.length_m()).contains(&x_m) => Ok(Load { position: None, x_m }),
+            (None, Some(x_m)) => Err(self.refuse("load_x_m", x_m, format!("a number from 0 to {}", design.length_m()))),
+            (at, _) => {
+                let found = if at.is_some() {
+                    "both load_position and load_x_m"
+                } else {
+                    "neither load_position nor load_x_m"
+                };
+                Err(Refusal::new(
+                    &self.study.file,
+                    &self.point.block.key,
+                    found,
+                    "exactly one of the two",
+                ))
+            }
+        }
+    }
+}

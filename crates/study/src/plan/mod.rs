@@ -1,0 +1,171 @@
+//! Jobs: a point of a design made into a checked job, equal jobs merged; what a study would run.
+//!
+//! Knows every check that a single job needs. Does not run anything and writes nothing.
+
+mod documents;
+mod job;
+mod jobs;
+
+pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
+pub use job::{Job, Load, Task};
+pub use jobs::Jobs;
+
+use crate::refusal::Refusal;
+use crate::spec::{ModelSpec, Study};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// What a study would run. Making one checks every job.
+#[derive(Debug, Clone, Serialize)]
+pub struct Plan {
+    /// The study's name.
+    pub study: String,
+    /// Points of all designs.
+    pub points: usize,
+    /// Jobs: points, equal ones counted once.
+    pub jobs: usize,
+    /// Bridges whose documents differ.
+    pub distinct_bridges: usize,
+    /// Modules to condense: bridges that differ in more than the connectors' stiffness and gaps.
+    pub condensations: usize,
+    /// Time steps of all crossings, bisected ones apart.
+    pub steps: u64,
+    /// A rough time for the whole run [s], from the steps, the modules and the cost of a step on a usual machine.
+    pub expected_seconds: f64,
+}
+
+/// Cost of a step of one module [s], from a release build on one core.
+const SECONDS_A_STEP_AND_MODULE: f64 = 2.0e-4;
+/// Cost of meshing, condensing and assembling one bridge [s].
+const SECONDS_A_BRIDGE: f64 = 2.0;
+/// Cost of the static cases of one job [s].
+const SECONDS_A_STATIC_JOB: f64 = 0.1;
+
+impl Plan {
+    /// Checks every job of a study and counts; `threads` is what the expected time reckons with.
+    ///
+    /// # Errors
+    /// [`Refusal`] of the first job that is refused.
+    pub fn new(study: &Study, threads: usize) -> Result<Self, Refusal> {
+        let mut plan = Self {
+            study: study.spec.name.clone(),
+            points: study.points(),
+            jobs: 0,
+            distinct_bridges: 0,
+            condensations: 0,
+            steps: 0,
+            expected_seconds: 0.0,
+        };
+        let (mut bridges, mut modules) = (BTreeSet::new(), BTreeSet::new());
+        let mut seconds = 0.0;
+        for job in Jobs::new(study) {
+            let job = job?;
+            plan.jobs += 1;
+            plan.steps += job.steps() as u64;
+            bridges.insert(job.bridge.hash.clone());
+            if job.analysis.spec.model == ModelSpec::SuperElement {
+                modules.insert(job.bridge.module_key.clone());
+            }
+            seconds += SECONDS_A_STATIC_JOB
+                + SECONDS_A_STEP_AND_MODULE * job.steps() as f64 * job.bridge.design.modules as f64;
+        }
+        plan.distinct_bridges = bridges.len();
+        plan.condensations = modules.len();
+        let threads = threads.max(1).min(plan.jobs.max(1)) as f64;
+        plan.expected_seconds = SECONDS_A_BRIDGE * bridges.len() as f64 + seconds / threads;
+        Ok(plan)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+    use std::path::Path;
+
+    /// The jobs of designs on the smoke study's bridge.
+    fn jobs(designs: Value) -> Result<Vec<Job>, Refusal> {
+        let dir = tempfile::tempdir().unwrap();
+        let smoke = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/bridges/smoke.json");
+        std::fs::copy(smoke, dir.path().join("b.json")).unwrap();
+        let study = json!({ "name": "s", "bridge": "b.json", "analysis": { "kind": "crossing" }, "design": designs });
+        std::fs::write(dir.path().join("study.json"), study.to_string()).unwrap();
+        let study = Study::open(dir.path())?;
+        Jobs::new(&study).collect()
+    }
+
+    fn case(more: Value) -> Value {
+        let mut case = json!({ "speed_m_s": 10, "load_n": 1e5 });
+        case.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        case
+    }
+
+    #[test]
+    fn points_that_come_to_the_same_are_one_job() {
+        let same = [
+            json!({}),
+            json!({ "connection": "nonlinear" }),
+            json!({ "gap_tension_m": 0.028 }),
+            json!({ "speed_m_s": 10.0 }),
+            json!({ "bridge.hydrostatic_stiffness_pa_m": 7486 }),
+            json!({ "vehicle.track_y_m": [-1.4, 1.4] }),
+            json!({ "analysis.time_step_s": 0.01 }),
+        ];
+        assert_eq!(jobs(json!([{ "cases": same.map(case) }])).unwrap().len(), 1);
+        let linear = [
+            json!({ "connection": "linear", "gap_tension_m": 0.01 }),
+            json!({ "connection": "linear" }),
+        ];
+        assert_eq!(jobs(json!([{ "cases": linear.map(case) }])).unwrap().len(), 1);
+    }
+
+    #[test]
+    fn points_that_differ_in_anything_are_jobs_of_their_own() {
+        let different = [
+            json!({}),
+            json!({ "connection": "linear" }),
+            json!({ "gap_tension_m": 0.0281 }),
+            json!({ "gap_compression_m": 0.0 }),
+            json!({ "speed_m_s": 10.1 }),
+            json!({ "load_n": 2e5 }),
+            json!({ "bridge.hydrostatic_stiffness_pa_m": 7487 }),
+            json!({ "bridge.connectors.stiffness_n_m": 2e7 }),
+            json!({ "vehicle.track_y_m": [1, 3] }),
+            json!({ "vehicle.inertia": "none" }),
+            json!({ "analysis.time_step_s": 0.02 }),
+            json!({ "analysis.model": "full" }),
+        ];
+        let count = different.len();
+        let jobs = jobs(json!([{ "cases": different.map(case) }])).unwrap();
+        assert_eq!(
+            jobs.iter().map(|job| job.number).collect::<Vec<_>>(),
+            (0..count).collect::<Vec<_>>()
+        );
+    }
+
+    #[test]
+    fn what_is_data_of_a_job_is_no_part_of_the_module() {
+        let same = [
+            json!({ "bridge.connectors.stiffness_n_m": 2e7 }),
+            json!({ "bridge.connectors.gap_tension_m": 0.01 }),
+            json!({ "bridge.draft_m": 0.3 }),
+        ];
+        let jobs =
+            jobs(json!([{ "cases": same.map(case) }, { "cases": [case(json!({ "bridge.modules": 4 }))] }])).unwrap();
+        assert!(
+            jobs[..3]
+                .iter()
+                .all(|job| job.bridge.module_key == jobs[0].bridge.module_key)
+        );
+        assert_ne!(jobs[0].bridge.structure_key, jobs[1].bridge.structure_key);
+        assert_ne!(jobs[0].bridge.module_key, jobs[3].bridge.module_key);
+        assert_eq!(jobs[1].column("gap_tension_m"), json!(0.01));
+        assert_eq!(jobs[3].column("bridge.modules"), json!(4));
+    }
+
+    #[test]
+    fn a_number_that_an_axis_makes_wrong_elsewhere_is_told_beside_the_axis() {
+        let refused = jobs(json!([{ "cases": [case(json!({ "bridge.module.breadth_m": 2.0 }))] }])).unwrap_err();
+        assert!(refused.key.starts_with("design[0].cases[0] (bridge."), "{refused}");
+    }
+}

@@ -1,0 +1,282 @@
+//! What jobs share, prepared once: modules, bridges, damping, factored solvers, static peaks.
+//!
+//! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
+
+use super::guard::guarded;
+use super::progress::Progress;
+use crate::plan::{Job, Task};
+use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
+use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
+use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
+use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A thing that jobs share, or why it could not be made.
+type Shared<T> = Result<Arc<T>, String>;
+type ModuleKey = (Model, String);
+type BridgeKey = (Model, String);
+type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
+type CrossingKey = (DampingKey, usize, [u64; 2], [Option<usize>; 2]);
+type StaticKey = (BridgeKey, usize);
+type CreepingKey = (StaticKey, Option<(u64, u64)>, u64);
+
+/// Damping and where it came from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Damping {
+    frequencies_hz: [f64; 2],
+    coefficients: Rayleigh,
+}
+
+/// All that the jobs of a run share.
+#[derive(Debug)]
+pub(super) struct Bench {
+    modules: BTreeMap<ModuleKey, Shared<PreparedModule>>,
+    bridges: BTreeMap<BridgeKey, Shared<Bridge>>,
+    damping: BTreeMap<DampingKey, Shared<Damping>>,
+    crossings: BTreeMap<CrossingKey, Shared<CrossingSolver>>,
+    statics: BTreeMap<StaticKey, Shared<StaticSolver>>,
+    creeping: BTreeMap<CreepingKey, Shared<f64>>,
+    condensations: AtomicUsize,
+}
+
+/// What was prepared of one bridge.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BridgeReport {
+    /// Hash of the bridge's document after the axes.
+    pub blake3: String,
+    /// Its name.
+    pub name: String,
+    /// Model of its modules.
+    pub model: &'static str,
+    /// Number of modules.
+    pub modules: usize,
+    /// Degrees of freedom of one module's finite elements.
+    pub module_full_dofs: Option<usize>,
+    /// Degrees of freedom of one module as it is assembled.
+    pub module_dofs: Option<usize>,
+    /// Structural mass of one module [kg].
+    pub structural_mass_kg: Option<f64>,
+    /// Degrees of freedom of the bridge on its supports.
+    pub dofs: Option<usize>,
+    /// Frequencies at which the damping ratio holds [Hz].
+    pub damping_frequencies_hz: Option<[f64; 2]>,
+    /// Stiffness-proportional damping [s].
+    pub damping_stiffness_s: Option<f64>,
+    /// Mass-proportional damping [1/s].
+    pub damping_mass_1_s: Option<f64>,
+}
+
+impl Bench {
+    /// Prepares everything that `jobs` need, each thing once, on the current pool.
+    pub(super) fn prepare(jobs: &[Job], progress: &dyn Progress) -> Self {
+        let mut bench = Self {
+            modules: BTreeMap::new(),
+            bridges: BTreeMap::new(),
+            damping: BTreeMap::new(),
+            crossings: BTreeMap::new(),
+            statics: BTreeMap::new(),
+            creeping: BTreeMap::new(),
+            condensations: AtomicUsize::new(0),
+        };
+        let crossing = |job: &&Job| matches!(job.task, Task::Crossing { .. });
+        let crossings: Vec<&Job> = jobs.iter().filter(crossing).collect();
+        let all: Vec<&Job> = jobs.iter().collect();
+        progress.stage("modules: finite elements, condensation");
+        bench.modules = each(&all, module_key, |job| bench.module(job));
+        progress.stage("bridges: assembly");
+        bench.bridges = each(&all, bridge_key, |job| bench.bridge(job, Ends::Supported));
+        progress.stage("damping: bending modes of the free bridge");
+        bench.damping = each(&crossings, damping_key, |job| bench.damping_of(job));
+        progress.stage("solvers: factors");
+        bench.statics = each(&all, static_key, |job| {
+            StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?, &job.vehicle.vehicle).map_err(text)
+        });
+        bench.crossings = each(&crossings, crossing_key, |job| bench.crossing_solver(job));
+        progress.stage("static peaks of creeping loads");
+        bench.creeping = each(&crossings, creeping_key, |job| {
+            shared(&bench.statics, &static_key(job))?
+                .creeping_peak_m(&static_case(job, 0.0))
+                .map_err(text)
+        });
+        bench
+    }
+
+    fn module(&self, job: &Job) -> Result<PreparedModule, String> {
+        let model = model(job);
+        if model == Model::SuperElement {
+            self.condensations.fetch_add(1, Ordering::Relaxed);
+        }
+        PreparedModule::new(&job.bridge.design, model).map_err(text)
+    }
+
+    fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, String> {
+        Bridge::new(&job.bridge.design, &*shared(&self.modules, &module_key(job))?, ends).map_err(text)
+    }
+
+    fn damping_of(&self, job: &Job) -> Result<Damping, String> {
+        let spec = job.analysis.spec.damping.unwrap_or_default();
+        let frequencies_hz = match spec.frequencies_hz {
+            Some(stated) => stated,
+            None => bending_frequencies_hz(&self.bridge(job, Ends::Free)?).map_err(text)?,
+        };
+        Ok(Damping {
+            frequencies_hz,
+            coefficients: rayleigh(spec.ratio, frequencies_hz),
+        })
+    }
+
+    fn crossing_solver(&self, job: &Job) -> Result<CrossingSolver, String> {
+        let settings = CrossingSettings {
+            time_step_s: job.analysis.spec.time_step_s.unwrap_or_default(),
+            spectral_radius: job.analysis.spec.spectral_radius.unwrap_or_default(),
+            rayleigh: shared(&self.damping, &damping_key(job))?.coefficients,
+            newton_limit: job.analysis.spec.newton_limit.unwrap_or_default(),
+            bisection_limit: job.analysis.spec.bisection_limit.unwrap_or_default(),
+        };
+        CrossingSolver::new(
+            &shared(&self.bridges, &bridge_key(job))?,
+            &job.vehicle.vehicle,
+            &settings,
+        )
+        .map_err(text)
+    }
+
+    /// The solver of a crossing.
+    pub(super) fn crossing(&self, job: &Job) -> Shared<CrossingSolver> {
+        shared(&self.crossings, &crossing_key(job))
+    }
+
+    /// The solver of a static case.
+    pub(super) fn statics(&self, job: &Job) -> Shared<StaticSolver> {
+        shared(&self.statics, &static_key(job))
+    }
+
+    /// The largest static deflection of the job's load over its places [m].
+    pub(super) fn creeping_peak_m(&self, job: &Job) -> Result<f64, String> {
+        shared(&self.creeping, &creeping_key(job))
+            .map(|peak| *peak)
+            .map_err(|e| format!("static peak: {e}"))
+    }
+
+    /// Modules condensed.
+    pub(super) fn condensations(&self) -> usize {
+        self.condensations.load(Ordering::Relaxed)
+    }
+
+    /// What was prepared of each bridge and model, in the order of jobs.
+    pub(super) fn reports(&self, jobs: &[Job]) -> Vec<BridgeReport> {
+        let mut reports: Vec<BridgeReport> = Vec::new();
+        for job in jobs {
+            let module = shared(&self.modules, &module_key(job)).ok();
+            let damping = shared(&self.damping, &damping_key(job)).ok();
+            let report = BridgeReport {
+                blake3: job.bridge.hash.clone(),
+                name: job.bridge.design.name.clone(),
+                model: if model(job) == Model::Full {
+                    "full"
+                } else {
+                    "super-element"
+                },
+                modules: job.bridge.design.modules,
+                module_full_dofs: module.as_ref().map(|m| m.full_dofs()),
+                module_dofs: module.as_ref().map(|m| m.dofs()),
+                structural_mass_kg: module.as_ref().map(|m| m.structural_mass_kg()),
+                dofs: shared(&self.bridges, &bridge_key(job)).ok().map(|b| b.dofs()),
+                damping_frequencies_hz: damping.as_ref().map(|d| d.frequencies_hz),
+                damping_stiffness_s: damping.as_ref().map(|d| d.coefficients.a),
+                damping_mass_1_s: damping.as_ref().map(|d| d.coefficients.b),
+            };
+            if !reports.contains(&report) {
+                reports.push(report);
+            }
+        }
+        reports
+    }
+}
+
+/// The static case of a job with its load at a place.
+pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
+    StaticCase {
+        connection: job.connection,
+        connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
+        load_n: job.load_n,
+        load_x_m,
+    }
+}
+
+/// Makes one thing for each distinct key, in parallel; the first job with a key stands for the others.
+fn each<K: Ord + Send, T: Send + Sync>(
+    jobs: &[&Job],
+    key: impl Fn(&Job) -> K,
+    make: impl Fn(&Job) -> Result<T, String> + Sync,
+) -> BTreeMap<K, Shared<T>> {
+    let mut first: BTreeMap<K, &Job> = BTreeMap::new();
+    for job in jobs {
+        first.entry(key(job)).or_insert(job);
+    }
+    let list: Vec<(K, &Job)> = first.into_iter().collect();
+    let made: Vec<(K, Shared<T>)> = list
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|(key, job)| (key, guarded(|| make(job)).map(Arc::new)))
+        .collect();
+    made.into_iter().collect()
+}
+
+fn shared<K: Ord, T>(map: &BTreeMap<K, Shared<T>>, key: &K) -> Shared<T> {
+    map.get(key)
+        .cloned()
+        .unwrap_or_else(|| Err("program error: not prepared".to_owned()))
+}
+
+fn text(error: impl ToString) -> String {
+    error.to_string()
+}
+
+fn model(job: &Job) -> Model {
+    job.analysis.spec.model.into()
+}
+
+fn module_key(job: &Job) -> ModuleKey {
+    (model(job), job.bridge.module_key.clone())
+}
+
+fn bridge_key(job: &Job) -> BridgeKey {
+    (model(job), job.bridge.structure_key.clone())
+}
+
+fn damping_key(job: &Job) -> DampingKey {
+    let spec = job.analysis.spec.damping.unwrap_or_default();
+    (
+        bridge_key(job),
+        spec.ratio.to_bits(),
+        spec.frequencies_hz.map(|f| f.map(f64::to_bits)),
+    )
+}
+
+fn crossing_key(job: &Job) -> CrossingKey {
+    let bits = |x: Option<f64>| x.unwrap_or_default().to_bits();
+    let spec = &job.analysis.spec;
+    let scheme = [bits(spec.time_step_s), bits(spec.spectral_radius)];
+    (
+        damping_key(job),
+        job.vehicle.id,
+        scheme,
+        [spec.newton_limit, spec.bisection_limit],
+    )
+}
+
+fn static_key(job: &Job) -> StaticKey {
+    (bridge_key(job), job.vehicle.id)
+}
+
+fn creeping_key(job: &Job) -> CreepingKey {
+    let gaps = job
+        .gaps_m()
+        .map(|(tension, compression)| (tension.to_bits(), compression.to_bits()));
+    (static_key(job), gaps, job.load_n.to_bits())
+}

@@ -1,0 +1,56 @@
+//! A static job to its record.
+
+use super::bench::{Bench, static_case};
+use super::record::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
+use crate::plan::{Job, Load};
+use pontoon_core::response::StaticResponse;
+
+/// Solves the static case of a job.
+pub(super) fn solve(job: &Job, load: Load, bench: &Bench) -> Result<JobRecord, String> {
+    let response = bench
+        .statics(job)?
+        .solve(&static_case(job, load.x_m))
+        .map_err(|e| e.to_string())?;
+    Ok(rows(job, &response))
+}
+
+fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
+    let positions: Vec<PositionRow> = (1..)
+        .zip(&response.deflection_m)
+        .map(|(position, &deflection_m)| PositionRow {
+            position,
+            x_m: job.bridge.design.position_x_m(position),
+            deflection: Extreme::timeless(deflection_m.max(0.0)),
+            uplift: Extreme::timeless((-deflection_m).max(0.0)),
+            static_deflection_m: Some(deflection_m),
+        })
+        .collect();
+    let mut connectors = Vec::new();
+    for joint in &response.joints {
+        connectors.push(ConnectorRow::force(joint.joint, None, joint.sum_n));
+        connectors.extend(
+            joint
+                .connectors
+                .iter()
+                .map(|(y_m, n)| ConnectorRow::force(joint.joint, Some(*y_m), *n)),
+        );
+    }
+    let mut summary = Summary {
+        peak_edge_deflection_m: Some(response.peak_edge_deflection_m),
+        peak_roll_rad: Some(response.peak_roll_rad),
+        influential_length_m: Some(response.influential_length_m),
+        bottom_emerged: response.bottom_emerged,
+        deck_submerged: response.deck_submerged,
+        newton_iterations: Some(response.newton_iterations),
+        ..Summary::default()
+    };
+    summary.take_peaks(&positions, &connectors);
+    JobRecord {
+        job: job.number,
+        reason: None,
+        summary,
+        positions,
+        connectors,
+        histories: HistoryRows::default(),
+    }
+}

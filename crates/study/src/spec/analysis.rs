@@ -1,0 +1,217 @@
+//! The `analysis` of a study.
+//!
+//! Knows its keys, their defaults and ranges. Does not know bridges or vehicles.
+
+use pontoon_core::bridge::Model;
+use pontoon_core::input::{InvalidInput, not_negative, positive, within};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What is asked of the bridge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A vehicle crosses at constant speed.
+    Crossing,
+    /// A vehicle stands still.
+    Static,
+}
+
+/// Which solver integrates a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverSpec {
+    /// Direct integration of the assembled bridge.
+    #[default]
+    Reference,
+}
+
+/// Which matrices a module contributes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelSpec {
+    /// Every degree of freedom of the shells and beams.
+    Full,
+    /// The condensed module.
+    #[default]
+    SuperElement,
+}
+
+impl From<ModelSpec> for Model {
+    fn from(model: ModelSpec) -> Self {
+        match model {
+            ModelSpec::Full => Self::Full,
+            ModelSpec::SuperElement => Self::SuperElement,
+        }
+    }
+}
+
+/// Rayleigh damping.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DampingSpec {
+    /// Ratio of critical damping at both frequencies.
+    #[serde(default = "default_ratio")]
+    #[schemars(range(min = 0.0, max = 0.99))]
+    pub ratio: f64,
+    /// The two frequencies, increasing [Hz]; absent: the first two vertical bending modes of the job's own bridge,
+    /// linearly connected and floating free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequencies_hz: Option<[f64; 2]>,
+}
+
+fn default_ratio() -> f64 {
+    0.05
+}
+
+impl Default for DampingSpec {
+    fn default() -> Self {
+        Self {
+            ratio: default_ratio(),
+            frequencies_hz: None,
+        }
+    }
+}
+
+/// What is asked and how it is computed. The keys of a crossing have no place in a static study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnalysisSpec {
+    /// What is asked of the bridge.
+    pub kind: Kind,
+    /// Time step of a crossing [s]; 0.01 where absent. At most the passage of one module.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub time_step_s: Option<f64>,
+    /// How long a crossing goes on after the vehicle has left the bridge [s]; 6 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub tail_s: Option<f64>,
+    /// Solver of a crossing; `reference` where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<SolverSpec>,
+    /// Model of the modules.
+    #[serde(default)]
+    pub model: ModelSpec,
+    /// Spectral radius at infinite frequency of a crossing's time integration, 0 to 1; 0.9 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub spectral_radius: Option<f64>,
+    /// Newton solutions that a crossing's step may take before it is halved; 30 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub newton_limit: Option<usize>,
+    /// How often a crossing's step may be halved before the job fails; 8 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 12))]
+    pub bisection_limit: Option<usize>,
+    /// Damping of a crossing; 5 % at the bridge's own first two vertical bending modes where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<DampingSpec>,
+}
+
+impl AnalysisSpec {
+    /// Refuses numbers out of range and a crossing's keys in a static study, and fills a crossing's defaults.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key relative to `analysis`.
+    pub fn checked(mut self) -> Result<Self, InvalidInput> {
+        if self.kind == Kind::Static {
+            let given = [
+                ("time_step_s", self.time_step_s.is_some()),
+                ("tail_s", self.tail_s.is_some()),
+                ("solver", self.solver.is_some()),
+                ("spectral_radius", self.spectral_radius.is_some()),
+                ("newton_limit", self.newton_limit.is_some()),
+                ("bisection_limit", self.bisection_limit.is_some()),
+                ("damping", self.damping.is_some()),
+            ];
+            return match given.iter().find(|(_, given)| *given) {
+                Some((key, _)) => Err(InvalidInput::new(
+                    *key,
+                    "a key of crossings",
+                    "only kind and model in a static study",
+                )),
+                None => Ok(self),
+            };
+        }
+        positive("time_step_s", *self.time_step_s.get_or_insert(0.01))?;
+        not_negative("tail_s", *self.tail_s.get_or_insert(6.0))?;
+        within("spectral_radius", *self.spectral_radius.get_or_insert(0.9), 0.0, 1.0)?;
+        self.solver.get_or_insert_default();
+        whole("newton_limit", *self.newton_limit.get_or_insert(30), 1, 1000)?;
+        whole("bisection_limit", *self.bisection_limit.get_or_insert(8), 0, 12)?;
+        let damping = self.damping.get_or_insert_default();
+        within("damping.ratio", damping.ratio, 0.0, 0.99)?;
+        if let Some([first, second]) = damping.frequencies_hz {
+            positive("damping.frequencies_hz[0]", first)?;
+            if !(second.is_finite() && second > first) {
+                return Err(InvalidInput::new(
+                    "damping.frequencies_hz[1]",
+                    second,
+                    format!("above {first}"),
+                ));
+            }
+        }
+        Ok(self)
+    }
+}
+
+fn whole(key: &str, value: usize, from: usize, to: usize) -> Result<(), InvalidInput> {
+    if (from..=to).contains(&value) {
+        return Ok(());
+    }
+    Err(InvalidInput::new(
+        key,
+        value,
+        format!("a whole number from {from} to {to}"),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn checked(value: serde_json::Value) -> Result<AnalysisSpec, InvalidInput> {
+        serde_json::from_value::<AnalysisSpec>(value).unwrap().checked()
+    }
+
+    #[test]
+    fn a_crossing_gets_its_defaults() {
+        let spec = checked(json!({"kind": "crossing"})).unwrap();
+        assert_eq!(
+            (spec.time_step_s, spec.tail_s, spec.spectral_radius),
+            (Some(0.01), Some(6.0), Some(0.9))
+        );
+        assert_eq!(spec.model, ModelSpec::SuperElement);
+        assert_eq!(
+            spec.damping,
+            Some(DampingSpec {
+                ratio: 0.05,
+                frequencies_hz: None
+            })
+        );
+    }
+
+    #[test]
+    fn a_static_study_refuses_the_keys_of_crossings() {
+        for key in ["time_step_s", "tail_s", "spectral_radius"] {
+            assert_eq!(checked(json!({"kind": "static", key: 0.5})).unwrap_err().key, key);
+        }
+        assert!(checked(json!({"kind": "static", "model": "full"})).is_ok());
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused_by_key() {
+        for (key, value) in [("time_step_s", 0.0), ("tail_s", -1.0), ("spectral_radius", 1.1)] {
+            assert_eq!(checked(json!({"kind": "crossing", key: value})).unwrap_err().key, key);
+        }
+        let damping = |d| checked(json!({"kind": "crossing", "damping": d})).unwrap_err().key;
+        assert_eq!(damping(json!({"ratio": -0.1})), "damping.ratio");
+        assert_eq!(
+            damping(json!({"frequencies_hz": [0.4, 0.3]})),
+            "damping.frequencies_hz[1]"
+        );
+    }
+}

@@ -1,0 +1,15 @@
+//! The study file: its keys, its designs, the points they expand to.
+//!
+//! Knows what a person may write and where it is relative to. Does not know what a job is or how it runs.
+
+mod analysis;
+mod axes;
+mod design;
+mod study;
+mod values;
+
+pub use analysis::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec};
+pub use axes::{Axis, AxisName, Block, Point, SHORT_NAMES};
+pub use design::{AxisMap, Design};
+pub use study::{BridgeFile, HistoriesSpec, RecordSpec, Study, StudySpec, read_bridge};
+pub(crate) use study::{check_histories, filled_vehicle, to_value};

@@ -1,0 +1,156 @@
+//! Which columns each table has.
+//!
+//! Knows the names of columns. Does not know files.
+
+use super::columns::Columns;
+use crate::plan::Job;
+use crate::run::{ConnectorRow, JobRecord, PositionRow};
+use crate::spec::{Kind, Study};
+use polars::prelude::{DataFrame, PolarsResult};
+use serde_json::Value;
+
+/// The columns of a study's axes: the short names of its kind, then every path.
+pub(super) fn axis_names(study: &Study) -> Vec<String> {
+    let short: &[&str] = match study.spec.analysis.kind {
+        Kind::Crossing => &[
+            "connection",
+            "gap_tension_m",
+            "gap_compression_m",
+            "speed_m_s",
+            "load_n",
+        ],
+        Kind::Static => &[
+            "connection",
+            "gap_tension_m",
+            "gap_compression_m",
+            "load_position",
+            "load_x_m",
+            "load_n",
+        ],
+    };
+    short
+        .iter()
+        .map(|name| (*name).to_owned())
+        .chain(study.path_axes())
+        .collect()
+}
+
+/// One row a job.
+pub(super) fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
+    let s = || records.iter().map(|r| &r.summary);
+    let mut c = Columns::default();
+    c.count("job", records.iter().map(|r| Some(r.job)));
+    c.word(
+        "status",
+        records
+            .iter()
+            .map(|r| Some(if r.reason.is_none() { "ok" } else { "failed" })),
+    );
+    c.word("reason", records.iter().map(|r| r.reason.as_deref()));
+    for name in axis_names(study) {
+        let values: Vec<Value> = jobs.iter().map(|job| job.column(&name)).collect();
+        match name.as_str() {
+            "load_position" => {
+                c.count(
+                    &name,
+                    values.iter().map(|v| v.as_u64().and_then(|v| usize::try_from(v).ok())),
+                );
+            }
+            _ => {
+                c.axis(&name, &values);
+            }
+        }
+    }
+    c.number("peak_deflection_m", s().map(|s| s.peak_deflection_m))
+        .count("peak_deflection_position", s().map(|s| s.peak_deflection_position))
+        .number("peak_deflection_time_s", s().map(|s| s.peak_deflection_time_s))
+        .number("peak_uplift_m", s().map(|s| s.peak_uplift_m))
+        .count("peak_uplift_position", s().map(|s| s.peak_uplift_position))
+        .number("peak_uplift_time_s", s().map(|s| s.peak_uplift_time_s))
+        .number("peak_compression_n", s().map(|s| s.peak_compression_n))
+        .count("peak_compression_joint", s().map(|s| s.peak_compression_joint))
+        .number("peak_tension_n", s().map(|s| s.peak_tension_n))
+        .count("peak_tension_joint", s().map(|s| s.peak_tension_joint))
+        .number("peak_edge_deflection_m", s().map(|s| s.peak_edge_deflection_m))
+        .number("peak_roll_rad", s().map(|s| s.peak_roll_rad))
+        .number("static_peak_deflection_m", s().map(|s| s.static_peak_deflection_m))
+        .number("dynamic_amplification", s().map(|s| s.dynamic_amplification))
+        .number("influential_length_m", s().map(|s| s.influential_length_m))
+        .flag("bottom_emerged", s().map(|s| s.bottom_emerged))
+        .flag("deck_submerged", s().map(|s| s.deck_submerged))
+        .number("min_contact_force_n", s().map(|s| s.min_contact_force_n))
+        .count("steps", s().map(|s| s.steps))
+        .count("newton_iterations", s().map(|s| s.newton_iterations))
+        .count("contact_switches", s().map(|s| s.contact_switches))
+        .number("energy_residual", s().map(|s| s.energy_residual))
+        .number("numerical_dissipation", s().map(|s| s.numerical_dissipation))
+        .frame()
+}
+
+/// One row a position of each job.
+pub(super) fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataFrame> {
+    let rows: Vec<(usize, &PositionRow)> = records
+        .iter()
+        .flat_map(|r| r.positions.iter().map(move |row| (r.job, row)))
+        .collect();
+    let rows = || rows.iter().copied();
+    let mut c = Columns::default();
+    c.count("job", rows().map(|(job, _)| Some(job)))
+        .count("position", rows().map(|(_, r)| Some(r.position)))
+        .number("x_m", rows().map(|(_, r)| Some(r.x_m)))
+        .number("peak_deflection_m", rows().map(|(_, r)| r.deflection.value))
+        .number("peak_deflection_time_s", rows().map(|(_, r)| r.deflection.time_s))
+        .number("peak_uplift_m", rows().map(|(_, r)| r.uplift.value))
+        .number("peak_uplift_time_s", rows().map(|(_, r)| r.uplift.time_s));
+    if kind == Kind::Static {
+        c.number("deflection_m", rows().map(|(_, r)| r.static_deflection_m));
+    }
+    c.frame()
+}
+
+/// One row a joint's sum and one a connector of each job.
+pub(super) fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+    let rows: Vec<(usize, &ConnectorRow)> = records
+        .iter()
+        .flat_map(|r| r.connectors.iter().map(move |row| (r.job, row)))
+        .collect();
+    let rows = || rows.iter().copied();
+    Columns::default()
+        .count("job", rows().map(|(job, _)| Some(job)))
+        .count("joint", rows().map(|(_, r)| Some(r.joint)))
+        .number("y_m", rows().map(|(_, r)| r.y_m))
+        .number("peak_compression_n", rows().map(|(_, r)| r.compression.value))
+        .number("peak_compression_time_s", rows().map(|(_, r)| r.compression.time_s))
+        .number("peak_tension_n", rows().map(|(_, r)| r.tension.value))
+        .number("peak_tension_time_s", rows().map(|(_, r)| r.tension.time_s))
+        .frame()
+}
+
+/// One row a time of each history of each job.
+pub(super) fn histories(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+    let series = || {
+        records
+            .iter()
+            .flat_map(|r| r.histories.series.iter().map(move |s| (r, s)))
+    };
+    let of = |r: &JobRecord| r.histories.time_s.len();
+    Columns::default()
+        .count(
+            "job",
+            series().flat_map(|(r, _)| std::iter::repeat_n(Some(r.job), of(r))),
+        )
+        .number(
+            "time_s",
+            series().flat_map(|(r, _)| r.histories.time_s.iter().map(|t| Some(*t))),
+        )
+        .word(
+            "quantity",
+            series().flat_map(|(r, s)| std::iter::repeat_n(Some(s.0.as_str()), of(r))),
+        )
+        .count(
+            "position",
+            series().flat_map(|(r, s)| std::iter::repeat_n(Some(s.1), of(r))),
+        )
+        .number("value", series().flat_map(|(_, s)| s.2.iter().map(|v| Some(*v))))
+        .frame()
+}

@@ -1,0 +1,156 @@
+//! The manifest: what ran, where, when, and what it cost. All that changes from run to run stands here.
+//!
+//! Knows the clock and the machine's name. Does not know the tables' content.
+
+use crate::plan::Job;
+use crate::run::{BridgeReport, Outcome};
+use crate::spec::{ModelSpec, Study};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Name of the manifest's file.
+pub(super) const FILE: &str = "manifest.json";
+
+/// A moment of wall time.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment(SystemTime);
+
+impl Moment {
+    /// Now.
+    pub fn now() -> Self {
+        Self(SystemTime::now())
+    }
+
+    /// As `2005-01-31T12:00:00Z`.
+    pub fn text(self) -> String {
+        let seconds = self
+            .0
+            .duration_since(UNIX_EPOCH)
+            .map(|d| d.as_secs())
+            .unwrap_or_default();
+        let (year, month, day) = civil(seconds / 86_400);
+        let (h, m, s) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
+        format!("{year:04}-{month:02}-{day:02}T{h:02}:{m:02}:{s:02}Z")
+    }
+}
+
+/// Year, month and day of a number of days after 1970-01-01, in the Gregorian calendar: years begin in March, so that
+/// the leap day comes last.
+fn civil(days: u64) -> (u64, u64, u64) {
+    let shifted = days + 719_468;
+    let (era, of_era) = (shifted / 146_097, shifted % 146_097);
+    let year_of_era = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    (era * 400 + year_of_era + u64::from(month <= 2), month, day)
+}
+
+/// What `manifest.json` holds.
+#[derive(Debug, Clone, Serialize)]
+pub struct Manifest {
+    /// Version of the program.
+    pub version: &'static str,
+    /// Name of the study.
+    pub name: String,
+    /// The study's document.
+    pub study: Value,
+    /// Hash of the study's document on one line.
+    pub study_blake3: String,
+    /// The bridge's document, before the axes.
+    pub bridge: Value,
+    /// Hash of the bridge's document on one line.
+    pub bridge_blake3: String,
+    /// Jobs.
+    pub jobs: usize,
+    /// Jobs that failed.
+    pub failed: usize,
+    /// Points of the designs that were equal to an earlier one.
+    pub merged: usize,
+    /// Bridges whose documents differ after the axes.
+    pub distinct_bridges: usize,
+    /// Modules whose condensation differs: the connectors' gaps and stiffness, draft and freeboard are no part of it.
+    pub distinct_modules: usize,
+    /// Condensations that ran.
+    pub condensations: usize,
+    /// What was prepared of each bridge and model.
+    pub bridges: Vec<BridgeReport>,
+    /// Name of the machine.
+    pub host: String,
+    /// Threads used.
+    pub threads: usize,
+    /// When the run began (UTC).
+    pub started: String,
+    /// When the last job was done (UTC).
+    pub finished: String,
+    /// Wall time of what jobs share: finite elements, condensation, assembly, factors, static peaks [s].
+    pub offline_s: f64,
+    /// Wall time of the jobs [s].
+    pub jobs_s: f64,
+}
+
+impl Manifest {
+    /// The manifest of a run.
+    pub fn new(study: &Study, jobs: &[Job], outcome: &Outcome, started: Moment, finished: Moment) -> Self {
+        let condensed = jobs
+            .iter()
+            .filter(|job| job.analysis.spec.model == ModelSpec::SuperElement);
+        Self {
+            version: crate::VERSION,
+            name: study.spec.name.clone(),
+            study: study.document.clone(),
+            study_blake3: study.text_and_hash().1,
+            bridge: study.bridge.document.clone(),
+            bridge_blake3: study.bridge_text_and_hash().1,
+            jobs: jobs.len(),
+            failed: outcome.failed(),
+            merged: study.points() - jobs.len(),
+            distinct_bridges: jobs.iter().map(|job| job.bridge.id).collect::<BTreeSet<_>>().len(),
+            distinct_modules: condensed
+                .map(|job| &job.bridge.module_key)
+                .collect::<BTreeSet<_>>()
+                .len(),
+            condensations: outcome.condensations,
+            bridges: outcome.bridges.clone(),
+            host: host(),
+            threads: outcome.threads,
+            started: started.text(),
+            finished: finished.text(),
+            offline_s: outcome.offline_s,
+            jobs_s: outcome.jobs_s,
+        }
+    }
+
+    /// Its text.
+    pub(super) fn text(&self) -> String {
+        let value = crate::spec::to_value(self);
+        format!("{value:#}\n")
+    }
+}
+
+/// The machine's name, where the system tells it.
+fn host() -> String {
+    let told = std::fs::read_to_string("/proc/sys/kernel/hostname")
+        .ok()
+        .or_else(|| std::env::var("HOSTNAME").ok());
+    told.map(|name| name.trim().to_owned())
+        .filter(|name| !name.is_empty())
+        .unwrap_or_else(|| "unknown".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn moments_are_written_in_the_calendar() {
+        let text = |seconds| Moment(UNIX_EPOCH + Duration::from_secs(seconds)).text();
+        assert_eq!(text(0), "1970-01-01T00:00:00Z");
+        assert_eq!(text(951_826_154), "2000-02-29T12:09:14Z");
+        assert_eq!(text(4_107_542_400), "2100-03-01T00:00:00Z");
+    }
+}

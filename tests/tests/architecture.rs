@@ -1,0 +1,274 @@
+//! The rules of the house that a compiler does not hold.
+
+#![allow(clippy::expect_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the member stands in the workspace")
+        .to_owned()
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// All files below `dir` whose name ends in `ending`, sorted.
+fn files(dir: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(dir).unwrap_or_else(|e| panic!("{}: {e}", dir.display())) {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(files(&path, ending));
+        } else if path.to_string_lossy().ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn rust_files() -> Vec<PathBuf> {
+    let mut all = files(&root().join("crates"), ".rs");
+    all.extend(files(&root().join("tests"), ".rs"));
+    assert!(all.len() > 40, "only {} files found", all.len());
+    all
+}
+
+/// The libraries of a member, those of its tests left out.
+fn dependencies(member: &str) -> Vec<String> {
+    let manifest = read(&root().join("crates").join(member).join("Cargo.toml"));
+    let table = manifest
+        .split("[dependencies]\n")
+        .nth(1)
+        .expect("a table of dependencies");
+    let table = table.split("\n[").next().unwrap_or_default();
+    let name = |line: &str| line.split(['.', ' ', '=']).next().unwrap_or_default().to_owned();
+    table
+        .lines()
+        .filter(|line| !line.trim().is_empty() && !line.starts_with('#'))
+        .map(name)
+        .collect()
+}
+
+#[test]
+fn dependencies_run_from_cli_to_study_to_core() {
+    let has = |member: &str, name: &str| dependencies(member).iter().any(|d| d == name);
+    assert!(has("cli", "pontoon-study") && !has("cli", "pontoon-core"));
+    assert!(has("study", "pontoon-core") && !has("study", "pontoon"));
+    assert!(!has("core", "pontoon-study") && !has("core", "pontoon"));
+    for (library, only) in [
+        ("polars", "study"),
+        ("anyhow", "cli"),
+        ("clap", "cli"),
+        ("faer", "core"),
+        ("rayon", "study"),
+    ] {
+        for member in ["core", "study", "cli"] {
+            assert_eq!(has(member, library), member == only, "{library} in {member}");
+        }
+    }
+}
+
+#[test]
+fn core_knows_no_files_clock_threads_or_randomness() {
+    for file in files(&root().join("crates/core/src"), ".rs") {
+        let text = read(&file);
+        for word in [
+            "std::fs",
+            "std::env",
+            "std::io",
+            "std::time",
+            "std::thread",
+            "rayon",
+            "rand::",
+            "println!",
+        ] {
+            assert!(!text.contains(word), "{} has {word}", file.display());
+        }
+    }
+}
+
+#[test]
+fn study_prints_nothing() {
+    for file in files(&root().join("crates/study/src"), ".rs") {
+        let text = read(&file);
+        for word in ["println!", "eprint", "stdout()", "stderr()", "dbg!"] {
+            assert!(!text.contains(word), "{} has {word}", file.display());
+        }
+    }
+}
+
+/// Floors of core from the ground up; a room knows its own floor and those below. A response is data that every floor
+/// above the ground may fill.
+const FLOORS: [&[&str]; 6] = [
+    &["conventions", "ids", "input", "response"],
+    &["fem"],
+    &["module", "water", "superelement"],
+    &["connector", "vehicle", "bridge"],
+    &["flexibility", "scheme", "contact", "operator"],
+    &["analysis"],
+];
+
+fn floor(room: &str) -> usize {
+    FLOORS
+        .iter()
+        .position(|rooms| rooms.contains(&room))
+        .unwrap_or_else(|| panic!("{room} has no floor"))
+}
+
+#[test]
+fn rooms_of_core_know_only_their_own_floor_and_those_below() {
+    let src = root().join("crates/core/src");
+    let mut seen = 0;
+    for file in files(&src, ".rs") {
+        let inside = file
+            .strip_prefix(&src)
+            .expect("below src")
+            .to_string_lossy()
+            .into_owned();
+        let room = inside.split(['/', '.']).next().unwrap_or_default().to_owned();
+        if room == "lib" {
+            continue;
+        }
+        for line in read(&file).lines().filter(|line| !line.trim_start().starts_with("//")) {
+            for used in line.split("crate::").skip(1) {
+                let used = used
+                    .split(|c: char| !c.is_ascii_lowercase() && c != '_')
+                    .next()
+                    .unwrap_or_default();
+                if !used.is_empty() {
+                    seen += 1;
+                    assert!(
+                        floor(used) <= floor(&room),
+                        "{inside} of floor {} knows {used}",
+                        floor(&room)
+                    );
+                }
+            }
+        }
+    }
+    assert!(seen > 20, "only {seen} uses found");
+}
+
+#[test]
+fn files_are_short_and_begin_with_what_they_are() {
+    for file in rust_files() {
+        let text = read(&file);
+        let lines = text.lines().count();
+        assert!(lines <= 600, "{} has {lines} lines", file.display());
+        assert!(text.starts_with("//!"), "{} does not say what it is", file.display());
+    }
+}
+
+#[test]
+fn nothing_is_left_undone() {
+    let words = ["todo", "unimplemented"].map(|word| format!("{word}!("));
+    for file in rust_files() {
+        let text = read(&file);
+        for word in &words {
+            assert!(!text.contains(word.as_str()), "{} has {word}", file.display());
+        }
+    }
+}
+
+#[test]
+fn no_room_is_a_lumber_room() {
+    for file in rust_files() {
+        let name = file.to_string_lossy().into_owned();
+        for word in ["utils", "common", "helpers"] {
+            assert!(
+                !name.contains(&format!("/{word}.rs")) && !name.contains(&format!("/{word}/")),
+                "{name}"
+            );
+        }
+    }
+}
+
+/// Endings that say a unit.
+const UNITS: [&str; 17] = [
+    "_m", "_m2", "_m3", "_m4", "_s", "_n", "_pa", "_hz", "_rad", "_kg", "_m_s", "_n_m", "_kg_m", "_kg_m3", "_pa_m",
+    "_1_s", "_m_s2",
+];
+/// Names of pure numbers.
+const PURE: [&str; 7] = [
+    "ratio",
+    "share",
+    "spectral_radius",
+    "section_coefficient",
+    "three_dimensional_correction",
+    "load_position",
+    "poissons_ratio",
+];
+
+/// The names of all properties of a schema that hold numbers other than counts, or lists of them.
+fn number_names(schema: &serde_json::Value, out: &mut Vec<String>) {
+    match schema {
+        serde_json::Value::Object(map) => {
+            if let Some(serde_json::Value::Object(properties)) = map.get("properties") {
+                let number = |value: &serde_json::Value| {
+                    value.get("properties").is_none() && value.to_string().contains("\"number\"")
+                };
+                out.extend(
+                    properties
+                        .iter()
+                        .filter(|(_, value)| number(value))
+                        .map(|(name, _)| name.clone()),
+                );
+            }
+            map.values().for_each(|value| number_names(value, out));
+        }
+        serde_json::Value::Array(list) => list.iter().for_each(|value| number_names(value, out)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_number_that_a_person_types_ends_in_its_unit() {
+    for schema in [pontoon_study::schema::study(), pontoon_study::schema::bridge()] {
+        let mut names = Vec::new();
+        number_names(&schema, &mut names);
+        names.retain(|name| name != "linspace" && name != "geomspace");
+        assert!(names.len() > 8, "only {names:?} found");
+        for name in names {
+            let good = PURE.contains(&name.as_str()) || UNITS.iter().any(|unit| name.ends_with(unit));
+            assert!(good, "{name} does not say its unit");
+        }
+    }
+}
+
+/// Whether a word in backticks is the path of a file of this repository.
+fn is_path(word: &str) -> bool {
+    let known = [".rs", ".json", ".md", ".toml", ".ipynb"]
+        .iter()
+        .any(|ending| word.ends_with(ending));
+    let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "._/-".contains(c));
+    known && plain && word.contains('/') && !word.starts_with("results/") && !word.starts_with('/')
+}
+
+#[test]
+fn paths_in_docs_exist() {
+    let mut docs = rust_files();
+    docs.extend(files(&root().join("crates"), ".md"));
+    docs.extend(files(&root().join("studies"), ".md"));
+    docs.extend(Some(root().join("README.md")).filter(|readme| readme.exists()));
+    for file in docs {
+        let rust = file.extension().is_some_and(|e| e == "rs");
+        for line in read(&file)
+            .lines()
+            .filter(|line| !rust || line.trim_start().starts_with("//"))
+        {
+            for word in line.split('`').skip(1).step_by(2).filter(|word| is_path(word)) {
+                let mut near = file.ancestors().skip(1).take_while(|dir| dir.starts_with(root()));
+                assert!(
+                    near.any(|dir| dir.join(word).exists()),
+                    "{} names {word}, which does not exist",
+                    file.display()
+                );
+            }
+        }
+    }
+}
