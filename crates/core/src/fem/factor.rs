@@ -114,7 +114,7 @@ impl Factor {
                     l.l_solve_with_conj(Conj::No, x, Par::Seq, stack);
                 }
             }
-            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("the supernodal form is asked for"),
+            SymbolicCholeskyRaw::Simplicial(_) => {} // of order 0
         }
     }
 }
@@ -128,18 +128,22 @@ fn permute(mut x: MatMut<'_, f64>, from: &[usize]) {
     }
 }
 
-/// The fill-reducing order and the pattern of the factor, in supernodal form.
+/// Flops per entry of the factor above which it is supernodal. The library's own zero leaves out diagonal matrices,
+/// which have none.
+const ALWAYS_SUPERNODAL: SupernodalThreshold = SupernodalThreshold(-1.0);
+
+/// The fill-reducing order and the pattern of the factor, in supernodal form for any order above 0.
 pub(super) fn analyse(a: &SymmetricMatrix) -> Result<SymbolicCholesky<usize>, FemError> {
     let params = CholeskySymbolicParams {
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        supernodal_flop_ratio_threshold: ALWAYS_SUPERNODAL,
         ..Default::default()
     };
     factorize_symbolic_cholesky(a.as_faer().symbolic(), Side::Lower, SymmetricOrdering::Amd, params)
         .map_err(|_| FemError::OutOfMemory { dofs: a.order() })
 }
 
-/// `|A x - b| / (|A| |x| + |b|)` in the largest norm for a right-hand side of ones and minus ones; infinite where x is not
-/// finite.
+/// `|A x - b| / (|A| |x| + |b|)` in the largest norm for a right-hand side of ones and minus ones; infinite where x is
+/// not finite.
 pub(super) fn probe(a: &SymmetricMatrix, solve: impl FnOnce(&mut [f64])) -> f64 {
     let n = a.order();
     let b: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { -1.0 } else { 1.0 }).collect();

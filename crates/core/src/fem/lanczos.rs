@@ -101,8 +101,7 @@ impl<'a, A: SymmetricOperator> BlockLanczos<'a, A> {
         self.operator
             .apply(MatMut::from_column_major_slice_mut(&mut next, n, b));
         let q = MatRef::from_column_major_slice(&self.basis, n, seen);
-        let mut t = project_out(q, MatMut::from_column_major_slice_mut(&mut next, n, b));
-        t += project_out(q, MatMut::from_column_major_slice_mut(&mut next, n, b));
+        let t = project_out(q, MatMut::from_column_major_slice_mut(&mut next, n, b));
         for j in 0..b {
             let place = self.seen + j;
             // within the block the two halves differ by rounding

@@ -10,13 +10,14 @@ use nalgebra::{Matrix3, SMatrix, SVector};
 pub(super) type MembraneMatrix = SMatrix<f64, 12, 12>;
 
 /// Share of the drilling penalty that is integrated in full, against the three hourglass patterns of theta_z which the
-/// centre point cannot see. It stiffens in-plane bending by a tenth of its product with the square of an element's
+/// centre point cannot see. It stiffens in-plane bending by an eighth of its product with the square of an element's
 /// aspect ratio (0.1 % at 30:1), and it is far above rounding.
 const DRILLING_HOURGLASS: f64 = 1e-5;
 
 /// `k_m = integral of B^T D B t dA` with the incompatible modes `1 - xi^2`, `1 - eta^2` of u and v (Wilson, Taylor:
 /// Int. J. Numer. Meth. Engng 10, 1976, 1211-1219) condensed out; their derivatives are taken with the Jacobian of the
-/// centre, so that constant stress passes the patch test on any quadrilateral. In-plane bending of a rectangle is exact.
+/// centre, so that constant stress passes the patch test on any quadrilateral. In-plane bending of a rectangle is
+/// exact.
 ///
 /// Drilling: `G t (theta_z - (v,x - u,y)/2)^2 / 2` (Hughes, Brezzi: Comput. Meth. Appl. Mech. Engng 72, 1989) at the
 /// centre, where neither constant strain nor in-plane bending of a rectangle leaves anything.

@@ -49,8 +49,8 @@ pub enum FemError {
         /// Residual allowed.
         allowed: f64,
     },
-    /// An element that cannot carry a field: no area, no length, a corner of more than 180 degrees, or a section that no
-    /// material has.
+    /// An element that cannot carry a field: no area, no length, a corner of more than 180 degrees, or a section that
+    /// no material has.
     #[error("element {element} is degenerate: {measure} = {value:.3e}")]
     Degenerate {
         /// Number of the element in its list.

@@ -74,21 +74,21 @@ impl SymmetricMatrix {
         let (starts, rows, values) = (self.inner.col_ptr(), self.inner.row_idx(), self.inner.val());
         for (j, y) in y.iter_mut().enumerate() {
             let range = starts[j]..starts[j + 1];
-            *y = rows[range.clone()]
-                .iter()
-                .zip(&values[range])
-                .map(|(&i, v)| v * x[i])
-                .sum();
+            *y = gathered_dot(&rows[range.clone()], &values[range], x);
         }
     }
 
     /// `y = A x`, column by column.
     pub fn multiply_columns(&self, x: MatRef<'_, f64>, mut y: MatMut<'_, f64>) {
+        let mut product = vec![0.0; self.order()];
         for c in 0..x.ncols() {
-            let x = x.col(c);
-            for (j, y) in y.rb_mut().col_mut(c).iter_mut().enumerate() {
-                *y = self.column(j).map(|(i, v)| v * x[i]).sum();
-            }
+            let column: Vec<f64> = x.col(c).iter().copied().collect();
+            self.multiply(&column, &mut product);
+            y.rb_mut()
+                .col_mut(c)
+                .iter_mut()
+                .zip(&product)
+                .for_each(|(y, p)| *y = *p);
         }
     }
 
@@ -103,6 +103,20 @@ impl SymmetricMatrix {
     pub(super) fn as_faer(&self) -> SparseColMatRef<'_, usize, f64> {
         self.inner.as_ref()
     }
+}
+
+/// `sum of v_i x[rows_i]`, in four sums that do not wait for each other.
+fn gathered_dot(rows: &[usize], values: &[f64], x: &[f64]) -> f64 {
+    let (rows, rows_left) = rows.as_chunks::<4>();
+    let (values, values_left) = values.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (rows, values) in rows.iter().zip(values) {
+        for lane in 0..4 {
+            sums[lane] += values[lane] * x[rows[lane]];
+        }
+    }
+    let left: f64 = rows_left.iter().zip(values_left).map(|(&i, v)| v * x[i]).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + left
 }
 
 /// A row of few entries `(place, value)`, in rising order of place.
