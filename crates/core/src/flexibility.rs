@@ -1,138 +1,156 @@
 //! A factorised bridge matrix and its flexibility at the places where forces act: connectors and track.
 //!
-//! Knows `A^-1 B^T` and `A^-1` at the deck's z along the track, computed once. Does not know what A stands for: the
-//! stiffness of a static case or the matrix of a time step.
+//! Knows `A^-1 B^T` and `A^-1` at the deck's nodes, each line of the deck computed once, when a wheel first needs it. Does
+//! not know what A stands for: the stiffness of a static case or the matrix of a time step.
 
 use crate::bridge::{Bridge, Track};
 use crate::fem::{Factor, FemError, SparseRow, SymmetricMatrix};
-use faer::{Mat, MatMut};
+use faer::{Mat, MatRef};
+use std::sync::{Arc, OnceLock};
 
-/// Columns solved at once.
-const BLOCK: usize = 64;
-
-/// The factor of A, the columns `A^-1 [B^T  E]` (E: unit loads on the track's z) and their values at connectors and track.
-///
-/// Places are numbered connectors first, then track columns.
+/// The factor of A, the columns `A^-1 B^T` of the connectors and, line by line, `A^-1 E` of unit loads on the deck's z.
+/// Shared read-only between jobs and threads.
 #[derive(Debug)]
 pub struct Flexibility {
-    /// The factor of A.
-    pub factor: Factor,
-    connectors: usize,
-    track_dofs: Vec<usize>,
-    /// `A^-1 [B^T E]`, a column for each place.
-    columns: Mat<f64>,
-    /// `[B; E^T] A^-1 [B^T E]`.
-    values: Mat<f64>,
+    factor: Factor,
+    bridge: Arc<Bridge>,
+    track: Track,
+    /// `A^-1 B^T`.
+    connectors: Mat<f64>,
+    /// `A^-1 E` of each line of the track.
+    lines: Vec<OnceLock<Mat<f64>>>,
 }
 
 impl Flexibility {
-    /// Factorises `a` and solves for all places.
+    /// Factorises `a` and solves for the connectors.
     ///
     /// # Errors
     /// [`FemError`] where `a` is not positive definite.
-    pub fn new(a: &SymmetricMatrix, bridge: &Bridge, track: &Track) -> Result<Self, FemError> {
+    pub fn new(a: &SymmetricMatrix, bridge: &Arc<Bridge>) -> Result<Self, FemError> {
         let factor = Factor::new(a)?;
-        let n = a.order();
-        let unit = |&dof: &usize| SparseRow(vec![(dof, 1.0)]);
-        let rows: Vec<SparseRow> = bridge
-            .connectors
-            .iter()
-            .map(|c| c.row.clone())
-            .chain(track.dofs.iter().map(unit))
-            .collect();
-        let mut columns = Mat::<f64>::zeros(n, rows.len());
-        for (j, row) in rows.iter().enumerate() {
-            for &(i, v) in &row.0 {
-                columns[(i, j)] = v;
+        let track = Track::new(bridge);
+        let mut connectors = Mat::<f64>::zeros(a.order(), bridge.connectors.len());
+        for (j, connector) in bridge.connectors.iter().enumerate() {
+            for &(i, v) in &connector.row.0 {
+                connectors[(i, j)] = v;
             }
         }
-        for start in (0..rows.len()).step_by(BLOCK) {
-            let width = BLOCK.min(rows.len() - start);
-            let block: MatMut<'_, f64> = columns.as_mut().subcols_mut(start, width);
-            factor.solve_columns(block);
-        }
-        let values = Mat::from_fn(rows.len(), rows.len(), |i, j| {
-            // read from the lower triangle alone, so that the matrix is symmetric to the last bit
-            let (i, j) = (i.max(j), i.min(j));
-            rows[i].0.iter().map(|&(k, v)| v * columns[(k, j)]).sum()
-        });
+        factor.solve_columns(connectors.as_mut());
+        let lines = (0..track.lines()).map(|_| OnceLock::new()).collect();
         Ok(Self {
             factor,
-            connectors: bridge.connectors.len(),
-            track_dofs: track.dofs.clone(),
-            columns,
-            values,
+            bridge: Arc::clone(bridge),
+            track,
+            connectors,
+            lines,
         })
     }
 
-    /// Displacement at place `i` from a unit force at place `j`.
+    /// The track on which rows are given.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// `x := A^-1 x`.
+    pub fn solve(&self, x: &mut [f64]) {
+        self.factor.solve(x);
+    }
+
+    /// The line of a column and its place in it.
+    fn column(&self, column: usize) -> (MatRef<'_, f64>, usize) {
+        let stations = self.track.stations();
+        let (line, station) = (column / stations, column % stations);
+        let columns = self.lines[line].get_or_init(|| {
+            let mut columns = Mat::<f64>::zeros(self.factor.order(), stations);
+            for j in 0..stations {
+                columns[(self.track.dof(line * stations + j), j)] = 1.0;
+            }
+            self.factor.solve_columns(columns.as_mut());
+            columns
+        });
+        (columns.as_ref(), station)
+    }
+
+    /// `b_i . A^-1 b_j^T` of two connectors.
     #[inline]
-    pub fn value(&self, i: usize, j: usize) -> f64 {
-        self.values[(i, j)]
+    pub fn connector_to_connector(&self, i: usize, j: usize) -> f64 {
+        // always from the later column, so that the matrix is symmetric to the last bit
+        let (i, j) = (i.min(j), i.max(j));
+        self.bridge.connectors[i]
+            .row
+            .0
+            .iter()
+            .map(|&(k, v)| v * self.connectors[(k, j)])
+            .sum()
     }
 
-    /// Place of a track column.
-    fn track_place(&self, column: usize) -> usize {
-        self.connectors + column
-    }
-
-    /// Dof behind a track column.
-    #[inline]
-    pub fn track_dof(&self, column: usize) -> usize {
-        self.track_dofs[column]
-    }
-
-    /// Displacement at connector `i` from a unit of a track row.
+    /// `b_i . A^-1 row^T` of a connector and a track row.
     pub fn connector_to_track(&self, i: usize, row: &SparseRow) -> f64 {
-        row.0.iter().map(|&(c, v)| v * self.value(i, self.track_place(c))).sum()
+        row.0
+            .iter()
+            .map(|&(c, v)| v * self.connectors[(self.track.dof(c), i)])
+            .sum()
     }
 
     /// `row_a . A^-1 row_b^T` of two track rows.
     pub fn track_to_track(&self, a: &SparseRow, b: &SparseRow) -> f64 {
-        let inner = |c: usize| {
-            b.0.iter()
-                .map(|&(d, w)| w * self.value(self.track_place(c), self.track_place(d)))
+        let column = |c: usize, w: f64| {
+            let (columns, j) = self.column(c);
+            w * a
+                .0
+                .iter()
+                .map(|&(d, v)| v * columns[(self.track.dof(d), j)])
                 .sum::<f64>()
         };
-        a.0.iter().map(|&(c, v)| v * inner(c)).sum()
+        b.0.iter().map(|&(c, w)| column(c, w)).sum()
     }
 
     /// A track row on a vector of the bridge's dofs.
     pub fn track_dot(&self, row: &SparseRow, u: &[f64]) -> f64 {
-        row.0.iter().map(|&(c, v)| v * u[self.track_dofs[c]]).sum()
+        row.0.iter().map(|&(c, v)| v * u[self.track.dof(c)]).sum()
     }
 
-    /// `f += force * row^T`.
+    /// `f += force * row^T` of a track row.
     pub fn add_track_force(&self, row: &SparseRow, force: f64, f: &mut [f64]) {
         for &(c, v) in &row.0 {
-            f[self.track_dofs[c]] += force * v;
+            f[self.track.dof(c)] += force * v;
         }
     }
 
     /// `u += A^-1 row^T` of a track row.
     pub fn add_track_response(&self, row: &SparseRow, u: &mut [f64]) {
         for &(c, v) in &row.0 {
-            self.add_column(self.track_place(c), v, u);
+            let (columns, j) = self.column(c);
+            add_column(columns, j, v, u);
         }
     }
 
     /// `u += force A^-1 b^T` of a connector.
     pub fn add_connector_response(&self, connector: usize, force: f64, u: &mut [f64]) {
         if force != 0.0 {
-            self.add_column(connector, force, u);
+            add_column(self.connectors.as_ref(), connector, force, u);
         }
     }
 
-    fn add_column(&self, place: usize, force: f64, u: &mut [f64]) {
-        for (u, x) in u.iter_mut().zip(self.columns.col(place).iter()) {
-            *u += force * x;
-        }
-    }
-
-    /// `row . A^-1 [B^T E]`: what an observed row sees of a unit force at each place.
-    pub fn observe(&self, row: &SparseRow) -> Vec<f64> {
-        (0..self.columns.ncols())
-            .map(|j| row.0.iter().map(|&(i, v)| v * self.columns[(i, j)]).sum())
+    /// `row . A^-1 B^T`: what an observed row sees of unit forces at the connectors.
+    pub fn observe_connectors(&self, row: &SparseRow) -> Vec<f64> {
+        (0..self.connectors.ncols())
+            .map(|j| row.0.iter().map(|&(i, v)| v * self.connectors[(i, j)]).sum())
             .collect()
+    }
+
+    /// `row . A^-1 track_row^T`: what an observed row sees of a track row.
+    pub fn observe_track(&self, row: &SparseRow, track_row: &SparseRow) -> f64 {
+        let column = |c: usize, w: f64| {
+            let (columns, j) = self.column(c);
+            w * row.0.iter().map(|&(i, v)| v * columns[(i, j)]).sum::<f64>()
+        };
+        track_row.0.iter().map(|&(c, w)| column(c, w)).sum()
+    }
+}
+
+fn add_column(columns: MatRef<'_, f64>, j: usize, force: f64, u: &mut [f64]) {
+    for (u, x) in u.iter_mut().zip(columns.col(j).iter()) {
+        *u += force * x;
     }
 }

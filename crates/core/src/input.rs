@@ -76,3 +76,32 @@ pub fn within(key: &str, value: f64, from: f64, to: f64) -> Result<f64, InvalidI
         Err(InvalidInput::new(key, value, format!("a number from {from} to {to}")))
     }
 }
+
+/// Places closer than this are one place [m]: they share a line of the mesh.
+pub const SAME_PLACE_M: f64 = 1e-6;
+
+/// Refuses a place that is the same as an earlier one of its list.
+///
+/// # Errors
+/// [`InvalidInput`] on the place in the list `key`.
+pub fn apart(key: &str, places: &[f64]) -> Result<(), InvalidInput> {
+    for (i, &place) in places.iter().enumerate() {
+        if places[..i].iter().any(|&other| (other - place).abs() <= SAME_PLACE_M) {
+            let found = format!("{place} twice");
+            return Err(InvalidInput::new(format!("{key}[{i}]"), found, "each place once"));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_place_twice_is_refused_at_the_second() {
+        let e = apart("y_m", &[-1.0, 1.0, 1.0 + 1e-7]).unwrap_err();
+        assert_eq!((e.key.as_str(), e.allowed.as_str()), ("y_m[2]", "each place once"));
+        assert!(apart("y_m", &[-1.0, 1.0, 1.001]).is_ok());
+    }
+}

@@ -3,7 +3,7 @@
 //! Knows one vehicle standing still on one bridge, on any model. Does not know motion.
 
 use super::AnalysisError;
-use crate::bridge::{Bridge, Load, Track};
+use crate::bridge::{Bridge, Load};
 use crate::connector::{Connection, Law, State};
 use crate::contact::{ContactProblem, ContactSolution, NotSettled};
 use crate::fem::SparseRow;
@@ -26,14 +26,12 @@ pub struct StaticCase {
     pub load_x_m: f64,
 }
 
-/// A bridge made ready for static cases of one vehicle. Shared read-only between jobs and threads.
+/// A bridge made ready for static cases. Shared read-only between jobs and threads.
 #[derive(Debug)]
 pub struct StaticSolver {
     bridge: Arc<Bridge>,
-    vehicle: Vehicle,
-    track: Track,
     flexibility: Flexibility,
-    /// What each position sees of unit forces at connectors and track.
+    /// What each position sees of unit forces at the connectors.
     positions: Vec<Vec<f64>>,
 }
 
@@ -48,14 +46,15 @@ impl StaticSolver {
     ///
     /// # Errors
     /// [`AnalysisError::Factor`] where K is singular: the supports leave a motion that nothing restores.
-    pub fn new(bridge: &Arc<Bridge>, vehicle: &Vehicle) -> Result<Self, AnalysisError> {
-        let track = Track::new(bridge, vehicle.points().map(|p| p.y_m));
-        let flexibility = Flexibility::new(&bridge.k, bridge, &track)?;
-        let positions = bridge.positions.iter().map(|row| flexibility.observe(row)).collect();
+    pub fn new(bridge: &Arc<Bridge>) -> Result<Self, AnalysisError> {
+        let flexibility = Flexibility::new(&bridge.k, bridge)?;
+        let positions = bridge
+            .positions
+            .iter()
+            .map(|row| flexibility.observe_connectors(row))
+            .collect();
         Ok(Self {
             bridge: Arc::clone(bridge),
-            vehicle: vehicle.clone(),
-            track,
             flexibility,
             positions,
         })
@@ -65,8 +64,8 @@ impl StaticSolver {
     ///
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
-    pub fn solve(&self, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
-        let load = self.load(case, case.load_x_m);
+    pub fn solve(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
+        let load = self.load(vehicle, case, case.load_x_m);
         let contact = self.contact(case, &load, case.load_x_m)?;
         let bridge = &self.bridge;
         let mut u = vec![0.0; bridge.dofs()];
@@ -94,7 +93,8 @@ impl StaticSolver {
             rows.iter().map(|row| value(row.dot(&u))).fold(0.0_f64, f64::max)
         };
         Ok(StaticResponse {
-            deflection_m: bridge.positions.iter().map(|row| -row.dot(&u)).collect(),
+            // nothing is 0, not -0
+            deflection_m: bridge.positions.iter().map(|row| 0.0 - row.dot(&u)).collect(),
             joints,
             peak_edge_deflection_m: largest(&bridge.edges, &|z| -z),
             peak_roll_rad: largest(&bridge.rolls, &f64::abs),
@@ -106,44 +106,34 @@ impl StaticSolver {
                 .freeboard_m
                 .map(|board| bridge.deck_corners.iter().any(|row| -row.dot(&u) > board)),
             newton_iterations: contact.iterations,
-            equilibrium: self.equilibrium(case, &u),
+            equilibrium: self.equilibrium(vehicle, case, &u),
         })
     }
 
-    /// Largest static deflection of any position over all places of the load along the bridge [m]: places half an element
-    /// apart (`load_x_m` of the case is not used).
+    /// Largest static deflection of any position over all places of the load along the bridge [m]: places a quarter of
+    /// an element apart (`load_x_m` of the case is not used).
     ///
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
-    pub fn creeping_peak_m(&self, case: &StaticCase) -> Result<f64, AnalysisError> {
+    pub fn creeping_peak_m(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<f64, AnalysisError> {
         let design = self.bridge.design();
-        let places = design.modules * design.module.mesh.elements_along * 2;
+        let places = design.modules * design.module.mesh.elements_along * 4;
         let mut peak = 0.0_f64;
         for place in 0..=places {
             let x = design.length_m() * place as f64 / places as f64;
-            let load = self.load(case, x);
+            let load = self.load(vehicle, case, x);
             let contact = self.contact(case, &load, x)?;
-            for seen in &self.positions {
-                let from_load: f64 = load
-                    .weight
-                    .0
-                    .iter()
-                    .map(|&(c, w)| w * seen[contact.forces.len() + c])
-                    .sum();
+            for (row, seen) in self.bridge.positions.iter().zip(&self.positions) {
                 let from_connectors: f64 = contact.forces.iter().zip(seen).map(|(n, s)| n * s).sum();
-                peak = peak.max(from_load + from_connectors);
+                peak = peak.max(self.flexibility.observe_track(row, &load.weight) + from_connectors);
             }
         }
         Ok(peak)
     }
 
-    fn load(&self, case: &StaticCase, centre_x_m: f64) -> Load {
-        Load::new(
-            &self.track,
-            &self.vehicle,
-            case.load_n,
-            centre_x_m - self.vehicle.centre_ahead_m(),
-        )
+    fn load(&self, vehicle: &Vehicle, case: &StaticCase, centre_x_m: f64) -> Load {
+        let front_x_m = centre_x_m - vehicle.centre_ahead_m();
+        Load::new(self.flexibility.track(), vehicle, case.load_n, front_x_m)
     }
 
     /// The contact under a load; where Newton does not settle from open connectors, the load is brought on in parts.
@@ -158,7 +148,7 @@ impl StaticSolver {
             .collect();
         let mut problem = ContactProblem {
             e_free: e_full.clone(),
-            connectors: DMatrix::from_fn(nc, nc, |i, j| self.flexibility.value(i, j)),
+            connectors: DMatrix::from_fn(nc, nc, |i, j| self.flexibility.connector_to_connector(i, j)),
             weight: 1.0,
             connectors_riders: DMatrix::zeros(nc, 0),
             riders_connectors: DMatrix::zeros(0, nc),
@@ -222,12 +212,12 @@ impl StaticSolver {
         right_end - left_end
     }
 
-    fn equilibrium(&self, case: &StaticCase, u: &[f64]) -> Equilibrium {
+    fn equilibrium(&self, vehicle: &Vehicle, case: &StaticCase, u: &[f64]) -> Equilibrium {
         let mut result = Equilibrium::default();
-        let front = case.load_x_m - self.vehicle.centre_ahead_m();
-        for point in self.vehicle.points() {
+        let front = case.load_x_m - vehicle.centre_ahead_m();
+        for point in vehicle.points() {
             let x = front + point.ahead_m;
-            if self.track.row(x, point.y_m).is_some() {
+            if self.flexibility.track().row(x, point.y_m).is_some() {
                 let force = -case.load_n * point.share;
                 add_force(&mut result.load, force, x, point.y_m);
             }

@@ -44,7 +44,8 @@ pub struct Bridge {
     pub(crate) bottom_corners: Vec<SparseRow>,
     /// Roll of the module ends [rad per unit dof].
     pub(crate) rolls: Vec<SparseRow>,
-    /// z across the bottom at each line along, for telling shapes apart: place x, then (y, row) for each line across.
+    /// z across the deck at each line along, for telling shapes apart (the bottom's plates carry the water, and shapes of
+    /// their own would pass for the bridge's): place x, then (y, row) for each line across.
     pub(crate) sections: Vec<(f64, Vec<(f64, SparseRow)>)>,
     /// Mean motion of the hinge nodes along and across at each module end: place x, row along, row across.
     pub(crate) hinge_lines: Vec<(f64, SparseRow, SparseRow)>,
@@ -120,7 +121,7 @@ impl Bridge {
             .collect();
         let sections = stations()
             .map(|(j, ix)| {
-                let across = (0..ny).map(|iy| (grid.y[iy], of(j, grid.bottom(ix, iy), Z))).collect();
+                let across = (0..ny).map(|iy| (grid.y[iy], of(j, grid.deck(ix, iy), Z))).collect();
                 (j as f64 * l + grid.x[ix], across)
             })
             .collect();

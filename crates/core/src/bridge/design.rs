@@ -2,8 +2,9 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
-use crate::input::{InvalidInput, not_negative, positive, within};
-use crate::module::ModuleDesign;
+use super::Model;
+use crate::input::{InvalidInput, apart, not_negative, positive, within};
+use crate::module::{ModuleDesign, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -158,6 +159,9 @@ impl Default for Condensation {
     }
 }
 
+/// Most memory that the dense matrices of one bridge may take [GiB].
+const MOST_GIB: f64 = 4.0;
+
 impl BridgeDesign {
     /// Refuses numbers that describe no bridge.
     ///
@@ -186,6 +190,67 @@ impl BridgeDesign {
                 "condensation.fixed_master_modes",
                 self.condensation.fixed_master_modes,
                 "a whole number from 0 to 400",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Refuses a bridge that supports and hinges leave free to move horizontally, against which water does nothing: it
+    /// has no static case, for its stiffness without connectors is singular.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    pub fn check_held(&self) -> Result<(), InvalidInput> {
+        let single = self.hinges.y_m.len() == 1;
+        if single && self.modules > 1 {
+            let allowed = "at least two places in a static case: modules turn about a single hinge";
+            return Err(InvalidInput::new("hinges.y_m", "one place", allowed));
+        }
+        let Supports { left, right } = &self.supports;
+        for (direction, word) in [(Direction::X, "x"), (Direction::Y, "y")] {
+            if !(left.contains(&direction) || right.contains(&direction)) {
+                let found = format!("no end that holds {word}");
+                let allowed = "x and y held at an end at least in a static case";
+                return Err(InvalidInput::new("supports", found, allowed));
+            }
+        }
+        if single && !(left.contains(&Direction::Y) && right.contains(&Direction::Y)) {
+            let allowed = "y held at both ends in a static case of one module with a single hinge place";
+            return Err(InvalidInput::new("supports", "y held at one end", allowed));
+        }
+        Ok(())
+    }
+
+    /// Refuses a bridge whose dense matrices would take too much memory: the condensation of a module, and what its
+    /// places on the deck see of each other in a solver with four lines of wheels.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] on the mesh.
+    pub fn check_size(&self, model: Model) -> Result<(), InvalidInput> {
+        let extra: Vec<f64> = self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect();
+        let size = mesh_size(&self.module, &extra);
+        let nodes = (size.lines_along * size.lines_across) as f64;
+        let (module_dofs, condensation) = match model {
+            Model::Full => (size.dofs as f64, 0.0),
+            Model::SuperElement => {
+                let bottoms = if self.condensation.bottom_masters { 2.0 } else { 1.0 };
+                let kept = bottoms * nodes + self.condensation.fixed_master_modes as f64;
+                (kept, 3.0 * size.dofs as f64 * kept)
+            }
+        };
+        let modules = self.modules as f64;
+        let places = modules * (self.connectors.y_m.len() + 4 * size.lines_along) as f64;
+        let solvers = 2.0 * places * (modules * module_dofs + places);
+        let gib = 8.0 * condensation.max(solvers) / f64::from(1 << 30);
+        if gib > MOST_GIB {
+            let found = format!(
+                "a mesh of {} degrees of freedom a module, which needs about {gib:.0} GiB",
+                size.dofs
+            );
+            return Err(InvalidInput::new(
+                "module.mesh",
+                found,
+                format!("a mesh and a number of modules that need at most {MOST_GIB} GiB"),
             ));
         }
         Ok(())
@@ -255,7 +320,7 @@ fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
     for (i, &y) in y.iter().enumerate() {
         within(&format!("{key}[{i}]"), y, -half, half)?;
     }
-    Ok(())
+    apart(key, y)
 }
 
 impl Connectors {

@@ -4,7 +4,7 @@
 
 use super::Track;
 use crate::fem::SparseRow;
-use crate::vehicle::{GRAVITY_M_S2, Inertia, Vehicle};
+use crate::vehicle::{GRAVITY_M_S2, Inertia, Patch, Vehicle};
 
 /// A mass that rides along: the row on which its force acts and the rows that make its acceleration
 /// `r u'' + 2 V r_x u' + V^2 r_xx u`.
@@ -80,24 +80,19 @@ impl Load {
     }
 }
 
-/// r_x and r_xx of the row averaged over a patch centred at `x`: differences of the row and of its slope between the
-/// patch's ends, over its length.
-fn derivatives(track: &Track, patch: &crate::vehicle::Patch, x: f64) -> (SparseRow, SparseRow) {
-    let ys: Vec<f64> = {
-        let mut ys: Vec<f64> = patch.points.iter().map(|p| p.y_m).collect();
-        ys.dedup();
-        ys.sort_by(f64::total_cmp);
-        ys.dedup();
-        ys
-    };
-    let per = 1.0 / (patch.length_m * ys.len() as f64);
+/// r_x and r_xx of the row averaged over the part of a patch centred at `x` that is on the bridge: differences of the row
+/// and of its slope between the part's ends, over its length.
+fn derivatives(track: &Track, patch: &Patch, x: f64) -> (SparseRow, SparseRow) {
+    let mut ys: Vec<f64> = patch.points.iter().map(|p| p.y_m).collect();
+    ys.sort_by(f64::total_cmp);
+    ys.dedup();
+    let [left, right] = [-0.5, 0.5].map(|end| (x + end * patch.length_m).clamp(0.0, track.length_m()));
+    let per = 1.0 / ((right - left) * ys.len() as f64);
     let difference = |of: &dyn Fn(f64, f64) -> Option<SparseRow>| {
         let mut terms = Vec::new();
         for &y in &ys {
-            for (end, sign) in [(0.5, per), (-0.5, -per)] {
-                if let Some(row) = of(x + end * patch.length_m, y) {
-                    terms.push((sign, row));
-                }
+            for (end, sign) in [(right, per), (left, -per)] {
+                terms.extend(of(end, y).map(|row| (sign, row)));
             }
         }
         SparseRow::combine(&terms.iter().map(|(s, r)| (*s, r)).collect::<Vec<_>>())

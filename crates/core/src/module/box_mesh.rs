@@ -4,11 +4,9 @@
 
 use super::ModuleDesign;
 use crate::fem::{BeamSection, Mesh, NodeId, ShellSection};
+use crate::input::SAME_PLACE_M;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Lines closer than this are one line [m].
-const SAME_LINE_M: f64 = 1e-6;
 
 /// The structured grid of deck and bottom.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,8 +66,39 @@ pub fn mesh_module(design: &ModuleDesign, extra_y: &[f64]) -> ModuleMesh {
     Builder::new(design, extra_y).build()
 }
 
+/// Size of a mesh that has not been made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MeshSize {
+    /// Lines along the module.
+    pub lines_along: usize,
+    /// Lines across.
+    pub lines_across: usize,
+    /// Degrees of freedom of all nodes.
+    pub dofs: usize,
+}
+
+/// The size of the mesh of [`mesh_module`], counted from its lines.
+pub fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
+    let Builder { x, y, z, .. } = Builder::new(design, extra_y);
+    let (nx, ny) = (x.len(), y.len());
+    let plates = |lines: &[f64], walls: &[f64]| {
+        let at: BTreeSet<usize> = walls.iter().filter_map(|&wall| line(lines, wall)).collect();
+        at.len() + [0, lines.len() - 1].iter().filter(|end| !at.contains(end)).count()
+    };
+    let (px, py) = (
+        plates(&x, &design.transverse_walls.x_m),
+        plates(&y, &design.longitudinal_walls.y_m),
+    );
+    let on_plates = nx * ny - (nx - px) * (ny - py);
+    MeshSize {
+        lines_along: nx,
+        lines_across: ny,
+        dofs: 6 * (2 * nx * ny + (z.len() - 2) * on_plates),
+    }
+}
+
 fn line(lines: &[f64], at: f64) -> Option<usize> {
-    lines.iter().position(|&l| (l - at).abs() <= SAME_LINE_M)
+    lines.iter().position(|&l| (l - at).abs() <= SAME_PLACE_M)
 }
 
 fn cells(nx: usize, ny: usize) -> impl Iterator<Item = (usize, usize)> {
@@ -79,7 +108,7 @@ fn cells(nx: usize, ny: usize) -> impl Iterator<Item = (usize, usize)> {
 /// Sorted lines without near-duplicates, each interval divided into `parts(length)` equal parts.
 fn divide(mut lines: Vec<f64>, parts: impl Fn(f64) -> usize) -> Vec<f64> {
     lines.sort_by(f64::total_cmp);
-    lines.dedup_by(|a, b| (*a - *b).abs() <= SAME_LINE_M);
+    lines.dedup_by(|a, b| (*a - *b).abs() <= SAME_PLACE_M);
     let mut divided = vec![lines[0]];
     for w in lines.windows(2) {
         let n = parts(w[1] - w[0]).max(1);
@@ -259,5 +288,53 @@ impl<'a> Builder<'a> {
     fn beam(&mut self, ends: [(usize, usize, usize); 2], section: BeamSection, up: Vector3<f64>) {
         let nodes = ends.map(|(i, j, k)| self.node(i, j, k));
         self.mesh.add_beam(nodes, section, up);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::module::{LongitudinalWalls, Material, MeshDesign, TransverseWalls};
+
+    #[test]
+    fn a_mesh_has_the_size_that_was_counted() {
+        for (along, between, over, walls) in [(1, 1, 1, vec![]), (4, 2, 3, vec![0.5, 1.5]), (3, 1, 2, vec![0.0, -4.0])]
+        {
+            let design = ModuleDesign {
+                length_m: 6.0,
+                breadth_m: 8.0,
+                depth_m: 1.0,
+                deck_thickness_m: 0.003,
+                bottom_thickness_m: 0.003,
+                side_thickness_m: 0.003,
+                end_thickness_m: 0.003,
+                longitudinal_walls: LongitudinalWalls {
+                    thickness_m: 0.002,
+                    y_m: walls.clone(),
+                },
+                transverse_walls: TransverseWalls {
+                    thickness_m: 0.002,
+                    x_m: walls.iter().map(|w| 1.0 + w.abs()).collect(),
+                },
+                stiffeners: crate::module::Stiffeners::default(),
+                material: Material {
+                    youngs_modulus_pa: 2e11,
+                    poissons_ratio: 0.3,
+                    density_kg_m3: 7850.0,
+                },
+                mesh: MeshDesign {
+                    elements_along: along,
+                    elements_between_lines: between,
+                    elements_over_depth: over,
+                },
+            };
+            let made = mesh_module(&design, &[1.25]);
+            let size = mesh_size(&design, &[1.25]);
+            assert_eq!(size.dofs, made.mesh.dofs());
+            assert_eq!(
+                (size.lines_along, size.lines_across),
+                (made.grid.x.len(), made.grid.y.len())
+            );
+        }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows which numbers describe the box and refuses those that cannot. Does not know water, hinges or connectors.
 
-use crate::input::{InvalidInput, not_negative, positive, within};
+use crate::input::{InvalidInput, apart, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -148,6 +148,7 @@ fn lines(of: &str, key: &str, places: &[f64], from: f64, to: f64, thickness: Opt
     for (i, &place) in places.iter().enumerate() {
         within(&format!("{of}.{key}[{i}]"), place, from - 1e-9, to + 1e-9)?;
     }
+    apart(&format!("{of}.{key}"), places)?;
     match thickness {
         Some(t) if !places.is_empty() => positive(&format!("{of}.thickness_m"), t).map(|_| ()),
         _ => Ok(()),

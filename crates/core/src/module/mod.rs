@@ -6,5 +6,5 @@
 mod box_mesh;
 mod design;
 
-pub use box_mesh::{Grid, ModuleMesh, mesh_module};
+pub use box_mesh::{Grid, MeshSize, ModuleMesh, mesh_module, mesh_size};
 pub use design::{LongitudinalWalls, Material, MeshDesign, ModuleDesign, Stiffeners, TransverseWalls};

@@ -51,11 +51,10 @@ pub struct Crossing {
     pub record: Record,
 }
 
-/// A bridge made ready for crossings of one vehicle at one time step. Shared read-only between jobs and threads.
+/// A bridge made ready for crossings at one time step. Shared read-only between jobs and threads.
 #[derive(Debug)]
 pub struct CrossingSolver {
     bridge: Arc<Bridge>,
-    vehicle: Vehicle,
     track: Track,
     settings: CrossingSettings,
     /// The step's matrix for each number of halvings, factorised when first needed.
@@ -70,17 +69,15 @@ struct Level {
 }
 
 impl CrossingSolver {
-    /// Factorises once for the bridge, the time step and the tracks of the vehicle.
+    /// Factorises once for the bridge and the time step.
     ///
     /// # Errors
     /// [`AnalysisError::Factor`].
-    pub fn new(bridge: &Arc<Bridge>, vehicle: &Vehicle, settings: &CrossingSettings) -> Result<Self, AnalysisError> {
-        let track = Track::new(bridge, vehicle.points().map(|p| p.y_m));
+    pub fn new(bridge: &Arc<Bridge>, settings: &CrossingSettings) -> Result<Self, AnalysisError> {
         let levels = (0..=settings.bisection_limit).map(|_| OnceLock::new()).collect();
         let solver = Self {
             bridge: Arc::clone(bridge),
-            vehicle: vehicle.clone(),
-            track,
+            track: Track::new(bridge),
             settings: *settings,
             levels,
         };
@@ -99,7 +96,7 @@ impl CrossingSolver {
     ///
     /// # Errors
     /// [`AnalysisError::NotConverged`] with time and connector, [`AnalysisError::NotFinite`], [`AnalysisError::Factor`].
-    pub fn solve(&self, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
+    pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
         let h = self.settings.time_step_s;
         let law = Law {
             k: crossing.connector_stiffness_n_m,
@@ -107,7 +104,7 @@ impl CrossingSolver {
         };
         let (before, after) = span(
             self.bridge.design().length_m(),
-            &self.vehicle,
+            vehicle,
             h,
             crossing.speed_m_s,
             crossing.tail_s,
@@ -120,11 +117,11 @@ impl CrossingSolver {
         };
         let mut observer = Observer::new(&self.bridge, &crossing.record);
         let start_s = -(before as f64) * h;
-        let mut now = stepper.at_rest(start_s, self.load(crossing, start_s));
+        let mut now = stepper.at_rest(start_s, self.load(vehicle, crossing, start_s));
         observer.note_history(&now);
         for n in 1..=before + after {
             let to_s = (n as f64 - before as f64) * h;
-            now = self.advance(&stepper, crossing, &mut observer, now, to_s, 0)?;
+            now = self.advance(&stepper, vehicle, crossing, &mut observer, now, to_s, 0)?;
             observer.note_history(&now);
         }
         Ok(observer.finish())
@@ -134,6 +131,7 @@ impl CrossingSolver {
     fn advance(
         &self,
         stepper: &Stepper<'_>,
+        vehicle: &Vehicle,
         crossing: &Crossing,
         observer: &mut Observer<'_>,
         now: Instant,
@@ -141,7 +139,7 @@ impl CrossingSolver {
         halvings: usize,
     ) -> Result<Instant, AnalysisError> {
         let level = self.level(halvings)?;
-        let load = self.load(crossing, to_s);
+        let load = self.load(vehicle, crossing, to_s);
         match stepper.step(level, &now, load, to_s, self.settings.newton_limit) {
             Ok(next) => {
                 if !next.is_finite() {
@@ -163,14 +161,14 @@ impl CrossingSolver {
             Err(stuck) => {
                 observer.note_bisection(stuck.iterations);
                 let middle_s = now.time_s + 0.5 * (to_s - now.time_s);
-                let middle = self.advance(stepper, crossing, observer, now, middle_s, halvings + 1)?;
-                self.advance(stepper, crossing, observer, middle, to_s, halvings + 1)
+                let middle = self.advance(stepper, vehicle, crossing, observer, now, middle_s, halvings + 1)?;
+                self.advance(stepper, vehicle, crossing, observer, middle, to_s, halvings + 1)
             }
         }
     }
 
-    fn load(&self, crossing: &Crossing, time_s: f64) -> Load {
-        Load::new(&self.track, &self.vehicle, crossing.load_n, crossing.speed_m_s * time_s)
+    fn load(&self, vehicle: &Vehicle, crossing: &Crossing, time_s: f64) -> Load {
+        Load::new(&self.track, vehicle, crossing.load_n, crossing.speed_m_s * time_s)
     }
 
     fn level(&self, halvings: usize) -> Result<&Level, AnalysisError> {
@@ -180,19 +178,16 @@ impl CrossingSolver {
             let (c_m, c_c, c_k) = scheme.effective();
             let Rayleigh { a, b } = self.settings.rayleigh;
             let matrix = SymmetricMatrix::combine(&[(c_m + c_c * b, &self.bridge.m), (c_k + c_c * a, &self.bridge.k)])?;
-            let flexibility = Flexibility::new(&matrix, &self.bridge, &self.track)?;
+            let flexibility = Flexibility::new(&matrix, &self.bridge)?;
             Ok(Level { scheme, flexibility })
         });
         level.as_ref().map_err(|error| AnalysisError::Factor(error.clone()))
     }
 }
 
-/// Steps before t = 0, while points ahead of the front come onto the bridge, and from there to the end.
+/// Steps from the one before the first point reaches the bridge to t = 0, and from there to the end.
 fn span(bridge_length_m: f64, vehicle: &Vehicle, h: f64, speed_m_s: f64, tail_s: f64) -> (usize, usize) {
-    let steps = |seconds: f64| (seconds / h - 1e-9).ceil().max(0.0) as usize;
-    let before = steps(vehicle.ahead_m() / speed_m_s);
-    (
-        before,
-        steps((bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s),
-    )
+    let before = (vehicle.ahead_m() / speed_m_s / h + 1e-9).floor().max(0.0) as usize + 1;
+    let seconds = (bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s;
+    (before, (seconds / h - 1e-9).ceil().max(0.0) as usize)
 }

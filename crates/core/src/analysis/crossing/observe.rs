@@ -139,7 +139,8 @@ impl<'a> Observer<'a> {
         let per_joint = self.bridge.design().connectors.y_m.len();
         for history in &mut self.histories {
             history.values.push(match history.quantity {
-                Quantity::Deflection => -self.bridge.positions[history.position - 1].dot(&now.u),
+                // nothing is 0, not -0
+                Quantity::Deflection => 0.0 - self.bridge.positions[history.position - 1].dot(&now.u),
                 Quantity::Force => now.forces[(history.position - 2) * per_joint..][..per_joint]
                     .iter()
                     .sum(),

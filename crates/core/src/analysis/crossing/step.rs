@@ -99,7 +99,7 @@ impl Stepper<'_> {
         // the step without new connector and inertia forces:  A d = f - M (y_m + b y_v) - K (u_0 + a y_v)
         let mut d = self.known_forces(level, old);
         flexibility.add_track_force(&load.weight, -(1.0 - s.alpha_f), &mut d);
-        flexibility.factor.solve(&mut d);
+        flexibility.solve(&mut d);
 
         // the connectors and the riding masses, together
         let problem = self.contact_problem(level, old, &load, &d);
@@ -179,7 +179,7 @@ impl Stepper<'_> {
         }
         let known = |rider: &Rider| {
             let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| -> f64 {
-                row.0.iter().map(|&(c, v)| v * x(flexibility.track_dof(c))).sum()
+                row.0.iter().map(|&(c, v)| v * x(flexibility.track().dof(c))).sum()
             };
             let mut total = on(&rider.row, &|i| s.a_v * old.v[i] + s.a_a * old.a[i]);
             if let Some((r_x, r_xx)) = &rider.derivatives {
@@ -195,7 +195,7 @@ impl Stepper<'_> {
                 .zip(&old.elongations)
                 .map(|(c, e)| e + c.row.dot(d))
                 .collect(),
-            connectors: DMatrix::from_fn(nc, nc, |i, j| flexibility.value(i, j)),
+            connectors: DMatrix::from_fn(nc, nc, |i, j| flexibility.connector_to_connector(i, j)),
             weight: 1.0 - s.alpha_f,
             connectors_riders: DMatrix::from_fn(nc, nr, |i, r| flexibility.connector_to_track(i, &load.riders[r].row)),
             riders_connectors: DMatrix::from_fn(nr, nc, |r, i| flexibility.connector_to_track(i, &measures[r])),
@@ -233,10 +233,10 @@ impl Stepper<'_> {
         let strain = 0.5 * dot(&new.u, &new.ku);
         let connectors: f64 = new.elongations.iter().map(|&e| self.law.energy(e)).sum();
         let (mut inertia, mut stiffness, mut damping_m, mut damping_k) = (0.0, 0.0, 0.0, 0.0);
-        for i in 0..d.len() {
-            inertia += d[i] * s.at_m(new.ma[i], old.ma[i]);
-            stiffness += d[i] * s.at_f(new.ku[i], old.ku[i]);
-            damping_m += d[i] * s.at_f(new.mv[i], old.mv[i]);
+        for (i, d) in d.iter().enumerate() {
+            inertia += d * s.at_m(new.ma[i], old.ma[i]);
+            stiffness += d * s.at_f(new.ku[i], old.ku[i]);
+            damping_m += d * s.at_f(new.mv[i], old.mv[i]);
             damping_k += s.at_f(new.v[i], old.v[i]) * (new.ku[i] - old.ku[i]);
         }
         let springs: f64 = (0..new.forces.len())
