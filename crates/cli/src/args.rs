@@ -78,7 +78,8 @@ pub struct RunArguments {
     /// The study: a study.json or the folder that holds it.
     #[arg(value_name = "STUDY")]
     pub study: PathBuf,
-    /// Folder of the results; results/<study name> where absent.
+    /// Folder of the results; `results/<study name>` where absent. Its own tables are replaced; results of another study are
+    /// not.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Threads; as many as the machine has where absent. The tables do not depend on it.

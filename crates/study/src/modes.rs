@@ -63,6 +63,7 @@ pub fn modes(file: &BridgeFile, request: ModesRequest) -> Result<Vec<ModeRow>, M
     if request.module {
         design.modules = 1;
     }
+    design.check_size(request.model.into()).map_err(BridgeError::from)?;
     let ends = if request.supports && !request.module {
         Ends::Supported
     } else {

@@ -7,10 +7,13 @@ use crate::words;
 use anyhow::{Context, Result};
 use pontoon_study::plan::{Job, Jobs};
 use pontoon_study::run::{Outcome, run as run_jobs};
-use pontoon_study::tables::{Folder, Manifest, Moment, SummaryTable, write};
+use pontoon_study::tables::{Folder, Manifest, Moment, SummaryTable, check_own, write};
 use pontoon_study::{Refusal, Study};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
+
+/// Rows of the summary that are written on standard output for people; all are in summary.csv.
+const ROWS_SHOWN: usize = 200;
 
 /// Failed jobs that are written out on standard error; all are in the table.
 const FAILURES_SHOWN: usize = 10;
@@ -23,6 +26,7 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("results").join(&study.spec.name));
+    check_own(&out, &study.spec.name)?;
     let folder = Folder::create(&out).context("no folder for the results")?;
     let started = Moment::now();
     let shown = Shown::fitting(common.quiet);
@@ -66,7 +70,12 @@ fn text(summary: &SummaryTable, outcome: &Outcome, out: &Path) -> String {
         outcome.threads,
         out.display()
     );
-    format!("{}\n{counts}", words::table(&summary.columns, &summary.rows))
+    let shown = &summary.rows[..summary.rows.len().min(ROWS_SHOWN)];
+    let more = match summary.rows.len() - shown.len() {
+        0 => String::new(),
+        more => format!("and {more} more rows: see summary.csv\n"),
+    };
+    format!("{}{more}\n{counts}", words::table(&summary.columns, shown))
 }
 
 fn object(study: &Study, summary: &SummaryTable, outcome: &Outcome, out: &Path) -> String {

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod bounds;
 mod refusals;
 mod results;
 mod stage;

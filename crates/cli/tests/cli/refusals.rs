@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::fs;
 
 /// Runs a study as it stands and expects it to be refused with all of `parts` in the one line of the message.
-fn refused(stage: &Stage, parts: &[&str]) {
+pub fn refused(stage: &Stage, parts: &[&str]) {
     let before = stage.names();
     for command in ["run", "plan"] {
         let output = stage.pontoon(&[command, "study.json"]);
@@ -25,19 +25,19 @@ fn refused(stage: &Stage, parts: &[&str]) {
 }
 
 /// Sets a value of the study at a JSON pointer's parent and key and expects the refusal.
-fn study(pointer: &str, key: &str, value: Value, parts: &[&str]) {
+pub fn study(pointer: &str, key: &str, value: Value, parts: &[&str]) {
     let mut stage = Stage::new();
     stage.study.pointer_mut(pointer).unwrap()[key] = value;
     refused(stage.write(), &[&["study.json: "], parts].concat());
 }
 
-fn bridge(pointer: &str, key: &str, value: Value, parts: &[&str]) {
+pub fn bridge(pointer: &str, key: &str, value: Value, parts: &[&str]) {
     let mut stage = Stage::new();
     stage.bridge.pointer_mut(pointer).unwrap()[key] = value;
     refused(stage.write(), &[&["bridge.json: "], parts].concat());
 }
 
-fn grid(key: &str, value: Value, parts: &[&str]) {
+pub fn grid(key: &str, value: Value, parts: &[&str]) {
     study(
         "/design/0/grid",
         key,
@@ -47,7 +47,7 @@ fn grid(key: &str, value: Value, parts: &[&str]) {
 }
 
 /// A study of static cases on the smoke bridge.
-fn static_stage(case: Value) -> Stage {
+pub fn static_stage(case: Value) -> Stage {
     let mut stage = Stage::new();
     stage.study["analysis"] = json!({ "kind": "static" });
     stage.study["design"] = json!([{ "cases": [case] }]);

@@ -31,7 +31,8 @@ impl DocumentPath {
             steps.push(Step::Key(key.to_owned()));
             while !places.is_empty() {
                 let (place, rest) = places.strip_prefix('[')?.split_once(']')?;
-                steps.push(Step::Place(place.parse().ok()?));
+                let number: usize = place.parse().ok().filter(|n: &usize| n.to_string() == place)?;
+                steps.push(Step::Place(number));
                 places = rest;
             }
         }
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn what_is_not_a_path_is_not_read() {
-        for text in ["", ".a", "a..b", "a[", "a[x]", "a[0]b", "[0]"] {
+        for text in ["", ".a", "a..b", "a[", "a[x]", "a[0]b", "[0]", "a[01]", "a[+1]"] {
             assert_eq!(DocumentPath::parse(text), None, "{text}");
         }
     }

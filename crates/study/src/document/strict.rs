@@ -19,15 +19,22 @@ pub fn read(file: &Path) -> Result<Value, Refusal> {
 }
 
 fn parse(file: &Path, text: &str) -> Result<Value, Refusal> {
+    if text.trim().is_empty() {
+        return Err(Refusal::new(file, "", "an empty file", "a JSON file"));
+    }
+    if text.starts_with('\u{feff}') {
+        return Err(Refusal::new(
+            file,
+            "",
+            "a byte order mark before the text",
+            "JSON without one",
+        ));
+    }
     let mut reader = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize::<_, Strict>(&mut reader).map_err(|error| {
         let path = error.path().to_string();
-        refusal(
-            file,
-            text,
-            if path == "." { String::new() } else { path },
-            error.inner(),
-        )
+        let path = path.trim_end_matches('?').trim_end_matches('.');
+        refusal(file, text, path.to_owned(), error.inner())
     })?;
     reader.end().map_err(|e| refusal(file, text, String::new(), &e))?;
     Ok(value.0)
@@ -40,6 +47,14 @@ fn refusal(file: &Path, text: &str, key: String, error: &serde_json::Error) -> R
     let message = message.split(" at line ").next().unwrap_or_default();
     if let Some(name) = message.strip_prefix(TWICE) {
         return Refusal::new(file, key, format!("the key '{name}' twice ({place})"), "each key once");
+    }
+    if message.starts_with("recursion limit") {
+        return Refusal::new(
+            file,
+            "",
+            format!("lists and objects nested too deep ({place})"),
+            "at most 127 levels",
+        );
     }
     let number = token.trim_start_matches(['-', '+']).to_ascii_lowercase();
     if message.contains("out of range") || number.starts_with("nan") || number.starts_with("inf") {
@@ -177,6 +192,23 @@ mod tests {
             assert_eq!(e.key, "a.b[1]", "{token}: {e}");
             assert_eq!(e.allowed, "a finite number", "{token}: {e}");
             assert!(e.found.starts_with(token), "{token}: {e}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_document_is_told_without_noise() {
+        for (text, found) in [
+            ("", "an empty file"),
+            (" \n", "an empty file"),
+            ("\u{feff}{}", "a byte order mark before the text"),
+            (
+                &"[".repeat(1000),
+                "lists and objects nested too deep (line 1, column 128)",
+            ),
+            (r#"{"a":1,}"#, "'}' (line 1, column 8: trailing comma)"),
+        ] {
+            let e = refused(text);
+            assert_eq!((e.key.as_str(), e.found.as_str()), ("", found), "{e}");
         }
     }
 

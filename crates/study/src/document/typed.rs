@@ -3,21 +3,42 @@
 //! Knows how serde words its errors and turns them into key path, found, allowed and the nearest known name. Does not
 //! know the types.
 
+use super::canonical;
 use crate::refusal::Refusal;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::Path;
 
-/// Reads a value as a type; `prefix` is where the value stands in `file`.
+/// Reads a value as a type; `prefix` is where the value stands in `file`. A whole number may be written `3.0`.
 ///
 /// # Errors
 /// [`Refusal`] with the key's path in the file.
-pub fn typed<T: DeserializeOwned>(file: &Path, prefix: &str, value: &Value) -> Result<T, Refusal> {
-    serde_path_to_error::deserialize(value).map_err(|error| {
+pub fn typed<T: DeserializeOwned + Serialize>(file: &Path, prefix: &str, value: &Value) -> Result<T, Refusal> {
+    let read: T = serde_path_to_error::deserialize(canonical(value)).map_err(|error| {
         let path = error.path().to_string();
         let key = join(prefix, if path == "." { "" } else { &path });
         translate(file, key, &error.inner().to_string())
-    })
+    })?;
+    let back = serde_json::to_value(&read).unwrap_or_default();
+    match list_for_object(prefix, value, &back) {
+        Some(key) => Err(Refusal::new(file, key, "a list", "an object")),
+        None => Ok(read),
+    }
+}
+
+/// Where a list stands for an object: serde would take its entries for the object's values in their order.
+fn list_for_object(at: &str, written: &Value, read: &Value) -> Option<String> {
+    match (written, read) {
+        (Value::Array(_), Value::Object(_)) => Some(at.to_owned()),
+        (Value::Array(written), Value::Array(read)) => (0..)
+            .zip(written.iter().zip(read))
+            .find_map(|(i, (w, r))| list_for_object(&join(at, &format!("[{i}]")), w, r)),
+        (Value::Object(written), Value::Object(read)) => written
+            .iter()
+            .find_map(|(key, w)| list_for_object(&join(at, key), w, read.get(key)?)),
+        _ => None,
+    }
 }
 
 /// Two key paths one after the other.
@@ -51,9 +72,27 @@ fn translate(file: &Path, key: String, message: &str) -> Refusal {
         (m, Some((name, _))) if m.starts_with("missing field") => {
             Refusal::new(file, under(name), "nothing", "a value: this key is required")
         }
-        (m, _) => match m.split_once(": ").and_then(|(_, rest)| rest.rsplit_once(", expected ")) {
-            Some((found, expected)) => Refusal::new(file, key, found.replace('`', ""), plain(expected)),
+        (m, _) => match m.split_once(", expected ") {
+            Some((found, expected)) => Refusal::new(file, key, plain_found(found), plain(expected)),
             None => Refusal::new(file, key, m, "a document after `pontoon schema`"),
+        },
+    }
+}
+
+/// What serde found, in the words of JSON.
+fn plain_found(found: &str) -> String {
+    let value = found
+        .split_once(": ")
+        .map_or(found, |(_, value)| value)
+        .replace('`', "");
+    match value.split_once(' ') {
+        Some(("string" | "integer" | "boolean", text)) => text.to_owned(),
+        Some(("floating", text)) => text.trim_start_matches("point ").to_owned(),
+        Some(("invalid", text)) => text.replace("length", "a list of length"),
+        _ => match value.as_str() {
+            "map" => "an object".to_owned(),
+            "sequence" => "a list".to_owned(),
+            _ => value,
         },
     }
 }
@@ -103,6 +142,29 @@ mod tests {
     }
 
     #[test]
+    fn a_list_does_not_stand_for_an_object() {
+        let mut value = bridge();
+        value["module"]["material"] = json!([2e11, 0.3, 7850]);
+        let e = refused(&value);
+        assert_eq!(
+            (e.key.as_str(), e.allowed.as_str()),
+            ("module.material", "an object"),
+            "{e}"
+        );
+        assert_eq!(refused(&json!([1])).key, "[0]");
+    }
+
+    #[test]
+    fn a_whole_number_may_be_written_with_a_point() {
+        let mut value = bridge();
+        value["modules"] = json!(3.0);
+        assert_eq!(
+            typed::<BridgeDesign>(Path::new("b.json"), "", &value).unwrap().modules,
+            3
+        );
+    }
+
+    #[test]
     fn an_unknown_key_at_depth_names_its_path_and_the_nearest() {
         let mut value = bridge();
         value["module"]["material"]["youngs_modulus"] = json!(2e11);
@@ -126,14 +188,24 @@ mod tests {
             "{e}"
         );
 
-        let mut value = bridge();
-        value["modules"] = json!(-3);
-        let e = refused(&value);
-        assert_eq!(
-            (e.key.as_str(), e.allowed.as_str()),
-            ("modules", "a whole number of at least 0"),
-            "{e}"
-        );
+        for (found, word) in [
+            (json!(-3), "-3"),
+            (json!(3.5), "3.5"),
+            (json!("three"), "\"three\""),
+            (json!([3]), "a list"),
+            (json!({}), "an object"),
+            (json!(null), "null"),
+            (json!(true), "true"),
+        ] {
+            let mut value = bridge();
+            value["modules"] = found;
+            let e = refused(&value);
+            assert_eq!(
+                (e.key.as_str(), e.found.as_str(), e.allowed.as_str()),
+                ("modules", word, "a whole number of at least 0"),
+                "{e}"
+            );
+        }
 
         let mut value = bridge();
         value["water_distribution"] = json!("lumpd");

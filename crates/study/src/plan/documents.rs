@@ -4,17 +4,16 @@
 
 use crate::document::{canonical_text, typed};
 use crate::refusal::Refusal;
-use crate::spec::{AnalysisSpec, AxisName, Point, Study};
+use crate::spec::{AnalysisSpec, AxisName, Point, Study, filled_vehicle, to_value};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::input::InvalidInput;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
-
-use crate::spec::{filled_vehicle, to_value};
 
 /// A bridge after the axes.
 #[derive(Debug)]
@@ -27,10 +26,10 @@ pub struct BridgeEntry {
     pub document: Value,
     /// Hash of the document.
     pub hash: String,
-    /// Equal for bridges whose assembled matrices are equal: all that differs are gaps (data of a job) and words.
-    pub structure_key: String,
+    /// Equal for bridges that differ in nothing but gaps (data of a job) and words.
+    pub structure_key: Arc<str>,
     /// Equal for bridges whose modules are equal: the connectors' stiffness is not part of a module either.
-    pub module_key: String,
+    pub module_key: Arc<str>,
 }
 
 /// A vehicle after the axes, checked on a deck.
@@ -47,6 +46,8 @@ pub struct VehicleEntry {
 /// An analysis after the axes.
 #[derive(Debug)]
 pub struct AnalysisEntry {
+    /// Its number, from 0, in the order of first use.
+    pub id: usize,
     /// The analysis, checked, with its defaults.
     pub spec: AnalysisSpec,
     /// The same as a document.
@@ -101,7 +102,7 @@ impl Documents {
     pub(super) fn bridge(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<BridgeEntry>, Refusal> {
         let changes = Changes::of(study, point, "bridge");
         let read = || {
-            let design: BridgeDesign = changes.applied(&study.bridge.document)?;
+            let design: BridgeDesign = changes.applied(&to_value(&study.bridge.design))?;
             design.check().map_err(|e| changes.refusal(e))?;
             let document = to_value(&design);
             Ok((canonical_text(&document), (design, document)))
@@ -121,7 +122,11 @@ impl Documents {
         let changes = Changes::of(study, point, "vehicle");
         let breadth_m = bridge.design.module.breadth_m;
         let read = || {
-            let design: VehicleDesign = changes.applied(&to_value(&study.spec.vehicle))?;
+            // the defaults of the single footprint can be changed in part, unless axles take its place
+            let axles = changes.list.iter().any(|(name, ..)| name.starts_with("vehicle.axles"));
+            let written = &study.spec.vehicle;
+            let base = filled_vehicle(written).ok().filter(|_| !axles);
+            let design: VehicleDesign = changes.applied(&to_value(base.as_ref().unwrap_or(written)))?;
             let design = filled_vehicle(&design).map_err(|e| changes.refusal(e))?;
             let vehicle = design.check(breadth_m).map_err(|e| changes.refusal(e))?;
             let document = to_value(&design);
@@ -144,7 +149,8 @@ impl Documents {
             Ok((canonical_text(&document), (spec, document)))
         };
         self.analyses
-            .get(changes.text(), read, |_, (spec, document)| AnalysisEntry {
+            .get(changes.text(), read, |id, (spec, document)| AnalysisEntry {
+                id,
                 spec,
                 document,
             })
@@ -152,18 +158,18 @@ impl Documents {
 }
 
 fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry {
-    let hash_of = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex().to_string();
-    let hash = hash_of(&document);
+    let hash_of = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex();
+    let hash = hash_of(&document).to_string();
     let mut neutral = design.clone();
     neutral.name = String::new();
     neutral.source = None;
     neutral.connectors.gap_tension_m = 0.0;
     neutral.connectors.gap_compression_m = 0.0;
-    let structure_key = hash_of(&to_value(&neutral));
+    let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
     neutral.draft_m = None;
     neutral.freeboard_m = None;
-    let module_key = hash_of(&to_value(&neutral));
+    let module_key = hash_of(&to_value(&neutral)).as_str().into();
     BridgeEntry {
         id,
         design,
@@ -205,7 +211,7 @@ impl<'a> Changes<'a> {
     }
 
     /// The document with the changes, typed.
-    fn applied<T: DeserializeOwned>(&self, base: &Value) -> Result<T, Refusal> {
+    fn applied<T: DeserializeOwned + Serialize>(&self, base: &Value) -> Result<T, Refusal> {
         let mut document = base.clone();
         for (name, path, value) in &self.list {
             path.set(&mut document, (*value).clone()).map_err(|found| {

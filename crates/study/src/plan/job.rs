@@ -78,18 +78,19 @@ impl Job {
 
     /// The value of a column of the study, a short name or a path; null where it has no meaning.
     pub fn column(&self, name: &str) -> Value {
-        canonical(&self.raw_column(name))
+        canonical(&self.typed_column(name))
     }
 
-    fn raw_column(&self, name: &str) -> Value {
+    /// The same with each number written as its type has it: `3.0` where fractions are allowed, `3` where they are not.
+    pub fn typed_column(&self, name: &str) -> Value {
         let (load, speed) = match self.task {
             Task::Crossing { speed_m_s } => (None, Some(speed_m_s)),
             Task::Static(load) => (Some(load), None),
         };
         match name {
             "connection" => self.gaps_m().map_or("linear", |_| "nonlinear").into(),
-            "gap_tension_m" => self.gaps_m().map(|g| g.0).into(),
-            "gap_compression_m" => self.gaps_m().map(|g| g.1).into(),
+            "gap_tension_m" | "bridge.connectors.gap_tension_m" => self.gaps_m().map(|g| g.0).into(),
+            "gap_compression_m" | "bridge.connectors.gap_compression_m" => self.gaps_m().map(|g| g.1).into(),
             "load_n" => self.load_n.into(),
             "speed_m_s" => speed.into(),
             "load_position" => load.and_then(|l| l.position).into(),
@@ -109,28 +110,31 @@ impl Job {
     }
 
     /// Equal for jobs that are equal.
-    pub(super) fn identity(&self) -> blake3::Hash {
-        let mut hasher = blake3::Hasher::new();
-        let task = match self.task {
-            Task::Crossing { speed_m_s } => format!("speed_m_s {}", bits(speed_m_s)),
-            Task::Static(load) => format!("load_x_m {}", bits(load.x_m)),
-        };
-        let gaps = self.gaps_m().map(|(t, c)| format!("{} {}", bits(t), bits(c)));
-        for part in [
-            &self.bridge.hash,
-            &self.vehicle.document.to_string(),
-            &self.analysis.document.to_string(),
-            &format!("{gaps:?}"),
-            &bits(self.load_n),
-            &task,
-        ] {
-            hasher.update(part.as_bytes());
-            hasher.update(b"\n");
+    pub(super) fn identity(&self) -> Identity {
+        let bits = |x: f64| (x + 0.0).to_bits();
+        Identity {
+            structure: Arc::clone(&self.bridge.structure_key),
+            vehicle: self.vehicle.id,
+            analysis: self.analysis.id,
+            gaps: self
+                .gaps_m()
+                .map(|(tension, compression)| [tension, compression].map(bits)),
+            load: bits(self.load_n),
+            task: bits(match self.task {
+                Task::Crossing { speed_m_s } => speed_m_s,
+                Task::Static(load) => load.x_m,
+            }),
         }
-        hasher.finalize()
     }
 }
 
-fn bits(x: f64) -> String {
-    format!("{:016x}", (x + 0.0).to_bits())
+/// What tells jobs of one study apart.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(super) struct Identity {
+    structure: Arc<str>,
+    vehicle: usize,
+    analysis: usize,
+    gaps: Option<[u64; 2]>,
+    load: u64,
+    task: u64,
 }

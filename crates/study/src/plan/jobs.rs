@@ -1,21 +1,28 @@
 //! The jobs of a study, one after the other.
 //!
-//! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and one hash a job.
+//! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a few numbers a job.
 
-use super::documents::{BridgeEntry, Documents};
-use super::job::{Job, Load, Task};
+use super::documents::{BridgeEntry, Documents, VehicleEntry};
+use super::job::{Identity, Job, Load, Task};
+use crate::document::canonical;
 use crate::refusal::Refusal;
-use crate::spec::{AxisName, Kind, Point, Study, check_histories};
+use crate::spec::{AnalysisSpec, AxisName, Kind, ModelSpec, Point, Study, check_histories};
 use pontoon_core::connector::Connection;
+use pontoon_core::input::InvalidInput;
 use serde_json::Value;
 use std::collections::HashSet;
+
+/// Most time steps of one crossing.
+const MOST_STEPS: f64 = 1e7;
 
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
 pub struct Jobs<'a> {
     study: &'a Study,
     points: Box<dyn Iterator<Item = Point<'a>> + 'a>,
     documents: Documents,
-    seen: HashSet<blake3::Hash>,
+    seen: HashSet<Identity>,
+    /// Bridges whose size was checked, with their model.
+    sized: HashSet<(usize, ModelSpec)>,
 }
 
 impl<'a> Jobs<'a> {
@@ -27,6 +34,7 @@ impl<'a> Jobs<'a> {
             points,
             documents: Documents::default(),
             seen: HashSet::new(),
+            sized: HashSet::new(),
         }
     }
 }
@@ -60,23 +68,24 @@ impl Jobs<'_> {
             study: self.study,
             point,
         };
+        if self.sized.insert((bridge.id, analysis.spec.model)) {
+            let size = bridge.design.check_size(analysis.spec.model.into());
+            size.map_err(|refused| short.of_bridge(refused))?;
+        }
         let connection = short.connection(&bridge)?;
         let load_n = short.required("load_n")?;
         let load_n = short.positive("load_n", load_n)?;
         let task = match analysis.spec.kind {
             Kind::Crossing => {
                 let speed_m_s = short.speed()?;
-                let length_m = bridge.design.module.length_m;
-                let step = analysis.spec.time_step_s.unwrap_or_default();
-                if step > length_m / speed_m_s {
-                    let key = short.key_or("analysis.time_step_s");
-                    let most = length_m / speed_m_s;
-                    let allowed = format!("above 0 and at most {most}, the passage of one module at {speed_m_s} m/s");
-                    return Err(Refusal::new(&self.study.file, key, step, allowed));
-                }
+                short.time_step(&analysis.spec, &bridge, &vehicle, speed_m_s)?;
+                short.damping(&analysis.spec, &bridge)?;
                 Task::Crossing { speed_m_s }
             }
-            Kind::Static => Task::Static(short.place(&bridge)?),
+            Kind::Static => {
+                short.held(&bridge)?;
+                Task::Static(short.place(&bridge)?)
+            }
         };
         Ok(Job {
             number: self.seen.len(),
@@ -181,6 +190,72 @@ impl Short<'_> {
             self.absent(name, "no place of the load in a study of crossings")?;
         }
         self.positive("speed_m_s", self.required("speed_m_s")?)
+    }
+
+    /// Refuses a time step beyond the passage of one module and one that would take too many steps.
+    fn time_step(
+        &self,
+        analysis: &AnalysisSpec,
+        bridge: &BridgeEntry,
+        vehicle: &VehicleEntry,
+        speed_m_s: f64,
+    ) -> Result<(), Refusal> {
+        let (Some(step), Some(tail)) = (analysis.time_step_s, analysis.tail_s) else {
+            return Ok(());
+        };
+        let key = |path| self.key_or(path);
+        let passage = bridge.design.module.length_m / speed_m_s;
+        if step > passage {
+            let [most, speed] = [passage, speed_m_s].map(|x| canonical(&x.into()));
+            let allowed = format!("above 0 and at most {most}, the passage of one module at {speed} m/s");
+            return Err(Refusal::new(
+                &self.study.file,
+                key("analysis.time_step_s"),
+                step,
+                allowed,
+            ));
+        }
+        let vehicle = &vehicle.vehicle;
+        let way = bridge.design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
+        let steps = (way / speed_m_s + tail) / step;
+        if steps > MOST_STEPS {
+            let found = format!("{}, which makes {steps:.1e} steps", Value::from(step));
+            let allowed = format!("a crossing of at most {MOST_STEPS} steps");
+            return Err(Refusal::new(
+                &self.study.file,
+                key("analysis.time_step_s"),
+                found,
+                allowed,
+            ));
+        }
+        Ok(())
+    }
+
+    /// Refuses damping at the bending modes of a bridge that has none.
+    fn damping(&self, analysis: &AnalysisSpec, bridge: &BridgeEntry) -> Result<(), Refusal> {
+        let stated = analysis.damping.is_some_and(|damping| damping.frequencies_hz.is_some());
+        if stated || bridge.design.modules > 1 {
+            return Ok(());
+        }
+        let key = self.key_or("analysis.damping.frequencies_hz");
+        let allowed = "two frequencies: a bridge of one module has no vertical bending modes to take them from";
+        Err(Refusal::new(&self.study.file, key, "nothing", allowed))
+    }
+
+    /// Refuses a static case of a bridge that its supports and hinges leave free to move horizontally.
+    fn held(&self, bridge: &BridgeEntry) -> Result<(), Refusal> {
+        bridge.design.check_held().map_err(|free| self.of_bridge(free))
+    }
+
+    /// A refusal of the bridge as a whole: in its own file, or beside the block whose axes changed it.
+    fn of_bridge(&self, refused: InvalidInput) -> Refusal {
+        let InvalidInput { key, found, allowed } = refused;
+        let axes = &self.point.block.axes;
+        if axes.iter().any(|axis| axis.name.starts_with("bridge.")) {
+            let key = format!("{} (bridge.{key})", self.point.block.key);
+            return Refusal::new(&self.study.file, key, found, allowed);
+        }
+        Refusal::new(&self.study.bridge.file, key, found, allowed)
     }
 
     fn place(&self, bridge: &BridgeEntry) -> Result<Load, Refusal> {

@@ -117,6 +117,27 @@ mod tests {
             json!({ "connection": "linear" }),
         ];
         assert_eq!(jobs(json!([{ "cases": linear.map(case) }])).unwrap().len(), 1);
+        let grid = json!({ "connection": "linear", "bridge.connectors.gap_tension_m": [0, 0.01], "bridge.name": ["a", "b"],
+                           "speed_m_s": 10, "load_n": 1e5 });
+        let merged = jobs(json!([{ "grid": grid }])).unwrap();
+        assert_eq!(merged.len(), 1);
+        assert_eq!(merged[0].column("bridge.connectors.gap_tension_m"), Value::Null);
+    }
+
+    #[test]
+    fn a_part_of_a_default_may_be_an_axis() {
+        for axis in ["vehicle.track_y_m[0]", "bridge.supports.left", "analysis.damping.ratio"] {
+            let value = match axis {
+                "bridge.supports.left" => json!([["x", "y"], ["x", "y", "z"]]),
+                _ => json!([0.1, 0.2]),
+            };
+            let grid = json!({ axis: value, "speed_m_s": 10, "load_n": 1e5 });
+            let found = jobs(json!([{ "grid": grid }])).unwrap_or_else(|e| panic!("{axis}: {e}"));
+            assert_eq!(found.len(), 2, "{axis}");
+        }
+        let axles = json!([[{ "behind_front_m": 0, "share": 1, "patch_length_m": 0.3, "track_y_m": [0] }]]);
+        let grid = json!({ "vehicle.axles": axles, "speed_m_s": 10, "load_n": 1e5 });
+        assert_eq!(jobs(json!([{ "grid": grid }])).unwrap().len(), 1);
     }
 
     #[test]

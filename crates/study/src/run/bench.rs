@@ -17,12 +17,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A thing that jobs share, or why it could not be made.
 type Shared<T> = Result<Arc<T>, String>;
-type ModuleKey = (Model, String);
-type BridgeKey = (Model, String);
+type ModuleKey = (Model, Arc<str>);
+type BridgeKey = (Model, Arc<str>);
 type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
-type CrossingKey = (DampingKey, usize, [u64; 2], [Option<usize>; 2]);
-type StaticKey = (BridgeKey, usize);
-type CreepingKey = (StaticKey, Option<(u64, u64)>, u64);
+type CrossingKey = (DampingKey, [u64; 2], [Option<usize>; 2]);
+type CreepingKey = (BridgeKey, usize, Option<(u64, u64)>, u64);
 
 /// Damping and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +37,7 @@ pub(super) struct Bench {
     bridges: BTreeMap<BridgeKey, Shared<Bridge>>,
     damping: BTreeMap<DampingKey, Shared<Damping>>,
     crossings: BTreeMap<CrossingKey, Shared<CrossingSolver>>,
-    statics: BTreeMap<StaticKey, Shared<StaticSolver>>,
+    statics: BTreeMap<BridgeKey, Shared<StaticSolver>>,
     creeping: BTreeMap<CreepingKey, Shared<f64>>,
     condensations: AtomicUsize,
 }
@@ -92,14 +91,16 @@ impl Bench {
         progress.stage("damping: bending modes of the free bridge");
         bench.damping = each(&crossings, damping_key, |job| bench.damping_of(job));
         progress.stage("solvers: factors");
-        bench.statics = each(&all, static_key, |job| {
-            StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?, &job.vehicle.vehicle).map_err(text)
+        let held: Vec<&Job> = all.iter().copied().filter(|job| is_held(job)).collect();
+        bench.statics = each(&held, bridge_key, |job| {
+            StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?).map_err(text)
         });
         bench.crossings = each(&crossings, crossing_key, |job| bench.crossing_solver(job));
         progress.stage("static peaks of creeping loads");
-        bench.creeping = each(&crossings, creeping_key, |job| {
-            shared(&bench.statics, &static_key(job))?
-                .creeping_peak_m(&static_case(job, 0.0))
+        let creeping: Vec<&Job> = crossings.iter().copied().filter(|job| is_held(job)).collect();
+        bench.creeping = each(&creeping, creeping_key, |job| {
+            shared(&bench.statics, &bridge_key(job))?
+                .creeping_peak_m(&job.vehicle.vehicle, &static_case(job, 0.0))
                 .map_err(text)
         });
         bench
@@ -121,7 +122,8 @@ impl Bench {
         let spec = job.analysis.spec.damping.unwrap_or_default();
         let frequencies_hz = match spec.frequencies_hz {
             Some(stated) => stated,
-            None => bending_frequencies_hz(&self.bridge(job, Ends::Free)?).map_err(text)?,
+            None => bending_frequencies_hz(&self.bridge(job, Ends::Free)?)
+                .map_err(|e| format!("damping: {e}; state analysis.damping.frequencies_hz"))?,
         };
         Ok(Damping {
             frequencies_hz,
@@ -137,12 +139,7 @@ impl Bench {
             newton_limit: job.analysis.spec.newton_limit.unwrap_or_default(),
             bisection_limit: job.analysis.spec.bisection_limit.unwrap_or_default(),
         };
-        CrossingSolver::new(
-            &shared(&self.bridges, &bridge_key(job))?,
-            &job.vehicle.vehicle,
-            &settings,
-        )
-        .map_err(text)
+        CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &settings).map_err(text)
     }
 
     /// The solver of a crossing.
@@ -152,13 +149,16 @@ impl Bench {
 
     /// The solver of a static case.
     pub(super) fn statics(&self, job: &Job) -> Shared<StaticSolver> {
-        shared(&self.statics, &static_key(job))
+        shared(&self.statics, &bridge_key(job))
     }
 
-    /// The largest static deflection of the job's load over its places [m].
-    pub(super) fn creeping_peak_m(&self, job: &Job) -> Result<f64, String> {
+    /// The largest static deflection of the job's load over its places [m]; none where the bridge is not held.
+    pub(super) fn creeping_peak_m(&self, job: &Job) -> Result<Option<f64>, String> {
+        if !is_held(job) {
+            return Ok(None);
+        }
         shared(&self.creeping, &creeping_key(job))
-            .map(|peak| *peak)
+            .map(|peak| Some(*peak))
             .map_err(|e| format!("static peak: {e}"))
     }
 
@@ -206,6 +206,11 @@ pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
         load_n: job.load_n,
         load_x_m,
     }
+}
+
+/// Whether the bridge of a job has static cases.
+fn is_held(job: &Job) -> bool {
+    job.bridge.design.check_held().is_ok()
 }
 
 /// Makes one thing for each distinct key, in parallel; the first job with a key stands for the others.
@@ -262,21 +267,12 @@ fn crossing_key(job: &Job) -> CrossingKey {
     let bits = |x: Option<f64>| x.unwrap_or_default().to_bits();
     let spec = &job.analysis.spec;
     let scheme = [bits(spec.time_step_s), bits(spec.spectral_radius)];
-    (
-        damping_key(job),
-        job.vehicle.id,
-        scheme,
-        [spec.newton_limit, spec.bisection_limit],
-    )
-}
-
-fn static_key(job: &Job) -> StaticKey {
-    (bridge_key(job), job.vehicle.id)
+    (damping_key(job), scheme, [spec.newton_limit, spec.bisection_limit])
 }
 
 fn creeping_key(job: &Job) -> CreepingKey {
     let gaps = job
         .gaps_m()
         .map(|(tension, compression)| (tension.to_bits(), compression.to_bits()));
-    (static_key(job), gaps, job.load_n.to_bits())
+    (bridge_key(job), job.vehicle.id, gaps, job.load_n.to_bits())
 }

@@ -16,12 +16,15 @@ pub(super) fn solve(job: &Job, speed_m_s: f64, record: Record, bench: &Bench) ->
         tail_s: job.analysis.spec.tail_s.unwrap_or_default(),
         record,
     };
-    let response = bench.crossing(job)?.solve(&crossing).map_err(|e| e.to_string())?;
+    let response = bench
+        .crossing(job)?
+        .solve(&job.vehicle.vehicle, &crossing)
+        .map_err(|e| e.to_string())?;
     let static_peak_m = bench.creeping_peak_m(job)?;
     Ok(rows(job.number, response, static_peak_m))
 }
 
-fn rows(job: usize, response: CrossingResponse, static_peak_m: f64) -> JobRecord {
+fn rows(job: usize, response: CrossingResponse, static_peak_m: Option<f64>) -> JobRecord {
     let positions: Vec<PositionRow> = response
         .positions
         .iter()
@@ -46,7 +49,7 @@ fn rows(job: usize, response: CrossingResponse, static_peak_m: f64) -> JobRecord
     let mut summary = Summary {
         peak_edge_deflection_m: Some(response.peak_edge_deflection_m),
         peak_roll_rad: Some(response.peak_roll_rad),
-        static_peak_deflection_m: Some(static_peak_m),
+        static_peak_deflection_m: static_peak_m,
         bottom_emerged: response.bottom_emerged,
         deck_submerged: response.deck_submerged,
         min_contact_force_n: Some(response.min_contact_force_n).filter(|force| force.is_finite()),
@@ -60,8 +63,8 @@ fn rows(job: usize, response: CrossingResponse, static_peak_m: f64) -> JobRecord
     summary.take_peaks(&positions, &connectors);
     summary.dynamic_amplification = summary
         .peak_deflection_m
-        .filter(|_| static_peak_m > 0.0)
-        .map(|p| p / static_peak_m);
+        .zip(static_peak_m.filter(|&peak| peak > 0.0))
+        .map(|(moving, creeping)| moving / creeping);
     let series = response.histories.into_iter().map(|history| {
         let quantity = match history.quantity {
             Quantity::Deflection => "deflection_m",

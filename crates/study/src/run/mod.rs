@@ -23,12 +23,12 @@ use thiserror::Error;
 
 /// Why a run could not begin.
 #[derive(Debug, Error)]
-#[error("no pool of {threads} threads: {source}")]
+#[error("no pool of {threads} threads: {cause}")]
 pub struct PoolError {
     /// Threads asked for.
     threads: usize,
     /// What the system said.
-    source: rayon::ThreadPoolBuildError,
+    cause: rayon::ThreadPoolBuildError,
 }
 
 /// What a run leaves behind.
@@ -64,7 +64,7 @@ pub fn run(study: &Study, jobs: &[Job], threads: usize, progress: &dyn Progress)
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|source| PoolError { threads, source })?;
+        .map_err(|cause| PoolError { threads, cause })?;
     let threads = pool.current_num_threads();
     pool.install(|| {
         let start = Instant::now();
@@ -107,5 +107,13 @@ fn record(study: &Study, job: &Job, bench: &Bench) -> JobRecord {
         Task::Crossing { speed_m_s } => crossing::solve(job, speed_m_s, study.spec.record.histories.record(), bench),
         Task::Static(load) => statics::solve(job, load, bench),
     });
-    solved.unwrap_or_else(|reason| JobRecord::failed(job, reason))
+    let mut record = solved.unwrap_or_else(|reason| JobRecord::failed(job, reason));
+    // rows that no table will hold are not kept until the end of a large study
+    if !study.spec.record.positions {
+        record.positions = Vec::new();
+    }
+    if !study.spec.record.connectors {
+        record.connectors = Vec::new();
+    }
+    record
 }

@@ -51,7 +51,8 @@ pub struct Summary {
     pub peak_edge_deflection_m: Option<f64>,
     /// Largest roll of a module end [rad].
     pub peak_roll_rad: Option<f64>,
-    /// Largest deflection of the same load creeping over the bridge [m].
+    /// Largest deflection of the same load creeping over the bridge [m]; null where supports and hinges leave the bridge
+    /// free to move horizontally, so that it has no static case.
     pub static_peak_deflection_m: Option<f64>,
     /// `peak_deflection_m` over `static_peak_deflection_m`.
     pub dynamic_amplification: Option<f64>,
@@ -146,7 +147,7 @@ impl ConnectorRow {
     /// The row of a static force, tension positive.
     pub(super) fn force(joint: usize, y_m: Option<f64>, force_n: f64) -> Self {
         let (compression, tension) = (
-            Extreme::timeless((-force_n).max(0.0)),
+            Extreme::timeless((0.0 - force_n).max(0.0)),
             Extreme::timeless(force_n.max(0.0)),
         );
         Self {

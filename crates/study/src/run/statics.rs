@@ -9,7 +9,7 @@ use pontoon_core::response::StaticResponse;
 pub(super) fn solve(job: &Job, load: Load, bench: &Bench) -> Result<JobRecord, String> {
     let response = bench
         .statics(job)?
-        .solve(&static_case(job, load.x_m))
+        .solve(&job.vehicle.vehicle, &static_case(job, load.x_m))
         .map_err(|e| e.to_string())?;
     Ok(rows(job, &response))
 }
@@ -21,7 +21,7 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
             position,
             x_m: job.bridge.design.position_x_m(position),
             deflection: Extreme::timeless(deflection_m.max(0.0)),
-            uplift: Extreme::timeless((-deflection_m).max(0.0)),
+            uplift: Extreme::timeless((0.0 - deflection_m).max(0.0)),
             static_deflection_m: Some(deflection_m),
         })
         .collect();

@@ -5,7 +5,8 @@
 use pontoon_core::bridge::Model;
 use pontoon_core::input::{InvalidInput, not_negative, positive, within};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What is asked of the bridge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -27,7 +28,7 @@ pub enum SolverSpec {
 }
 
 /// Which matrices a module contributes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModelSpec {
     /// Every degree of freedom of the shells and beams.
@@ -56,8 +57,18 @@ pub struct DampingSpec {
     pub ratio: f64,
     /// The two frequencies, increasing [Hz]; absent: the first two vertical bending modes of the job's own bridge,
     /// linearly connected and floating free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
     pub frequencies_hz: Option<[f64; 2]>,
+}
+
+/// Two numbers or nothing; a list of another length is told as such.
+fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    let list: Option<Vec<f64>> = Option::deserialize(deserializer)?;
+    let to_pair = |list: Vec<f64>| {
+        let wrong = D::Error::invalid_length(list.len(), &"a list of two numbers");
+        <[f64; 2]>::try_from(list).map_err(|_| wrong)
+    };
+    list.map(to_pair).transpose()
 }
 
 fn default_ratio() -> f64 {

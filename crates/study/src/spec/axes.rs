@@ -20,6 +20,9 @@ pub const SHORT_NAMES: [&str; 7] = [
     "load_x_m",
 ];
 
+/// Most points of a study, equal ones counted as often as they occur: each costs a check and, in a run, a record.
+const MOST_POINTS: usize = 1_000_000;
+
 /// What an axis varies.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AxisName {
@@ -103,13 +106,7 @@ impl Block {
                             values: axis_values(file, &at, written)?,
                         })
                     });
-                    blocks.push(
-                        Self {
-                            axes: axes.collect::<Result<_, _>>()?,
-                            key,
-                        }
-                        .countable(file)?,
-                    );
+                    blocks.push(Self::checked(file, axes.collect::<Result<_, _>>()?, key)?);
                 }
                 Design::Cases(cases) if cases.is_empty() => {
                     return Err(Refusal::new(
@@ -130,31 +127,56 @@ impl Block {
                                 values: vec![canonical(value)],
                             })
                         });
-                        blocks.push(Self {
-                            axes: axes.collect::<Result<_, _>>()?,
-                            key,
-                        });
+                        blocks.push(Self::checked(file, axes.collect::<Result<_, _>>()?, key)?);
                     }
                 }
             }
         }
-        Ok(blocks)
+        let points = blocks
+            .iter()
+            .try_fold(0_usize, |sum, block| sum.checked_add(block.count()?))
+            .filter(|&points| points <= MOST_POINTS);
+        match points {
+            Some(_) => Ok(blocks),
+            None => {
+                let product: f64 = blocks
+                    .iter()
+                    .map(|b| b.axes.iter().map(|a| a.values.len() as f64).product::<f64>())
+                    .sum();
+                let found = format!("{product} points");
+                Err(Refusal::new(
+                    file,
+                    "design",
+                    found,
+                    format!("at most {MOST_POINTS} points"),
+                ))
+            }
+        }
     }
 
-    fn countable(self, file: &Path) -> Result<Self, Refusal> {
-        let count = self
-            .axes
-            .iter()
-            .try_fold(1_usize, |n, axis| n.checked_mul(axis.values.len()));
-        match count {
-            Some(_) => Ok(self),
-            None => Err(Refusal::new(
-                file,
-                self.key,
-                "more points than can be counted",
-                "fewer points",
-            )),
+    /// A block whose axes do not contradict each other: none is part of what another one sets.
+    fn checked(file: &Path, axes: Vec<Axis>, key: String) -> Result<Self, Refusal> {
+        for (i, axis) in axes.iter().enumerate() {
+            if let Some(other) = axes[..i]
+                .iter()
+                .find(|other| same_place(place(&other.name), place(&axis.name)))
+            {
+                let found = format!("an axis that sets what {} sets too", other.name);
+                return Err(Refusal::new(
+                    file,
+                    format!("{key}.{}", axis.name),
+                    found,
+                    "one of the two",
+                ));
+            }
         }
+        Ok(Self { key, axes })
+    }
+
+    fn count(&self) -> Option<usize> {
+        self.axes
+            .iter()
+            .try_fold(1_usize, |n, axis| n.checked_mul(axis.values.len()))
     }
 
     /// Number of points.
@@ -179,6 +201,24 @@ impl Block {
             Point { block: self, places }
         })
     }
+}
+
+/// The path of what an axis sets: a short name of a number of the bridge stands for its path.
+fn place(name: &str) -> &str {
+    match name {
+        "gap_tension_m" => "bridge.connectors.gap_tension_m",
+        "gap_compression_m" => "bridge.connectors.gap_compression_m",
+        other => other,
+    }
+}
+
+/// Whether one path is the other or leads to it.
+fn same_place(a: &str, b: &str) -> bool {
+    let leads = |a: &str, b: &str| {
+        b.strip_prefix(a)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    leads(a, b) || leads(b, a)
 }
 
 fn axis_name(file: &Path, key: &str, name: &str, known: &[String]) -> Result<AxisName, Refusal> {
@@ -269,12 +309,36 @@ mod tests {
                 json!({"speed_m_s": {"geomspace": [0, 2, 3]}}),
                 "design[0].grid.speed_m_s.geomspace",
             ),
+            (
+                json!({"speed_m_s": {"linspace": [1, 2, 1e9]}}),
+                "design[0].grid.speed_m_s.linspace",
+            ),
             (json!({"analysis.kind": ["static"]}), "design[0].grid.analysis.kind"),
+            (
+                json!({"bridge.connectors.gap_tension_m": [0], "gap_tension_m": [0]}),
+                "design[0].grid.gap_tension_m",
+            ),
+            (
+                json!({"vehicle.track_y_m[0]": [1], "vehicle.track_y_m": [[1]]}),
+                "design[0].grid.vehicle.track_y_m",
+            ),
             (json!({"bridge.a[": [1]}), "design[0].grid.bridge.a["),
         ] {
             assert_eq!(read(json!([{"grid": grid}])).unwrap_err().key, key);
         }
         assert_eq!(read(json!([])).unwrap_err().key, "design");
+        let million = json!({"linspace": [1, 2, 1_000_000]});
+        for grid in [
+            json!({"speed_m_s": million, "load_n": [1, 2]}),
+            json!({"speed_m_s": million, "load_n": million, "gap_tension_m": million, "load_x_m": million}),
+        ] {
+            let e = read(json!([{"grid": grid}])).unwrap_err();
+            assert_eq!(
+                (e.key.as_str(), e.allowed.as_str()),
+                ("design", "at most 1000000 points"),
+                "{e}"
+            );
+        }
         assert_eq!(read(json!([{"cases": []}])).unwrap_err().key, "design[0].cases");
     }
 

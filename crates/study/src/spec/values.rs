@@ -7,6 +7,9 @@ use crate::refusal::Refusal;
 use serde_json::{Value, json};
 use std::path::Path;
 
+/// Most values of a range.
+const MOST_VALUES: f64 = 1e6;
+
 const FORMS: &str = "a list of values, one number or word, {\"linspace\": [from, to, count]} or {\"geomspace\": [...]}";
 
 /// The values of an axis, at least one.
@@ -46,8 +49,8 @@ fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Vec<V
     let (&[from, to, count], Some(3)) = (numbers.as_slice(), ends.as_array().map(Vec::len)) else {
         return refuse(ends.to_string(), "[from, to, count], three numbers");
     };
-    if count.fract() != 0.0 || !(2.0..=1e9).contains(&count) {
-        return refuse(format!("count {count}"), "a whole count of at least 2");
+    if count.fract() != 0.0 || !(2.0..=MOST_VALUES).contains(&count) {
+        return refuse(format!("count {count}"), "a whole count from 2 to 1000000");
     }
     if geometric && !(from > 0.0 && to > 0.0) {
         return refuse(format!("from {from} to {to}"), "both ends above 0");

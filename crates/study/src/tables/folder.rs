@@ -9,12 +9,12 @@ use thiserror::Error;
 
 /// A file of the results could not be written.
 #[derive(Debug, Error)]
-#[error("{}: {source}", path.display())]
+#[error("{}: {cause}", path.display())]
 pub struct FolderError {
     /// The file.
     pub path: PathBuf,
     /// What the system said.
-    pub source: io::Error,
+    pub cause: io::Error,
 }
 
 /// A folder that can be written to.
@@ -29,9 +29,9 @@ impl Folder {
     /// # Errors
     /// [`FolderError`].
     pub fn create(path: &Path) -> Result<Self, FolderError> {
-        let error = |source| FolderError {
+        let error = |cause| FolderError {
             path: path.to_owned(),
-            source,
+            cause,
         };
         fs::create_dir_all(path).map_err(error)?;
         let folder = Self { path: path.to_owned() };
@@ -63,10 +63,10 @@ impl Folder {
             fs::rename(&partial, &path)?;
             File::open(&self.path)?.sync_all()
         });
-        written.map_err(|source| {
+        written.map_err(|cause| {
             // The partial file is of no use to anybody; that it stays where removing fails too changes nothing.
             let _ = fs::remove_file(&partial);
-            FolderError { path, source }
+            FolderError { path, cause }
         })
     }
 
@@ -77,7 +77,7 @@ impl Folder {
     pub fn remove(&self, name: &str) -> Result<(), FolderError> {
         let path = self.path.join(name);
         match fs::remove_file(&path) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => Err(FolderError { path, source }),
+            Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(FolderError { path, cause }),
             _ => Ok(()),
         }
     }

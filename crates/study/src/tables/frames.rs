@@ -48,7 +48,7 @@ pub(super) fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Polars
     );
     c.word("reason", records.iter().map(|r| r.reason.as_deref()));
     for name in axis_names(study) {
-        let values: Vec<Value> = jobs.iter().map(|job| job.column(&name)).collect();
+        let values: Vec<Value> = jobs.iter().map(|job| job.typed_column(&name)).collect();
         match name.as_str() {
             "load_position" => {
                 c.count(

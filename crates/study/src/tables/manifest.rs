@@ -3,11 +3,13 @@
 //! Knows the clock and the machine's name. Does not know the tables' content.
 
 use crate::plan::Job;
+use crate::refusal::Refusal;
 use crate::run::{BridgeReport, Outcome};
 use crate::spec::{ModelSpec, Study};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Name of the manifest's file.
@@ -128,6 +130,29 @@ impl Manifest {
     pub(super) fn text(&self) -> String {
         let value = crate::spec::to_value(self);
         format!("{value:#}\n")
+    }
+}
+
+/// Refuses a folder that holds the results of a study of another name.
+///
+/// # Errors
+/// [`Refusal`] on the manifest found there.
+pub fn check_own(folder: &Path, name: &str) -> Result<(), Refusal> {
+    let file = folder.join(FILE);
+    let manifest: Option<Value> = std::fs::read(&file)
+        .ok()
+        .and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    match manifest.as_ref().and_then(|manifest| manifest["name"].as_str()) {
+        Some(other) if other != name => {
+            let allowed = format!("a folder without results, or with those of '{name}'");
+            Err(Refusal::new(
+                &file,
+                "name",
+                format!("results of the study '{other}'"),
+                allowed,
+            ))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -11,7 +11,7 @@ mod parquet;
 mod summary;
 
 pub use folder::{Folder, FolderError};
-pub use manifest::{Manifest, Moment};
+pub use manifest::{Manifest, Moment, check_own};
 pub use summary::{Cell, SummaryTable};
 
 use crate::plan::Job;
