@@ -90,8 +90,8 @@ fn fu2005() -> &'static [Ready; 2] {
     READY.get_or_init(|| pair("fu2005"))
 }
 
-/// Half a per cent and one per cent: what the issue asks for; the static condensation is exact and leaves 1e-11 here, the
-/// crossing 1e-4, so a tenth of the issue's is held. Twin: the vehicle 5 % heavier.
+/// Half a per cent and one per cent: what is asked for; the static condensation is exact and leaves 1e-11 here, the
+/// crossing 1e-4, so a tenth of that is held. Twin: the vehicle 5 % heavier.
 const EDGE_AND_ROLL: f64 = 5e-4;
 /// See [`EDGE_AND_ROLL`].
 const FORCES: f64 = 1e-3;

@@ -66,7 +66,7 @@ fn misses(modes: &[Mode], table: &[(&str, f64)]) -> f64 {
     }))
 }
 
-/// 1 %: the bridge was fitted to this mass, which public sources give to three digits; the issue asks for 5 %.
+/// 1 %: the bridge was fitted to this mass, which public sources give to three digits; 5 % is asked for.
 #[test]
 fn structural_mass_is_that_of_the_river_link() {
     let mass_kg = |factor: f64| {
@@ -240,7 +240,7 @@ fn row(gaps_mm: Option<[f64; 2]>, speed_m_s: f64) -> [f64; 4] {
 /// 499 and 507, 1 % heavier 538 and 572, half the time step moves them by 0.7 %.
 const IMPACT_ROW: usize = 3;
 
-/// 4 % and 8 % are the issue's; what the forces leave of it but for one row, 2.5 %, is held. Twin: the vehicle 5 % heavier.
+/// 4 % and 8 % are asked for; what the forces leave of it but for one row, 2.5 %, is held. Twin: the vehicle 5 % heavier.
 /// The one row, held within 8 %, has the linear connection for a twin.
 #[test]
 fn crossings_follow_the_prototype() {
@@ -275,7 +275,7 @@ fn crossings_follow_the_prototype() {
     held("compression with impacts", 0.08, all[IMPACT_ROW][1], linear[1]);
 }
 
-/// The paper prints 1.5; the issue allows 1.42 to 1.58, which no coefficient 5 % wrong leaves, but the linear connection
+/// The paper prints 1.5; 1.42 to 1.58 is allowed, which no coefficient 5 % wrong leaves, but the linear connection
 /// does. Closer, 1 %, is the prototype's 31.9 over 21.3 cm, as its rounding to a millimetre allows. Twin: m_a.
 #[test]
 fn hump_grows_by_half_from_3_to_15_m_s() {
@@ -294,7 +294,7 @@ fn hump_grows_by_half_from_3_to_15_m_s() {
     );
 }
 
-/// Residual: rounding over some thousand steps, measured at 5e-13. Numerical dissipation: the issue's 5 %, measured at
+/// Residual: rounding over some thousand steps, measured at 5e-13. Numerical dissipation: 5 % is allowed, measured at
 /// 0.4 %. `energy.rs` beside this file holds the twins of both.
 #[test]
 fn energy_closes_in_every_crossing() {

@@ -2,26 +2,32 @@
 //!
 //! Knows the sums and how far they are from closing. Does not know the scheme that produced the increments.
 
-/// Running energies [J], each by the scheme's own increments.
+/// Energies of one step [J], by the scheme's own increments.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StepEnergies {
+    /// Kinetic energy at its end, `1/2 v^T M v`.
+    pub kinetic: f64,
+    /// Strain energy of structure and water at its end, `1/2 u^T K u`.
+    pub strain: f64,
+    /// Strain energy of the connectors at its end.
+    pub connectors: f64,
+    /// Dissipated by Rayleigh damping over it.
+    pub rayleigh: f64,
+    /// Dissipated by the scheme over it.
+    pub numerical: f64,
+    /// Work of the contact forces on the deck over it.
+    pub work: f64,
+}
+
+/// `kinetic + strain + connectors + rayleigh + numerical = work`, kept step by step: the dissipations and the work
+/// `integral of p du` are sums since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBalance {
-    /// Kinetic energy now, `1/2 v^T M v`.
-    pub kinetic: f64,
-    /// Strain energy of structure and water now, `1/2 u^T K u`.
-    pub strain: f64,
-    /// Strain energy of the connectors now.
-    pub connectors: f64,
-    /// Dissipated by Rayleigh damping so far.
-    pub rayleigh: f64,
-    /// Dissipated by the scheme so far.
-    pub numerical: f64,
-    /// Work of the contact forces on the deck so far, `integral of p du`.
-    pub work: f64,
-    /// Largest `|work|` so far.
+    rayleigh: f64,
+    numerical: f64,
+    work: f64,
     largest_work: f64,
-    /// Largest `|left - right|` so far.
     largest_gap: f64,
-    /// Largest `|numerical|` so far.
     largest_numerical: f64,
 }
 
@@ -35,9 +41,13 @@ pub struct EnergySummary {
 }
 
 impl EnergyBalance {
-    /// Takes note of the balance after a step.
-    pub fn close(&mut self) {
-        let gap = self.kinetic + self.strain + self.connectors + self.rayleigh + self.numerical - self.work;
+    /// Takes a step.
+    pub fn take(&mut self, step: &StepEnergies) {
+        self.rayleigh += step.rayleigh;
+        self.numerical += step.numerical;
+        self.work += step.work;
+        let stored = step.kinetic + step.strain + step.connectors;
+        let gap = stored + self.rayleigh + self.numerical - self.work;
         self.largest_gap = self.largest_gap.max(gap.abs());
         self.largest_work = self.largest_work.max(self.work.abs());
         self.largest_numerical = self.largest_numerical.max(self.numerical.abs());

@@ -5,7 +5,7 @@
 mod energy;
 mod peaks;
 
-pub use energy::{EnergyBalance, EnergySummary};
+pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
 pub use peaks::{ForcePeaks, JointForces, JointPeaks, Peak, PositionPeaks};
 
 /// Counts of what the solver did.

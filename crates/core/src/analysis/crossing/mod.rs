@@ -8,7 +8,7 @@ mod step;
 
 use super::AnalysisError;
 use super::modes::Rayleigh;
-use crate::bridge::{Bridge, Load, Track};
+use crate::bridge::{Bridge, Track};
 use crate::connector::{Connection, Law};
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
@@ -98,10 +98,6 @@ impl CrossingSolver {
     /// [`AnalysisError::NotConverged`] with time and connector, [`AnalysisError::NotFinite`], [`AnalysisError::Factor`].
     pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
         let h = self.settings.time_step_s;
-        let law = Law {
-            k: crossing.connector_stiffness_n_m,
-            connection: crossing.connection,
-        };
         let (before, after) = span(
             self.bridge.design().length_m(),
             vehicle,
@@ -111,17 +107,23 @@ impl CrossingSolver {
         );
         let stepper = Stepper {
             bridge: &self.bridge,
-            rayleigh: self.settings.rayleigh,
-            law,
+            track: &self.track,
+            vehicle,
+            load_n: crossing.load_n,
             speed_m_s: crossing.speed_m_s,
+            rayleigh: self.settings.rayleigh,
+            law: Law {
+                k: crossing.connector_stiffness_n_m,
+                connection: crossing.connection,
+            },
         };
         let mut observer = Observer::new(&self.bridge, &crossing.record);
         let start_s = -(before as f64) * h;
-        let mut now = stepper.at_rest(start_s, self.load(vehicle, crossing, start_s));
+        let mut now = stepper.at_rest(start_s);
         observer.note_history(&now);
         for n in 1..=before + after {
             let to_s = (n as f64 - before as f64) * h;
-            now = self.advance(&stepper, vehicle, crossing, &mut observer, now, to_s, 0)?;
+            now = self.advance(&stepper, &mut observer, now, to_s, 0)?;
             observer.note_history(&now);
         }
         Ok(observer.finish())
@@ -131,16 +133,13 @@ impl CrossingSolver {
     fn advance(
         &self,
         stepper: &Stepper<'_>,
-        vehicle: &Vehicle,
-        crossing: &Crossing,
         observer: &mut Observer<'_>,
         now: Instant,
         to_s: f64,
         halvings: usize,
     ) -> Result<Instant, AnalysisError> {
         let level = self.level(halvings)?;
-        let load = self.load(vehicle, crossing, to_s);
-        match stepper.step(level, &now, load, to_s, self.settings.newton_limit) {
+        match stepper.step(level, &now, to_s, self.settings.newton_limit) {
             Ok(next) => {
                 if !next.is_finite() {
                     return Err(AnalysisError::NotFinite { time_s: to_s });
@@ -161,14 +160,10 @@ impl CrossingSolver {
             Err(stuck) => {
                 observer.note_bisection(stuck.iterations);
                 let middle_s = now.time_s + 0.5 * (to_s - now.time_s);
-                let middle = self.advance(stepper, vehicle, crossing, observer, now, middle_s, halvings + 1)?;
-                self.advance(stepper, vehicle, crossing, observer, middle, to_s, halvings + 1)
+                let middle = self.advance(stepper, observer, now, middle_s, halvings + 1)?;
+                self.advance(stepper, observer, middle, to_s, halvings + 1)
             }
         }
-    }
-
-    fn load(&self, vehicle: &Vehicle, crossing: &Crossing, time_s: f64) -> Load {
-        Load::new(&self.track, vehicle, crossing.load_n, crossing.speed_m_s * time_s)
     }
 
     fn level(&self, halvings: usize) -> Result<&Level, AnalysisError> {

@@ -82,13 +82,7 @@ impl<'a> Observer<'a> {
         self.statistics.steps += 1;
         self.statistics.newton_iterations += new.newton_iterations;
         self.statistics.contact_switches += old.states.iter().zip(&new.states).filter(|(a, b)| a != b).count();
-        self.energy.kinetic = new.spent.kinetic;
-        self.energy.strain = new.spent.strain;
-        self.energy.connectors = new.spent.connectors;
-        self.energy.rayleigh += new.spent.rayleigh;
-        self.energy.numerical += new.spent.numerical;
-        self.energy.work += new.spent.work;
-        self.energy.close();
+        self.energy.take(&new.spent);
         self.note_peaks(new);
     }
 

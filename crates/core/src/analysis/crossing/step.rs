@@ -4,10 +4,12 @@
 
 use super::Level;
 use crate::analysis::modes::Rayleigh;
-use crate::bridge::{Bridge, Load, Rider};
+use crate::bridge::{Bridge, Load, Rider, Track};
 use crate::connector::{Law, State};
 use crate::contact::{ContactProblem, NotSettled};
 use crate::fem::SparseRow;
+use crate::response::StepEnergies;
+use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
 /// The motion at one time, with what the next step and the energy balance need of it.
@@ -30,19 +32,7 @@ pub(super) struct Instant {
     pub inertia: Vec<f64>,
     pub newton_iterations: usize,
     /// Energies of the step that led here.
-    pub spent: Spent,
-}
-
-/// Energies of one step [J].
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Spent {
-    pub kinetic: f64,
-    pub strain: f64,
-    pub connectors: f64,
-    /// Increments over the step.
-    pub rayleigh: f64,
-    pub numerical: f64,
-    pub work: f64,
+    pub spent: StepEnergies,
 }
 
 impl Instant {
@@ -55,14 +45,18 @@ impl Instant {
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
     pub bridge: &'a Bridge,
+    pub track: &'a Track,
+    pub vehicle: &'a Vehicle,
+    pub load_n: f64,
+    pub speed_m_s: f64,
     pub rayleigh: Rayleigh,
     pub law: Law,
-    pub speed_m_s: f64,
 }
 
 impl Stepper<'_> {
     /// Rest under the vehicle's first place.
-    pub(super) fn at_rest(&self, time_s: f64, load: Load) -> Instant {
+    pub(super) fn at_rest(&self, time_s: f64) -> Instant {
+        let load = self.load(time_s);
         let zero = vec![0.0; self.bridge.dofs()];
         let connectors = self.bridge.connectors.len();
         let riders = load.riders.len();
@@ -80,7 +74,7 @@ impl Stepper<'_> {
             load,
             inertia: vec![0.0; riders],
             newton_iterations: 0,
-            spent: Spent::default(),
+            spent: StepEnergies::default(),
         }
     }
 
@@ -89,10 +83,10 @@ impl Stepper<'_> {
         &self,
         level: &Level,
         old: &Instant,
-        load: Load,
         time_s: f64,
         newton_limit: usize,
     ) -> Result<Instant, NotSettled> {
+        let load = self.load(time_s);
         let s = &level.scheme;
         let flexibility = &level.flexibility;
 
@@ -133,13 +127,18 @@ impl Stepper<'_> {
             load,
             inertia: contact.riders.iter().map(|q| q / (1.0 - s.alpha_m)).collect(),
             newton_iterations: contact.iterations,
-            spent: Spent::default(),
+            spent: StepEnergies::default(),
         };
         self.bridge.times_k.multiply(&new.u, &mut new.ku);
         self.bridge.times_m.multiply(&new.v, &mut new.mv);
         self.bridge.times_m.multiply(&new.a, &mut new.ma);
         new.spent = self.account(level, old, &new, &d);
         Ok(new)
+    }
+
+    /// The vehicle where it is at a time.
+    fn load(&self, time_s: f64) -> Load {
+        Load::new(self.track, self.vehicle, self.load_n, self.speed_m_s * time_s)
     }
 
     /// All forces of the balance at alpha that do not wait for the new instant.
@@ -227,7 +226,7 @@ impl Stepper<'_> {
 
     /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives
     /// beyond the change of its energy is numerical dissipation.
-    fn account(&self, level: &Level, old: &Instant, new: &Instant, d: &[f64]) -> Spent {
+    fn account(&self, level: &Level, old: &Instant, new: &Instant, d: &[f64]) -> StepEnergies {
         let (s, flexibility) = (&level.scheme, &level.flexibility);
         let kinetic = 0.5 * dot(&new.v, &new.mv);
         let strain = 0.5 * dot(&new.u, &new.ku);
@@ -255,7 +254,7 @@ impl Stepper<'_> {
             flexibility.track_dot(&new.load.weight, d),
             flexibility.track_dot(&old.load.weight, d),
         );
-        Spent {
+        StepEnergies {
             kinetic,
             strain,
             connectors,
