@@ -35,7 +35,7 @@ pub struct Plan {
 }
 
 /// Cost of a step of one module [s], from a release build on one core.
-const SECONDS_A_STEP_AND_MODULE: f64 = 2.0e-4;
+const SECONDS_A_STEP_AND_MODULE: f64 = 1.0e-4;
 /// Cost of meshing, condensing and assembling one bridge [s].
 const SECONDS_A_BRIDGE: f64 = 2.0;
 /// Cost of the static cases of one job [s].
