@@ -7,14 +7,15 @@ use crate::connector::{Law, State};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
 
-/// The small system: `e = e_free - weight F N - G q`, `N = N(e)`, and for the riders `q / c = g_free - H N' - R q` in the
-/// scaled unknowns described at the fields.
+/// The small system: with `N' = weight N(e)` and the scaled rider forces q',
+///
+/// `e = e_free - connectors N' - connectors_riders q'`, `riders q' = riders_free - riders_connectors N'`.
 #[derive(Debug)]
-pub struct ContactProblem {
+pub struct ContactProblem<'a> {
     /// Elongations without connector and rider forces [m].
     pub e_free: Vec<f64>,
     /// Flexibility among the connectors [m/N].
-    pub connectors: DMatrix<f64>,
+    pub connectors: &'a DMatrix<f64>,
     /// Weight of the new force in the balance: `N' = weight N` (1 in statics, `1 - alpha_f` in a step).
     pub weight: f64,
     /// Elongation from unit rider forces, connectors x riders.
@@ -51,7 +52,7 @@ pub struct NotSettled {
     pub iterations: usize,
 }
 
-impl ContactProblem {
+impl ContactProblem<'_> {
     /// Solves from a first guess of the states.
     ///
     /// # Errors

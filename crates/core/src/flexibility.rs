@@ -6,17 +6,19 @@
 use crate::bridge::{Bridge, Track};
 use crate::fem::{Factor, FemError, SparseRow, SymmetricMatrix};
 use faer::{Mat, MatRef};
-use std::sync::{Arc, OnceLock};
+use nalgebra::DMatrix;
+use std::sync::OnceLock;
 
 /// The factor of A, the columns `A^-1 B^T` of the connectors and, line by line, `A^-1 E` of unit loads on the deck's z.
 /// Shared read-only between jobs and threads.
 #[derive(Debug)]
 pub struct Flexibility {
     factor: Factor,
-    bridge: Arc<Bridge>,
     track: Track,
     /// `A^-1 B^T`.
     connectors: Mat<f64>,
+    /// `B A^-1 B^T`.
+    among: DMatrix<f64>,
     /// `A^-1 E` of each line of the track.
     lines: Vec<OnceLock<Mat<f64>>>,
 }
@@ -26,7 +28,7 @@ impl Flexibility {
     ///
     /// # Errors
     /// [`FemError`] where `a` is not positive definite.
-    pub fn new(a: &SymmetricMatrix, bridge: &Arc<Bridge>) -> Result<Self, FemError> {
+    pub fn new(a: &SymmetricMatrix, bridge: &Bridge) -> Result<Self, FemError> {
         let factor = Factor::new(a)?;
         let track = Track::new(bridge);
         let mut connectors = Mat::<f64>::zeros(a.order(), bridge.connectors.len());
@@ -36,12 +38,18 @@ impl Flexibility {
             }
         }
         factor.solve_columns(connectors.as_mut());
+        let nc = connectors.ncols();
+        let among = DMatrix::from_fn(nc, nc, |i, j| {
+            // always from the later column, so that the matrix is symmetric to the last bit
+            let row = &bridge.connectors[i.min(j)].row;
+            row.0.iter().map(|&(k, v)| v * connectors[(k, i.max(j))]).sum()
+        });
         let lines = (0..track.lines()).map(|_| OnceLock::new()).collect();
         Ok(Self {
             factor,
-            bridge: Arc::clone(bridge),
             track,
             connectors,
+            among,
             lines,
         })
     }
@@ -71,17 +79,9 @@ impl Flexibility {
         (columns.as_ref(), station)
     }
 
-    /// `b_i . A^-1 b_j^T` of two connectors.
-    #[inline]
-    pub fn connector_to_connector(&self, i: usize, j: usize) -> f64 {
-        // always from the later column, so that the matrix is symmetric to the last bit
-        let (i, j) = (i.min(j), i.max(j));
-        self.bridge.connectors[i]
-            .row
-            .0
-            .iter()
-            .map(|&(k, v)| v * self.connectors[(k, j)])
-            .sum()
+    /// `B A^-1 B^T` among the connectors, symmetric to the last bit.
+    pub fn among_connectors(&self) -> &DMatrix<f64> {
+        &self.among
     }
 
     /// `b_i . A^-1 row^T` of a connector and a track row.

@@ -148,7 +148,7 @@ impl StaticSolver {
             .collect();
         let mut problem = ContactProblem {
             e_free: e_full.clone(),
-            connectors: DMatrix::from_fn(nc, nc, |i, j| self.flexibility.connector_to_connector(i, j)),
+            connectors: self.flexibility.among_connectors(),
             weight: 1.0,
             connectors_riders: DMatrix::zeros(nc, 0),
             riders_connectors: DMatrix::zeros(0, nc),

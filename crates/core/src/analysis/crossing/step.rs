@@ -165,7 +165,7 @@ impl Stepper<'_> {
 
     /// The small system of the step. Riders are measured in displacement: `q' / ((1 - alpha_m) m c_a) = g . d + known`
     /// with `g = r + (2 V c_v/c_a) r_x + (V^2/c_a) r_xx` and `q' = (1 - alpha_m) q`.
-    fn contact_problem(&self, level: &Level, old: &Instant, load: &Load, d: &[f64]) -> ContactProblem {
+    fn contact_problem<'l>(&self, level: &'l Level, old: &Instant, load: &Load, d: &[f64]) -> ContactProblem<'l> {
         let (s, flexibility) = (&level.scheme, &level.flexibility);
         let connectors = &self.bridge.connectors;
         let (nc, nr) = (connectors.len(), load.riders.len());
@@ -194,7 +194,7 @@ impl Stepper<'_> {
                 .zip(&old.elongations)
                 .map(|(c, e)| e + c.row.dot(d))
                 .collect(),
-            connectors: DMatrix::from_fn(nc, nc, |i, j| flexibility.connector_to_connector(i, j)),
+            connectors: flexibility.among_connectors(),
             weight: 1.0 - s.alpha_f,
             connectors_riders: DMatrix::from_fn(nc, nr, |i, r| flexibility.connector_to_track(i, &load.riders[r].row)),
             riders_connectors: DMatrix::from_fn(nr, nc, |r, i| flexibility.connector_to_track(i, &measures[r])),
