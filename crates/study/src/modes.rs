@@ -8,7 +8,7 @@ use pontoon_core::analysis::{AnalysisError, modes};
 use pontoon_core::bridge::{Bridge, Ends, PreparedModule};
 
 pub use pontoon_core::bridge::BridgeError;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// What is asked.
@@ -25,7 +25,7 @@ pub struct ModesRequest {
 }
 
 /// One mode; the shares are those of its kinetic energy.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModeRow {
     /// Its number, from 1.
     pub number: usize,
@@ -70,7 +70,12 @@ pub fn modes(file: &BridgeFile, request: ModesRequest) -> Result<Vec<ModeRow>, M
         Ends::Free
     };
     let module = PreparedModule::new(&design, request.model.into())?;
-    let (found, _) = modes::modes(&Bridge::new(&design, &module, ends)?, request.count)?;
+    Ok(rows(&Bridge::new(&design, &module, ends)?, request.count)?)
+}
+
+/// The lowest modes of a bridge, numbered from 1.
+pub(crate) fn rows(bridge: &Bridge, count: usize) -> Result<Vec<ModeRow>, AnalysisError> {
+    let (found, _) = modes::modes(bridge, count)?;
     let row = |(number, mode): (usize, modes::Mode)| ModeRow {
         number,
         frequency_hz: mode.frequency_hz,

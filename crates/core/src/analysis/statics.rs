@@ -110,25 +110,34 @@ impl StaticSolver {
         })
     }
 
-    /// Largest static deflection of any position over all places of the load along the bridge [m]: places a quarter of
-    /// an element apart (`load_x_m` of the case is not used).
+    /// Largest static deflection of any position over all places of the load along the bridge [m].
     ///
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
     pub fn creeping_peak_m(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<f64, AnalysisError> {
+        let peaks = self.creeping_peaks_m(vehicle, case)?;
+        Ok(peaks.into_iter().fold(0.0, f64::max))
+    }
+
+    /// Largest static deflection of each position over all places of the load along the bridge [m]: places a quarter of
+    /// an element apart (`load_x_m` of the case is not used).
+    ///
+    /// # Errors
+    /// [`AnalysisError::StaticNotConverged`].
+    pub fn creeping_peaks_m(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<Vec<f64>, AnalysisError> {
         let design = self.bridge.design();
         let places = design.modules * design.module.mesh.elements_along * 4;
-        let mut peak = 0.0_f64;
+        let mut peaks = vec![0.0_f64; self.positions.len()];
         for place in 0..=places {
             let x = design.length_m() * place as f64 / places as f64;
             let load = self.load(vehicle, case, x);
             let contact = self.contact(case, &load, x)?;
-            for (row, seen) in self.bridge.positions.iter().zip(&self.positions) {
+            for (peak, (row, seen)) in peaks.iter_mut().zip(self.bridge.positions.iter().zip(&self.positions)) {
                 let from_connectors: f64 = contact.forces.iter().zip(seen).map(|(n, s)| n * s).sum();
-                peak = peak.max(self.flexibility.observe_track(row, &load.weight) + from_connectors);
+                *peak = peak.max(self.flexibility.observe_track(row, &load.weight) + from_connectors);
             }
         }
-        Ok(peak)
+        Ok(peaks)
     }
 
     fn load(&self, vehicle: &Vehicle, case: &StaticCase, centre_x_m: f64) -> Load {

@@ -5,7 +5,7 @@
 use crate::document::{canonical_text, typed};
 use crate::refusal::Refusal;
 use crate::spec::{AnalysisSpec, AxisName, Point, Study, filled_vehicle, to_value};
-use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::bridge::{BridgeDesign, Supports};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
 use serde::Serialize;
@@ -28,7 +28,8 @@ pub struct BridgeEntry {
     pub hash: String,
     /// Equal for bridges that differ in nothing but gaps (data of a job) and words.
     pub structure_key: Arc<str>,
-    /// Equal for bridges whose modules are equal: the connectors' stiffness is not part of a module either.
+    /// Equal for bridges whose modules are equal: neither are the connectors' stiffness, the number of modules and the
+    /// supports part of a module.
     pub module_key: Arc<str>,
 }
 
@@ -167,6 +168,8 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     neutral.connectors.gap_compression_m = 0.0;
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
+    neutral.modules = 1;
+    neutral.supports = Supports::default();
     neutral.draft_m = None;
     neutral.freeboard_m = None;
     let module_key = hash_of(&to_value(&neutral)).as_str().into();

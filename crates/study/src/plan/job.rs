@@ -22,7 +22,7 @@ pub struct Job {
     pub analysis: Arc<AnalysisEntry>,
     /// How the connectors work.
     pub connection: Connection,
-    /// Weight of the vehicle [N].
+    /// Weight of the vehicle [N]; 0 where none is asked for.
     pub load_n: f64,
     /// What is asked.
     pub task: Task,
@@ -38,6 +38,8 @@ pub enum Task {
     },
     /// A static case.
     Static(Load),
+    /// Natural frequencies.
+    Modes,
 }
 
 /// Where the vehicle stands.
@@ -86,11 +88,13 @@ impl Job {
         let (load, speed) = match self.task {
             Task::Crossing { speed_m_s } => (None, Some(speed_m_s)),
             Task::Static(load) => (Some(load), None),
+            Task::Modes => (None, None),
         };
         match name {
             "connection" => self.gaps_m().map_or("linear", |_| "nonlinear").into(),
             "gap_tension_m" | "bridge.connectors.gap_tension_m" => self.gaps_m().map(|g| g.0).into(),
             "gap_compression_m" | "bridge.connectors.gap_compression_m" => self.gaps_m().map(|g| g.1).into(),
+            "load_n" if self.task == Task::Modes => Value::Null,
             "load_n" => self.load_n.into(),
             "speed_m_s" => speed.into(),
             "load_position" => load.and_then(|l| l.position).into(),
@@ -123,6 +127,7 @@ impl Job {
             task: bits(match self.task {
                 Task::Crossing { speed_m_s } => speed_m_s,
                 Task::Static(load) => load.x_m,
+                Task::Modes => 0.0,
             }),
         }
     }

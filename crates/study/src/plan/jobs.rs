@@ -6,7 +6,7 @@ use super::documents::{BridgeEntry, Documents, VehicleEntry};
 use super::job::{Identity, Job, Load, Task};
 use crate::document::canonical;
 use crate::refusal::Refusal;
-use crate::spec::{AnalysisSpec, AxisName, Kind, ModelSpec, Point, Study, check_histories};
+use crate::spec::{AnalysisSpec, AxisName, Kind, ModelSpec, Point, SHORT_NAMES, Study, check_histories};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::InvalidInput;
 use serde_json::Value;
@@ -72,19 +72,22 @@ impl Jobs<'_> {
             let size = bridge.design.check_size(analysis.spec.model.into());
             size.map_err(|refused| short.of_bridge(refused))?;
         }
-        let connection = short.connection(&bridge)?;
-        let load_n = short.required("load_n")?;
-        let load_n = short.positive("load_n", load_n)?;
-        let task = match analysis.spec.kind {
+        let (task, connection, load_n) = match analysis.spec.kind {
             Kind::Crossing => {
+                let (connection, load_n) = short.loaded(&bridge)?;
                 let speed_m_s = short.speed()?;
                 short.time_step(&analysis.spec, &bridge, &vehicle, speed_m_s)?;
                 short.damping(&analysis.spec, &bridge)?;
-                Task::Crossing { speed_m_s }
+                (Task::Crossing { speed_m_s }, connection, load_n)
             }
             Kind::Static => {
+                let (connection, load_n) = short.loaded(&bridge)?;
                 short.held(&bridge)?;
-                Task::Static(short.place(&bridge)?)
+                (Task::Static(short.place(&bridge)?), connection, load_n)
+            }
+            Kind::Modes => {
+                short.nothing_loaded()?;
+                (Task::Modes, Connection::Linear, 0.0)
             }
         };
         Ok(Job {
@@ -161,6 +164,20 @@ impl Short<'_> {
     fn absent(&self, name: &str, allowed: &str) -> Result<(), Refusal> {
         self.value(name)
             .map_or(Ok(()), |value| Err(self.refuse(name, value, allowed)))
+    }
+
+    /// Refuses what moves or loads a bridge, and gaps: modes are those of the linear connection.
+    fn nothing_loaded(&self) -> Result<(), Refusal> {
+        SHORT_NAMES
+            .iter()
+            .try_for_each(|name| self.absent(name, "only axes named by their path in a study of modes"))
+    }
+
+    /// How the connectors work and what the vehicle weighs.
+    fn loaded(&self, bridge: &BridgeEntry) -> Result<(Connection, f64), Refusal> {
+        let connection = self.connection(bridge)?;
+        let load_n = self.positive("load_n", self.required("load_n")?)?;
+        Ok((connection, load_n))
     }
 
     fn connection(&self, bridge: &BridgeEntry) -> Result<Connection, Refusal> {

@@ -179,7 +179,8 @@ mod tests {
                 .all(|job| job.bridge.module_key == jobs[0].bridge.module_key)
         );
         assert_ne!(jobs[0].bridge.structure_key, jobs[1].bridge.structure_key);
-        assert_ne!(jobs[0].bridge.module_key, jobs[3].bridge.module_key);
+        assert_eq!(jobs[0].bridge.module_key, jobs[3].bridge.module_key);
+        assert_ne!(jobs[0].bridge.structure_key, jobs[3].bridge.structure_key);
         assert_eq!(jobs[1].column("gap_tension_m"), json!(0.01));
         assert_eq!(jobs[3].column("bridge.modules"), json!(4));
     }

@@ -38,7 +38,7 @@ pub(super) struct Bench {
     damping: BTreeMap<DampingKey, Shared<Damping>>,
     crossings: BTreeMap<CrossingKey, Shared<CrossingSolver>>,
     statics: BTreeMap<BridgeKey, Shared<StaticSolver>>,
-    creeping: BTreeMap<CreepingKey, Shared<f64>>,
+    creeping: BTreeMap<CreepingKey, Shared<Vec<f64>>>,
     condensations: AtomicUsize,
 }
 
@@ -87,11 +87,12 @@ impl Bench {
         progress.stage("modules: finite elements, condensation");
         bench.modules = each(&all, module_key, |job| bench.module(job));
         progress.stage("bridges: assembly");
-        bench.bridges = each(&all, bridge_key, |job| bench.bridge(job, Ends::Supported));
+        let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
+        bench.bridges = each(&loaded, bridge_key, |job| bench.bridge(job, Ends::Supported));
         progress.stage("damping: bending modes of the free bridge");
         bench.damping = each(&crossings, damping_key, |job| bench.damping_of(job));
         progress.stage("solvers: factors");
-        let held: Vec<&Job> = all.iter().copied().filter(|job| is_held(job)).collect();
+        let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
         bench.statics = each(&held, bridge_key, |job| {
             StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?).map_err(text)
         });
@@ -100,7 +101,7 @@ impl Bench {
         let creeping: Vec<&Job> = crossings.iter().copied().filter(|job| is_held(job)).collect();
         bench.creeping = each(&creeping, creeping_key, |job| {
             shared(&bench.statics, &bridge_key(job))?
-                .creeping_peak_m(&job.vehicle.vehicle, &static_case(job, 0.0))
+                .creeping_peaks_m(&job.vehicle.vehicle, &static_case(job, 0.0))
                 .map_err(text)
         });
         bench
@@ -114,7 +115,13 @@ impl Bench {
         PreparedModule::new(&job.bridge.design, model).map_err(text)
     }
 
-    fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, String> {
+    /// The module of a job.
+    pub(super) fn module_of(&self, job: &Job) -> Shared<PreparedModule> {
+        shared(&self.modules, &module_key(job))
+    }
+
+    /// The bridge of a job, assembled anew.
+    pub(super) fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, String> {
         Bridge::new(&job.bridge.design, &*shared(&self.modules, &module_key(job))?, ends).map_err(text)
     }
 
@@ -152,13 +159,14 @@ impl Bench {
         shared(&self.statics, &bridge_key(job))
     }
 
-    /// The largest static deflection of the job's load over its places [m]; none where the bridge is not held.
-    pub(super) fn creeping_peak_m(&self, job: &Job) -> Result<Option<f64>, String> {
+    /// The largest static deflection of each position under the job's load over its places [m]; none where the bridge is
+    /// not held.
+    pub(super) fn creeping_peaks_m(&self, job: &Job) -> Result<Option<Arc<Vec<f64>>>, String> {
         if !is_held(job) {
             return Ok(None);
         }
         shared(&self.creeping, &creeping_key(job))
-            .map(|peak| Some(*peak))
+            .map(Some)
             .map_err(|e| format!("static peak: {e}"))
     }
 

@@ -20,20 +20,23 @@ pub(super) fn solve(job: &Job, speed_m_s: f64, record: Record, bench: &Bench) ->
         .crossing(job)?
         .solve(&job.vehicle.vehicle, &crossing)
         .map_err(|e| e.to_string())?;
-    let static_peak_m = bench.creeping_peak_m(job)?;
-    Ok(rows(job.number, response, static_peak_m))
+    let static_peaks_m = bench.creeping_peaks_m(job)?;
+    Ok(rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice)))
 }
 
-fn rows(job: usize, response: CrossingResponse, static_peak_m: Option<f64>) -> JobRecord {
+fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
+    let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
     let positions: Vec<PositionRow> = response
         .positions
         .iter()
-        .map(|p| PositionRow {
+        .enumerate()
+        .map(|(i, p)| PositionRow {
             position: p.position,
             x_m: p.x_m,
             deflection: p.deflection.into(),
             uplift: p.uplift.into(),
             static_deflection_m: None,
+            static_peak_deflection_m: static_peaks_m.map(|peaks| peaks[i]),
         })
         .collect();
     let mut connectors = Vec::new();
@@ -83,5 +86,6 @@ fn rows(job: usize, response: CrossingResponse, static_peak_m: Option<f64>) -> J
         positions,
         connectors,
         histories,
+        modes: Vec::new(),
     }
 }

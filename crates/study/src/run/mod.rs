@@ -5,6 +5,7 @@
 mod bench;
 mod crossing;
 mod guard;
+mod modes;
 mod progress;
 mod record;
 mod statics;
@@ -106,6 +107,7 @@ fn record(study: &Study, job: &Job, bench: &Bench) -> JobRecord {
     let solved = guard::guarded(|| match job.task {
         Task::Crossing { speed_m_s } => crossing::solve(job, speed_m_s, study.spec.record.histories.record(), bench),
         Task::Static(load) => statics::solve(job, load, bench),
+        Task::Modes => modes::solve(job, bench),
     });
     let mut record = solved.unwrap_or_else(|reason| JobRecord::failed(job, reason));
     // rows that no table will hold are not kept until the end of a large study

@@ -3,6 +3,7 @@
 //! Knows which numbers a job leaves and that a number is either there or null. Does not know tables. A record can be
 //! written and read back without loss, so that a journal can stand between the jobs and the tables.
 
+use crate::modes::ModeRow;
 use crate::plan::Job;
 use pontoon_core::response::{ForcePeaks, Peak};
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,8 @@ pub struct JobRecord {
     pub connectors: Vec<ConnectorRow>,
     /// Its histories.
     pub histories: HistoryRows,
+    /// Its rows of the table of modes.
+    pub modes: Vec<ModeRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
@@ -56,6 +59,8 @@ pub struct Summary {
     pub static_peak_deflection_m: Option<f64>,
     /// `peak_deflection_m` over `static_peak_deflection_m`.
     pub dynamic_amplification: Option<f64>,
+    /// Structural mass of a module, of a job that asks for modes [kg].
+    pub structural_mass_kg: Option<f64>,
     /// Length over which a static load presses the bridge down [m].
     pub influential_length_m: Option<f64>,
     /// Whether a module's bottom rose above the water.
@@ -118,6 +123,8 @@ pub struct PositionRow {
     pub uplift: Extreme,
     /// Deflection of a static job, positive downward [m].
     pub static_deflection_m: Option<f64>,
+    /// Largest static deflection under the load of a crossing, creeping over the bridge [m].
+    pub static_peak_deflection_m: Option<f64>,
 }
 
 /// A row of the table of connectors.
@@ -179,6 +186,7 @@ impl JobRecord {
             deflection: none,
             uplift: none,
             static_deflection_m: None,
+            static_peak_deflection_m: None,
         });
         let across = || std::iter::once(None).chain(design.connectors.y_m.iter().copied().map(Some));
         let connectors = (2..=design.modules).flat_map(|joint| {
@@ -196,6 +204,7 @@ impl JobRecord {
             positions: positions.collect(),
             connectors: connectors.collect(),
             histories: HistoryRows::default(),
+            modes: Vec::new(),
         }
     }
 }
@@ -301,12 +310,14 @@ mod tests {
                 deflection: extreme,
                 uplift: extreme,
                 static_deflection_m: None,
+                static_peak_deflection_m: Some(0.1),
             }],
             connectors: vec![row(2, None, -5.0)],
             histories: HistoryRows {
                 time_s: vec![0.1],
                 series: vec![("force_n".to_owned(), 7, vec![0.7])],
             },
+            modes: Vec::new(),
         };
         let text = serde_json::to_string(&record).unwrap();
         assert_eq!(serde_json::from_str::<JobRecord>(&text).unwrap(), record);

@@ -23,6 +23,7 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
             deflection: Extreme::timeless(deflection_m.max(0.0)),
             uplift: Extreme::timeless((0.0 - deflection_m).max(0.0)),
             static_deflection_m: Some(deflection_m),
+            static_peak_deflection_m: None,
         })
         .collect();
     let mut connectors = Vec::new();
@@ -52,5 +53,6 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         positions,
         connectors,
         histories: HistoryRows::default(),
+        modes: Vec::new(),
     }
 }

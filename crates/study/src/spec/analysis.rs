@@ -16,6 +16,8 @@ pub enum Kind {
     Crossing,
     /// A vehicle stands still.
     Static,
+    /// The bridge oscillates by itself, linearly connected: natural frequencies and the names of their shapes.
+    Modes,
 }
 
 /// Which solver integrates a crossing.
@@ -84,7 +86,8 @@ impl Default for DampingSpec {
     }
 }
 
-/// What is asked and how it is computed. The keys of a crossing have no place in a static study.
+/// What is asked and how it is computed. The keys of a crossing have no place in a study of another kind, nor have those of
+/// modes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnalysisSpec {
@@ -119,6 +122,13 @@ pub struct AnalysisSpec {
     /// Damping of a crossing; 5 % at the bridge's own first two vertical bending modes where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<DampingSpec>,
+    /// How many modes, from the lowest; 20 where absent. A key of modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub count: Option<usize>,
+    /// Whether the modes are those of the bridge on its supports; floating free where absent. A key of modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supports: Option<bool>,
 }
 
 impl AnalysisSpec {
@@ -127,24 +137,38 @@ impl AnalysisSpec {
     /// # Errors
     /// [`InvalidInput`] with the key relative to `analysis`.
     pub fn checked(mut self) -> Result<Self, InvalidInput> {
-        if self.kind == Kind::Static {
-            let given = [
-                ("time_step_s", self.time_step_s.is_some()),
-                ("tail_s", self.tail_s.is_some()),
-                ("solver", self.solver.is_some()),
-                ("spectral_radius", self.spectral_radius.is_some()),
-                ("newton_limit", self.newton_limit.is_some()),
-                ("bisection_limit", self.bisection_limit.is_some()),
-                ("damping", self.damping.is_some()),
-            ];
-            return match given.iter().find(|(_, given)| *given) {
-                Some((key, _)) => Err(InvalidInput::new(
-                    *key,
-                    "a key of crossings",
-                    "only kind and model in a static study",
-                )),
-                None => Ok(self),
-            };
+        let crossing = [
+            ("time_step_s", self.time_step_s.is_some()),
+            ("tail_s", self.tail_s.is_some()),
+            ("solver", self.solver.is_some()),
+            ("spectral_radius", self.spectral_radius.is_some()),
+            ("newton_limit", self.newton_limit.is_some()),
+            ("bisection_limit", self.bisection_limit.is_some()),
+            ("damping", self.damping.is_some()),
+        ];
+        let modes = [("count", self.count.is_some()), ("supports", self.supports.is_some())];
+        let none = |keys: &[(&str, bool)], of: &str, allowed: &str| match keys.iter().find(|(_, given)| *given) {
+            Some((key, _)) => Err(InvalidInput::new(*key, format!("a key of {of}"), allowed)),
+            None => Ok(()),
+        };
+        match self.kind {
+            Kind::Static => {
+                let allowed = "only kind and model in a static study";
+                none(&crossing, "crossings", allowed)?;
+                none(&modes, "modes", allowed)?;
+                return Ok(self);
+            }
+            Kind::Modes => {
+                none(
+                    &crossing,
+                    "crossings",
+                    "only kind, model, count and supports in a study of modes",
+                )?;
+                whole("count", *self.count.get_or_insert(20), 1, 1000)?;
+                self.supports.get_or_insert(false);
+                return Ok(self);
+            }
+            Kind::Crossing => none(&modes, "modes", "no key of modes in a study of crossings")?,
         }
         positive("time_step_s", *self.time_step_s.get_or_insert(0.01))?;
         not_negative("tail_s", *self.tail_s.get_or_insert(6.0))?;
@@ -211,6 +235,23 @@ mod tests {
             assert_eq!(checked(json!({"kind": "static", key: 0.5})).unwrap_err().key, key);
         }
         assert!(checked(json!({"kind": "static", "model": "full"})).is_ok());
+    }
+
+    #[test]
+    fn a_study_of_modes_gets_its_defaults_and_refuses_the_keys_of_crossings() {
+        let spec = checked(json!({"kind": "modes"})).unwrap();
+        assert_eq!(
+            (spec.count, spec.supports, spec.time_step_s),
+            (Some(20), Some(false), None)
+        );
+        assert_eq!(
+            checked(json!({"kind": "modes", "tail_s": 1})).unwrap_err().key,
+            "tail_s"
+        );
+        assert_eq!(checked(json!({"kind": "modes", "count": 0})).unwrap_err().key, "count");
+        for kind in ["static", "crossing"] {
+            assert_eq!(checked(json!({"kind": kind, "count": 5})).unwrap_err().key, "count");
+        }
     }
 
     #[test]

@@ -9,9 +9,13 @@ use crate::spec::{Kind, Study};
 use polars::prelude::{DataFrame, PolarsResult};
 use serde_json::Value;
 
+/// The first column of the table of jobs behind the axes, for each kind of study.
+pub(super) const FIRST_OUTCOMES: [&str; 2] = ["peak_deflection_m", "structural_mass_kg"];
+
 /// The columns of a study's axes: the short names of its kind, then every path.
 pub(super) fn axis_names(study: &Study) -> Vec<String> {
     let short: &[&str] = match study.spec.analysis.kind {
+        Kind::Modes => &[],
         Kind::Crossing => &[
             "connection",
             "gap_tension_m",
@@ -61,6 +65,11 @@ pub(super) fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Polars
             }
         }
     }
+    if study.spec.analysis.kind == Kind::Modes {
+        return c
+            .number("structural_mass_kg", s().map(|s| s.structural_mass_kg))
+            .frame();
+    }
     c.number("peak_deflection_m", s().map(|s| s.peak_deflection_m))
         .count("peak_deflection_position", s().map(|s| s.peak_deflection_position))
         .number("peak_deflection_time_s", s().map(|s| s.peak_deflection_time_s))
@@ -104,6 +113,11 @@ pub(super) fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataF
         .number("peak_uplift_time_s", rows().map(|(_, r)| r.uplift.time_s));
     if kind == Kind::Static {
         c.number("deflection_m", rows().map(|(_, r)| r.static_deflection_m));
+    } else {
+        c.number(
+            "static_peak_deflection_m",
+            rows().map(|(_, r)| r.static_peak_deflection_m),
+        );
     }
     c.frame()
 }
@@ -123,6 +137,21 @@ pub(super) fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
         .number("peak_compression_time_s", rows().map(|(_, r)| r.compression.time_s))
         .number("peak_tension_n", rows().map(|(_, r)| r.tension.value))
         .number("peak_tension_time_s", rows().map(|(_, r)| r.tension.time_s))
+        .frame()
+}
+
+/// One row a mode of each job.
+pub(super) fn modes(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+    let rows = || records.iter().flat_map(|r| r.modes.iter().map(move |row| (r.job, row)));
+    Columns::default()
+        .count("job", rows().map(|(job, _)| Some(job)))
+        .count("number", rows().map(|(_, m)| Some(m.number)))
+        .number("frequency_hz", rows().map(|(_, m)| Some(m.frequency_hz)))
+        .word("shape", rows().map(|(_, m)| Some(m.shape.as_str())))
+        .number("vertical_share", rows().map(|(_, m)| Some(m.vertical_share)))
+        .number("torsion_share", rows().map(|(_, m)| Some(m.torsion_share)))
+        .number("horizontal_share", rows().map(|(_, m)| Some(m.horizontal_share)))
+        .number("axial_share", rows().map(|(_, m)| Some(m.axial_share)))
         .frame()
 }
 

@@ -8,7 +8,7 @@ use crate::run::{BridgeReport, Outcome};
 use crate::spec::{ModelSpec, Study};
 use serde::Serialize;
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -92,6 +92,8 @@ pub struct Manifest {
     pub offline_s: f64,
     /// Wall time of the jobs [s].
     pub jobs_s: f64,
+    /// The blake3 hash of each table's file, filled in as the tables are written.
+    pub tables: BTreeMap<String, String>,
 }
 
 impl Manifest {
@@ -123,6 +125,7 @@ impl Manifest {
             finished: finished.text(),
             offline_s: outcome.offline_s,
             jobs_s: outcome.jobs_s,
+            tables: BTreeMap::new(),
         }
     }
 

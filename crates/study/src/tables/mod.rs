@@ -1,6 +1,6 @@
-//! Records to files: Parquet tables, summary, manifest.
+//! Records to files and back to tables: Parquet, summary, manifest.
 //!
-//! Knows columns, provenance and how a file is replaced whole. Does not know how a record came about. The only room
+//! Knows columns, provenance, how a file is replaced whole and how a folder proves to be whole. Does not know how a record came about. The only room
 //! that knows the table library. Tables hold nothing that changes from run to run; the manifest does.
 
 mod columns;
@@ -8,17 +8,21 @@ mod folder;
 mod frames;
 mod manifest;
 mod parquet;
+mod results;
 mod summary;
+mod table;
 
 pub use folder::{Folder, FolderError};
 pub use manifest::{Manifest, Moment, check_own};
+pub use results::{Results, ResultsError};
 pub use summary::{Cell, SummaryTable};
+pub use table::{Table, TableName};
 
 use crate::plan::Job;
 use crate::run::Outcome;
-use crate::spec::Study;
+use crate::spec::{Kind, Study};
 
-/// Writes all tables of a run into its folder, the manifest last.
+/// Writes all tables of a run into its folder, the manifest with their hashes last.
 ///
 /// # Errors
 /// [`FolderError`] with the file that could not be written.
@@ -26,7 +30,7 @@ pub fn write(
     study: &Study,
     jobs: &[Job],
     outcome: &Outcome,
-    manifest: &Manifest,
+    mut manifest: Manifest,
     folder: &Folder,
 ) -> Result<SummaryTable, FolderError> {
     let provenance = parquet::provenance(study, jobs);
@@ -34,24 +38,31 @@ pub fn write(
     let record = &study.spec.record;
     folder.remove(manifest::FILE)?;
     let kind = study.spec.analysis.kind;
+    let modes = kind == Kind::Modes;
     let tables = [
         ("jobs.parquet", Some(frames::jobs(study, jobs, records))),
         (
             "positions.parquet",
-            record.positions.then(|| frames::positions(kind, records)),
+            (record.positions && !modes).then(|| frames::positions(kind, records)),
         ),
         (
             "connectors.parquet",
-            record.connectors.then(|| frames::connectors(records)),
+            (record.connectors && !modes).then(|| frames::connectors(records)),
         ),
         (
             "histories.parquet",
-            record.histories.asked().then(|| frames::histories(records)),
+            (record.histories.asked() && !modes).then(|| frames::histories(records)),
         ),
+        ("modes.parquet", modes.then(|| frames::modes(records))),
     ];
     for (name, frame) in tables {
         match frame {
-            Some(frame) => parquet::write(folder, name, frame, &provenance)?,
+            Some(frame) => {
+                parquet::write(folder, name, frame, &provenance)?;
+                let path = folder.path().join(name);
+                let hash = results::hash_of(&path).map_err(|cause| FolderError { path, cause })?;
+                manifest.tables.insert(name.to_owned(), hash);
+            }
             None => folder.remove(name)?,
         }
     }

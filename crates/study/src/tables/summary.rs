@@ -1,11 +1,12 @@
-//! The summary: peaks against speed, a row a speed for each combination of the other axes.
+//! The summary: peaks against speed, a row a speed for each combination of the other axes; of a study of modes a row a mode.
 //!
 //! Knows the order of rows and how a cell is written. Does not know terminals.
 
 use super::frames::axis_names;
+use crate::modes::ModeRow;
 use crate::plan::Job;
 use crate::run::JobRecord;
-use crate::spec::Study;
+use crate::spec::{Kind, Study};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -33,6 +34,9 @@ impl SummaryTable {
     /// The summary of a run: combinations of the other axes in the order of their first job, speeds increasing. A job
     /// that failed has empty peaks.
     pub fn new(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Self {
+        if study.spec.analysis.kind == Kind::Modes {
+            return Self::of_modes(study, jobs, records);
+        }
         let (against, others): (Vec<String>, Vec<String>) =
             axis_names(study).into_iter().partition(|name| name == "speed_m_s");
         let mut groups: HashMap<String, usize> = HashMap::new();
@@ -63,6 +67,21 @@ impl SummaryTable {
         Self {
             columns,
             rows: rows.into_iter().map(|(_, _, cells)| cells).collect(),
+        }
+    }
+
+    /// The summary of a study of modes: the axes, then number, frequency and shape of each mode.
+    fn of_modes(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Self {
+        let axes = axis_names(study);
+        let row = |job: &Job, mode: &ModeRow| -> Vec<Cell> {
+            let of_mode = [mode.number.into(), mode.frequency_hz.into(), mode.shape.clone().into()];
+            axes.iter().map(|name| job.column(name)).chain(of_mode).collect()
+        };
+        let all = jobs.iter().zip(records);
+        let rows = all.flat_map(|(job, record)| record.modes.iter().map(|mode| row(job, mode)).collect::<Vec<_>>());
+        Self {
+            rows: rows.collect(),
+            columns: [axes, ["number", "frequency_hz", "shape"].map(str::to_owned).to_vec()].concat(),
         }
     }
 

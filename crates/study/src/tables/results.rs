@@ -1,0 +1,205 @@
+//! Results to read: the tables of a run, from its folder or from its records.
+//!
+//! Knows how a folder proves that it holds one whole run: its manifest names each table's hash. Does not know what is
+//! read of it.
+
+use super::frames;
+use super::manifest;
+use super::table::{Table, TableName};
+use crate::plan::Job;
+use crate::refusal::Refusal;
+use crate::run::JobRecord;
+use crate::spec::{Kind, Study};
+use polars::prelude::{ParquetReader, PolarsResult, SerReader};
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::panic::catch_unwind;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why results could not be read.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// There are none in that folder.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// They are not what their manifest says, or cannot be read.
+    #[error("{}: damaged results: {found}; run the study again", file.display())]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with it.
+        found: String,
+    },
+}
+
+/// The tables of one run.
+#[derive(Debug, Clone)]
+pub struct Results {
+    /// Name of the study.
+    pub name: String,
+    /// Where they stand, for messages.
+    pub place: PathBuf,
+    /// The study's document.
+    pub study: Value,
+    /// The bridge's document, before the axes.
+    pub bridge: Value,
+    tables: BTreeMap<TableName, Table>,
+    jobs: Table,
+    row_of_job: HashMap<u64, usize>,
+}
+
+impl Results {
+    /// Reads a folder of results.
+    ///
+    /// # Errors
+    /// [`ResultsError::Refused`] where the folder holds no results, [`ResultsError::Damaged`] where they are not whole.
+    pub fn read(folder: &Path) -> Result<Self, ResultsError> {
+        let file = folder.join(manifest::FILE);
+        let damaged = |file: &Path, found: &str| ResultsError::Damaged {
+            file: file.to_owned(),
+            found: found.to_owned(),
+        };
+        if !file.is_file() {
+            let found = if folder.is_dir() {
+                "no results: manifest.json is missing"
+            } else {
+                "no such folder"
+            };
+            return Err(Refusal::new(folder, "", found, "a folder of results, as pontoon run leaves it").into());
+        }
+        let text = std::fs::read_to_string(&file).map_err(|e| damaged(&file, &e.to_string()))?;
+        let manifest: Value = serde_json::from_str(&text).map_err(|e| damaged(&file, &format!("no JSON ({e})")))?;
+        let name = manifest["name"]
+            .as_str()
+            .ok_or_else(|| damaged(&file, "no name of a study"))?;
+        let hashes = manifest["tables"]
+            .as_object()
+            .ok_or_else(|| damaged(&file, "no hashes of its tables, as an earlier version left none"))?;
+        let mut tables = BTreeMap::new();
+        for table in TableName::ALL {
+            let path = folder.join(table.file());
+            match hashes.get(&table.file()).and_then(Value::as_str) {
+                None if path.exists() => {
+                    return Err(damaged(&path, "a table of another run: the manifest does not name it"));
+                }
+                None => {}
+                Some(hash) => {
+                    if hash_of(&path).map_err(|e| damaged(&path, &e.to_string()))? != hash {
+                        return Err(damaged(&path, "not the bytes that the manifest names"));
+                    }
+                    tables.insert(table, read_table(&path).map_err(|found| damaged(&path, &found))?);
+                }
+            }
+        }
+        let jobs = tables
+            .remove(&TableName::Jobs)
+            .ok_or_else(|| damaged(&file, "no table of jobs"))?;
+        let count = manifest["jobs"].as_u64();
+        if count != Some(jobs.rows() as u64) {
+            return Err(damaged(
+                &file,
+                &format!("{} rows of jobs where {count:?} ran", jobs.rows()),
+            ));
+        }
+        Ok(Self::new(
+            name,
+            folder,
+            (manifest["study"].clone(), manifest["bridge"].clone()),
+            jobs,
+            tables,
+        ))
+    }
+
+    /// The tables of a run that has just ended.
+    ///
+    /// # Errors
+    /// The table library's words.
+    pub fn of_run(study: &Study, jobs: &[Job], records: &[JobRecord], place: &Path) -> Result<Self, String> {
+        let kind = study.spec.analysis.kind;
+        let table = |frame: PolarsResult<_>| frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string());
+        let job_table = table(frames::jobs(study, jobs, records))?;
+        let mut tables = BTreeMap::new();
+        let record = &study.spec.record;
+        if kind == Kind::Modes {
+            tables.insert(TableName::Modes, table(frames::modes(records))?);
+        } else {
+            if record.positions {
+                tables.insert(TableName::Positions, table(frames::positions(kind, records))?);
+            }
+            if record.connectors {
+                tables.insert(TableName::Connectors, table(frames::connectors(records))?);
+            }
+            if record.histories.asked() {
+                tables.insert(TableName::Histories, table(frames::histories(records))?);
+            }
+        }
+        let documents = (study.document.clone(), study.bridge.document.clone());
+        Ok(Self::new(&study.spec.name, place, documents, job_table, tables))
+    }
+
+    fn new(
+        name: &str,
+        place: &Path,
+        (study, bridge): (Value, Value),
+        jobs: Table,
+        tables: BTreeMap<TableName, Table>,
+    ) -> Self {
+        let number = |row| jobs.number("job", row).map(|n| n as u64);
+        let row_of_job = (0..jobs.rows()).filter_map(|row| Some((number(row)?, row))).collect();
+        Self {
+            name: name.to_owned(),
+            place: place.to_owned(),
+            study,
+            bridge,
+            tables,
+            jobs,
+            row_of_job,
+        }
+    }
+
+    /// The table of jobs.
+    pub fn jobs(&self) -> &Table {
+        &self.jobs
+    }
+
+    /// A table, where the run left it.
+    pub fn table(&self, name: TableName) -> Option<&Table> {
+        match name {
+            TableName::Jobs => Some(&self.jobs),
+            other => self.tables.get(&other),
+        }
+    }
+
+    /// The row of a job in the table of jobs.
+    pub fn row_of_job(&self, job: u64) -> Option<usize> {
+        self.row_of_job.get(&job).copied()
+    }
+
+    /// The columns of the table of jobs that are axes.
+    pub fn axes(&self) -> Vec<String> {
+        let names = self.jobs.names().skip_while(|name| *name != "reason").skip(1);
+        names
+            .take_while(|name| !frames::FIRST_OUTCOMES.contains(name))
+            .map(str::to_owned)
+            .collect()
+    }
+}
+
+/// The blake3 hash of a file's bytes.
+pub(super) fn hash_of(path: &Path) -> std::io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    std::io::copy(&mut File::open(path)?, &mut hasher)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
+/// Reads a Parquet file; that the library panics over it is an error like any other.
+fn read_table(path: &Path) -> Result<Table, String> {
+    let read = || {
+        let file = File::open(path).map_err(|e| e.to_string())?;
+        let frame = ParquetReader::new(file).finish().map_err(|e| e.to_string())?;
+        Table::from_frame(&frame).map_err(|e| e.to_string())
+    };
+    catch_unwind(read).unwrap_or_else(|_| Err("no readable Parquet file".to_owned()))
+}

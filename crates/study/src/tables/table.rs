@@ -1,0 +1,151 @@
+//! A table in memory: columns of numbers, words, or yes and no, any of which may be empty.
+//!
+//! Knows cells by column and row. Does not know files or what a column means.
+
+use polars::prelude::{DataFrame, DataType, PolarsError, PolarsResult};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// A table of the results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TableName {
+    /// One row a job.
+    Jobs,
+    /// One row a position of a job.
+    Positions,
+    /// One row a joint or connector of a job.
+    Connectors,
+    /// One row a time of a history.
+    Histories,
+    /// One row a mode of a job.
+    Modes,
+}
+
+impl TableName {
+    /// All tables.
+    pub const ALL: [Self; 5] = [
+        Self::Jobs,
+        Self::Positions,
+        Self::Connectors,
+        Self::Histories,
+        Self::Modes,
+    ];
+
+    /// Its name as files and references have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Jobs => "jobs",
+            Self::Positions => "positions",
+            Self::Connectors => "connectors",
+            Self::Histories => "histories",
+            Self::Modes => "modes",
+        }
+    }
+
+    /// The name of its file.
+    pub fn file(self) -> String {
+        format!("{}.parquet", self.word())
+    }
+}
+
+/// A table in memory.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Table {
+    rows: usize,
+    columns: Vec<(String, Cells)>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Cells {
+    Numbers(Vec<Option<f64>>),
+    Words(Vec<Option<String>>),
+    Flags(Vec<Option<bool>>),
+}
+
+impl Table {
+    /// The table of a data frame.
+    ///
+    /// # Errors
+    /// The table library's, where a column is of none of the types that tables have.
+    pub(super) fn from_frame(frame: &DataFrame) -> PolarsResult<Self> {
+        let columns = frame.columns().iter().map(|column| {
+            let series = column.as_materialized_series();
+            let cells = match series.dtype() {
+                DataType::Float64 => Cells::Numbers(series.f64()?.iter().collect()),
+                DataType::Int64 => Cells::Numbers(series.i64()?.iter().map(|v| v.map(|v| v as f64)).collect()),
+                DataType::String => Cells::Words(series.str()?.iter().map(|v| v.map(str::to_owned)).collect()),
+                DataType::Boolean => Cells::Flags(series.bool()?.iter().collect()),
+                other => {
+                    let text = format!("column {} of type {other}", column.name());
+                    return Err(PolarsError::SchemaMismatch(text.into()));
+                }
+            };
+            Ok((column.name().to_string(), cells))
+        });
+        Ok(Self {
+            rows: frame.height(),
+            columns: columns.collect::<PolarsResult<_>>()?,
+        })
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Names of the columns in their order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Whether there is a column of a name.
+    pub fn has(&self, column: &str) -> bool {
+        self.names().any(|name| name == column)
+    }
+
+    /// Whether a column holds numbers.
+    pub fn is_number(&self, column: &str) -> bool {
+        matches!(self.cells(column), Some(Cells::Numbers(_)))
+    }
+
+    fn cells(&self, column: &str) -> Option<&Cells> {
+        self.columns
+            .iter()
+            .find(|(name, _)| name == column)
+            .map(|(_, cells)| cells)
+    }
+
+    /// A cell as a number; none where it is empty or no number. Yes is 1, no is 0.
+    pub fn number(&self, column: &str, row: usize) -> Option<f64> {
+        match self.cells(column)? {
+            Cells::Numbers(list) => *list.get(row)?,
+            Cells::Flags(list) => (*list.get(row)?).map(|yes| if yes { 1.0 } else { 0.0 }),
+            Cells::Words(_) => None,
+        }
+    }
+
+    /// A cell; null where it is empty or not there.
+    pub fn cell(&self, column: &str, row: usize) -> Value {
+        let cell = self.cells(column).and_then(|cells| match cells {
+            Cells::Numbers(list) => list.get(row)?.map(Value::from),
+            Cells::Words(list) => list.get(row)?.clone().map(Value::from),
+            Cells::Flags(list) => list.get(row)?.map(Value::from),
+        });
+        cell.unwrap_or_default()
+    }
+
+    /// The distinct words of a column in the order of their first row; none where it holds no words.
+    pub fn words(&self, column: &str) -> Vec<&str> {
+        let mut words: Vec<&str> = Vec::new();
+        if let Some(Cells::Words(list)) = self.cells(column) {
+            for word in list.iter().flatten() {
+                if !words.contains(&word.as_str()) {
+                    words.push(word);
+                }
+            }
+        }
+        words
+    }
+}
