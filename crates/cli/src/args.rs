@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Parametric studies of the hydroelastic response of floating ribbon bridges.
 ///
-/// Exit status: 0 all good; 1 done, but a job failed; 2 input refused; 3 could not go on.
+/// Exit status: 0 all good; 1 done, but something fell short (a failed job, a check); 2 input refused; 3 could not go on.
 #[derive(Debug, Parser)]
 #[command(
     name = "pontoon",
@@ -43,6 +43,10 @@ pub enum Format {
     Text,
     /// For programs.
     Json,
+    /// A comparison as a Markdown table, for a CI summary.
+    Markdown,
+    /// A comparison as JUnit XML, for a CI server.
+    Junit,
 }
 
 /// The commands.
@@ -67,6 +71,15 @@ pub enum Command {
         after_help = "Examples:\n  pontoon modes studies/bridges/fu2005.json --count 20\n  pontoon modes studies/bridges/fu2005.json --module --count 6"
     )]
     Modes(ModesArguments),
+    /// Holds results against a reference file, or against older results job by job.
+    ///
+    /// A line a check: what is expected, what was found, by how much it is off, how much was left, the verdict. Exit status
+    /// 1 where a check falls short; one that matches no row, or failed jobs only, falls short too. Older results are
+    /// matched by the axes of their jobs.
+    #[command(
+        after_help = "Examples:\n  pontoon compare results/table1 --with studies/table1/reference.json\n  pontoon compare results/fu2005 --with results/fu2005-old --tolerance tolerance.json --format junit"
+    )]
+    Compare(CompareArguments),
     /// The JSON Schema of a file, for an editor or a checker.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
@@ -85,6 +98,23 @@ pub struct RunArguments {
     /// Threads; as many as the machine has where absent. The tables do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Holds the results against a reference file (or the folder that holds reference.json) once they are there.
+    #[arg(long, value_name = "REFERENCE")]
+    pub with: Option<PathBuf>,
+}
+
+/// What `compare` takes.
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Folder of the results.
+    #[arg(value_name = "RESULTS")]
+    pub results: PathBuf,
+    /// A reference file, the folder that holds reference.json, or a folder of older results.
+    #[arg(long, value_name = "REFERENCE|OLD_RESULTS")]
+    pub with: PathBuf,
+    /// How far columns may be from older results: {"default": {"relative_tolerance": 1e-6}, "columns": {"NAME": ...}}.
+    #[arg(long, value_name = "FILE")]
+    pub tolerance: Option<PathBuf>,
 }
 
 /// What `plan` takes.
@@ -148,6 +178,8 @@ pub enum SchemaOf {
     Study,
     /// A bridge file.
     Bridge,
+    /// A reference file.
+    Reference,
 }
 
 #[cfg(test)]

@@ -4,20 +4,23 @@
 //! |---|---|
 //! | `args` | the words that are understood |
 //! | `commands` | a file a command: what it asks of the study's rooms and how it answers |
+//! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
 //! | `words` | aligned tables, times, what goes where when a reader has left |
 //!
-//! Knows the exit status of every end: 0 all good; 1 done, but a job failed; 2 input refused; 3 could not go on. Does
+//! Knows the exit status of every end: 0 all good; 1 done, but something fell short; 2 input refused; 3 could not go on. Does
 //! not know mechanics or files of results.
 
 mod args;
 mod commands;
+mod comparison;
 mod progress;
 mod words;
 
-use args::{Arguments, Command};
-use clap::Parser;
+use args::{Arguments, Command, Format};
+use clap::{CommandFactory, Parser, error::ErrorKind};
 use pontoon_study::Refusal;
+use pontoon_study::tables::ResultsError;
 use std::process::ExitCode;
 
 /// How a command ended that could go on to its end.
@@ -32,10 +35,20 @@ enum Ending {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let common = arguments.common;
+    let compares = match &arguments.command {
+        Command::Compare(_) => true,
+        Command::Run(run) => run.with.is_some(),
+        _ => false,
+    };
+    if matches!(common.format, Format::Markdown | Format::Junit) && !compares {
+        let refused = "--format markdown and junit are those of a comparison: text or json";
+        Arguments::command().error(ErrorKind::InvalidValue, refused).exit();
+    }
     let ended = match arguments.command {
         Command::Run(run) => commands::run::run(&run, common),
         Command::Plan(plan) => commands::plan::plan(&plan, common),
         Command::Modes(modes) => commands::modes::modes(&modes, common),
+        Command::Compare(compare) => commands::compare::compare(&compare, common),
         Command::Schema(schema) => commands::schema::schema(&schema),
     };
     match ended {
@@ -43,7 +56,12 @@ fn main() -> ExitCode {
         Ok(Ending::Short) => ExitCode::from(1),
         Err(error) => {
             words::note(&format!("pontoon: {error:#}"));
-            ExitCode::from(if error.is::<Refusal>() { 2 } else { 3 })
+            ExitCode::from(if is_refusal(&error) { 2 } else { 3 })
         }
     }
+}
+
+/// Whether an error is the input's.
+fn is_refusal(error: &anyhow::Error) -> bool {
+    error.is::<Refusal>() || matches!(error.downcast_ref::<ResultsError>(), Some(ResultsError::Refused(_)))
 }

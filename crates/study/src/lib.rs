@@ -8,14 +8,18 @@
 //! | [`plan`] | jobs: a point of a design made into a checked job, equal jobs merged |
 //! | [`run`] | jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record |
 //! | [`tables`] | records to files: Parquet tables, summary, manifest |
+//! | [`reference`] | the reference file: checks with their source |
+//! | [`compare`] | results held against a reference, or against older results |
 //! | [`modes`] | natural frequencies of a bridge file |
 //! | [`schema`] | the JSON Schema of what a person writes |
 //!
 //! Knows files, threads and the clock. Does not know mechanics, and prints nothing.
 
+pub mod compare;
 pub mod document;
 pub mod modes;
 pub mod plan;
+pub mod reference;
 pub mod refusal;
 pub mod run;
 pub mod schema;

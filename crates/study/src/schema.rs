@@ -3,6 +3,7 @@
 //! Knows which type stands for which file. Does not know more than those types: cross-checks (a track on the deck, a
 //! time step within a module's passage) are not expressible there.
 
+use crate::reference::ReferenceSpec;
 use crate::spec::StudySpec;
 use pontoon_core::bridge::BridgeDesign;
 use serde_json::Value;
@@ -15,6 +16,11 @@ pub fn study() -> Value {
 /// The schema of a bridge file.
 pub fn bridge() -> Value {
     titled(schemars::schema_for!(BridgeDesign), "pontoon bridge")
+}
+
+/// The schema of a reference file.
+pub fn reference() -> Value {
+    titled(schemars::schema_for!(ReferenceSpec), "pontoon reference")
 }
 
 fn titled(mut schema: schemars::Schema, title: &str) -> Value {

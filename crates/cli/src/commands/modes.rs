@@ -26,7 +26,7 @@ pub fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
     })?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(found)),
-        Format::Text => {
+        _ => {
             let columns = [
                 "number",
                 "frequency_hz",

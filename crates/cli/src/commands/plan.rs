@@ -14,8 +14,8 @@ pub fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let plan = Plan::new(&study, threads)?;
     words::result(&match common.format {
-        Format::Text => text(&plan, threads),
         Format::Json => format!("{:#}\n", json!(plan)),
+        _ => text(&plan, threads),
     })?;
     Ok(Ending::Good)
 }

@@ -2,12 +2,15 @@
 
 use crate::Ending;
 use crate::args::{Common, Format, RunArguments};
+use crate::comparison;
 use crate::progress::Shown;
 use crate::words;
 use anyhow::{Context, Result};
+use pontoon_study::compare::{Comparison, against_reference};
 use pontoon_study::plan::{Job, Jobs};
+use pontoon_study::reference::Reference;
 use pontoon_study::run::{Outcome, run as run_jobs};
-use pontoon_study::tables::{Folder, Manifest, Moment, SummaryTable, check_own, write};
+use pontoon_study::tables::{Folder, Manifest, Moment, Results, SummaryTable, check_own, write};
 use pontoon_study::{Refusal, Study};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -18,9 +21,11 @@ const ROWS_SHOWN: usize = 200;
 /// Failed jobs that are written out on standard error; all are in the table.
 const FAILURES_SHOWN: usize = 10;
 
-/// Checks every job, runs them, writes the tables and prints the summary.
+/// Checks every job, runs them, writes the tables, prints the summary and, where asked, holds the results against a
+/// reference.
 pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let study = Study::open(&arguments.study)?;
+    let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let out = arguments
         .out
@@ -33,13 +38,23 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let outcome = run_jobs(&study, &jobs, arguments.threads.map_or(0, usize::from), &shown)?;
     shown.finish();
     let manifest = Manifest::new(&study, &jobs, &outcome, started, Moment::now());
-    let summary = write(&study, &jobs, &outcome, &manifest, &folder).context("results not written")?;
+    let summary = write(&study, &jobs, &outcome, manifest, &folder).context("results not written")?;
     failures(&outcome);
-    words::result(&match common.format {
-        Format::Text => text(&summary, &outcome, &out),
-        Format::Json => object(&study, &summary, &outcome, &out),
+    let compared = match &reference {
+        Some(reference) => Some(against_reference(&Results::read(&out)?, reference)?),
+        None => None,
+    };
+    words::result(&match (common.format, &compared) {
+        (Format::Json, _) => object(&study, &summary, &outcome, &out, compared.as_ref()),
+        (Format::Markdown | Format::Junit, Some(compared)) => comparison::written(compared, common.format)?,
+        (_, Some(compared)) => format!("{}\n{}", text(&summary, &outcome, &out), comparison::text(compared)),
+        (_, None) => text(&summary, &outcome, &out),
     })?;
-    Ok(if outcome.failed() == 0 {
+    if let Some(compared) = &compared {
+        comparison::tell_changes(compared);
+    }
+    let good = compared.as_ref().is_none_or(Comparison::good);
+    Ok(if outcome.failed() == 0 && good {
         Ending::Good
     } else {
         Ending::Short
@@ -78,7 +93,13 @@ fn text(summary: &SummaryTable, outcome: &Outcome, out: &Path) -> String {
     format!("{}{more}\n{counts}", words::table(&summary.columns, shown))
 }
 
-fn object(study: &Study, summary: &SummaryTable, outcome: &Outcome, out: &Path) -> String {
+fn object(
+    study: &Study,
+    summary: &SummaryTable,
+    outcome: &Outcome,
+    out: &Path,
+    compared: Option<&Comparison>,
+) -> String {
     let row = |cells: &Vec<Value>| -> Value {
         summary
             .columns
@@ -88,7 +109,7 @@ fn object(study: &Study, summary: &SummaryTable, outcome: &Outcome, out: &Path) 
             .collect::<Map<_, _>>()
             .into()
     };
-    let object = json!({
+    let mut object = json!({
         "study": study.spec.name,
         "results": out.display().to_string(),
         "jobs": outcome.records.len(),
@@ -99,5 +120,8 @@ fn object(study: &Study, summary: &SummaryTable, outcome: &Outcome, out: &Path) 
         "jobs_s": outcome.jobs_s,
         "summary": summary.rows.iter().map(row).collect::<Vec<_>>(),
     });
+    if let Some(compared) = compared {
+        object["comparison"] = json!(compared);
+    }
     format!("{object:#}\n")
 }

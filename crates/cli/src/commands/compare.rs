@@ -1,0 +1,33 @@
+//! `pontoon compare`: results held against a reference or against older results.
+
+use crate::Ending;
+use crate::args::{Common, CompareArguments};
+use crate::{comparison, words};
+use anyhow::Result;
+use pontoon_study::Refusal;
+use pontoon_study::compare::{Tolerances, against_old, against_reference};
+use pontoon_study::reference::Reference;
+use pontoon_study::tables::Results;
+
+/// Compares and writes a line a check.
+pub fn compare(arguments: &CompareArguments, common: Common) -> Result<Ending> {
+    let results = Results::read(&arguments.results)?;
+    let older = arguments.with.is_dir() && !arguments.with.join("reference.json").is_file();
+    let compared = if older {
+        let tolerances = arguments.tolerance.as_deref().map(Tolerances::open).transpose()?;
+        against_old(
+            &results,
+            &Results::read(&arguments.with)?,
+            &tolerances.unwrap_or_default(),
+        )?
+    } else {
+        if let Some(file) = &arguments.tolerance {
+            let allowed = "no file of tolerances with a reference, which has its own";
+            return Err(Refusal::new(file, "", "--tolerance with a reference", allowed).into());
+        }
+        against_reference(&results, &Reference::open(&arguments.with)?)?
+    };
+    words::result(&comparison::written(&compared, common.format)?)?;
+    comparison::tell_changes(&compared);
+    Ok(if compared.good() { Ending::Good } else { Ending::Short })
+}

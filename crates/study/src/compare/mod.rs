@@ -1,0 +1,49 @@
+//! Results held against a reference, or against older results.
+//!
+//! Knows what a check asks of tables and what becomes of it. Does not know how a comparison is written down.
+
+mod history;
+mod judge;
+mod line;
+mod old;
+mod quantity;
+mod tolerances;
+
+pub(crate) use judge::Judge;
+pub use line::{Case, Comparison, Line, Verdict};
+pub use old::against_old;
+pub use tolerances::Tolerances;
+
+use crate::reference::Reference;
+use crate::refusal::Refusal;
+use crate::spec::Study;
+use crate::tables::Results;
+
+/// Makes every check of a reference on results.
+///
+/// # Errors
+/// [`Refusal`] where the reference belongs to another study, or names a column, word or job that the results do not have.
+pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
+    if let Some(path) = reference.study() {
+        let name = Study::open(&path)?.spec.name;
+        if name != results.name {
+            let found = format!("results of the study '{}'", results.name);
+            return Err(Refusal::new(
+                &results.place,
+                "",
+                found,
+                format!("results of '{name}', to which the reference belongs"),
+            ));
+        }
+    }
+    let judge = Judge::new(results, reference);
+    let lines = (0..reference.spec.checks.len())
+        .map(|i| judge.line(i))
+        .collect::<Result<_, _>>()?;
+    Ok(Comparison {
+        results: results.name.clone(),
+        with: reference.spec.name.clone(),
+        source: reference.spec.source.clone(),
+        lines,
+    })
+}

@@ -1,0 +1,258 @@
+//! A reference opened: its file read, its checks made sure to be checks.
+//!
+//! Knows files. Does not know results: what they do not have is found when they are compared.
+
+use super::spec::{
+    BoundCheck, CheckKind, CheckSpec, CurveCheck, MeasuredCheck, ModeCheck, Quantity, ReferenceSpec, Role, Tolerance,
+    Trend, TrendCheck, ValueCheck,
+};
+use crate::document::{read, typed};
+use crate::refusal::Refusal;
+use std::path::{Path, PathBuf};
+
+/// A reference file, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// The file.
+    pub file: PathBuf,
+    /// What it holds.
+    pub spec: ReferenceSpec,
+}
+
+impl Reference {
+    /// Opens a reference: `path` is a reference file or the folder that holds `reference.json`.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn open(path: &Path) -> Result<Self, Refusal> {
+        let file = if path.is_dir() {
+            path.join("reference.json")
+        } else {
+            path.to_owned()
+        };
+        let spec: ReferenceSpec = typed(&file, "", &read(&file)?)?;
+        let reference = Self { file, spec };
+        reference.check()?;
+        Ok(reference)
+    }
+
+    /// The path of the study it belongs to.
+    pub fn study(&self) -> Option<PathBuf> {
+        let folder = self.file.parent().unwrap_or(Path::new(""));
+        self.spec.study.as_ref().map(|study| folder.join(study))
+    }
+
+    fn check(&self) -> Result<(), Refusal> {
+        if self.spec.checks.is_empty() {
+            return Err(Refusal::new(
+                &self.file,
+                "checks",
+                "an empty list",
+                "at least one check",
+            ));
+        }
+        for (i, check) in self.spec.checks.iter().enumerate() {
+            let key = format!("checks[{i}]");
+            let place = Place {
+                file: &self.file,
+                key: &key,
+            };
+            if check.id.trim().is_empty() {
+                return Err(place.refuse("id", "an empty id", "a name unlike any other check's"));
+            }
+            if self.spec.checks[..i].iter().any(|other| other.id == check.id) {
+                return Err(place.refuse("id", format!("'{}' twice", check.id), "each id once"));
+            }
+            place.check(check)?;
+        }
+        Ok(())
+    }
+}
+
+impl CheckSpec {
+    /// What is checked; none where the file says nothing or several things, which reading refuses.
+    pub fn kind(&self) -> Option<CheckKind<'_>> {
+        let mut kinds = self.kinds();
+        kinds.next().filter(|_| kinds.next().is_none())
+    }
+
+    fn kinds(&self) -> impl Iterator<Item = CheckKind<'_>> {
+        [
+            self.value.as_ref().map(CheckKind::Value),
+            self.bound.as_ref().map(CheckKind::Bound),
+            self.trend.as_ref().map(CheckKind::Trend),
+            self.mode.as_ref().map(CheckKind::Mode),
+            self.curve.as_ref().map(CheckKind::Curve),
+            self.measured.as_ref().map(CheckKind::Measured),
+        ]
+        .into_iter()
+        .flatten()
+    }
+}
+
+/// A check's place in its file.
+struct Place<'a> {
+    file: &'a Path,
+    key: &'a str,
+}
+
+impl Place<'_> {
+    fn refuse(&self, key: &str, found: impl ToString, allowed: &str) -> Refusal {
+        Refusal::new(self.file, format!("{}.{key}", self.key), found, allowed)
+    }
+
+    fn check(&self, check: &CheckSpec) -> Result<(), Refusal> {
+        const KINDS: &str = "exactly one of value, bound, trend, mode, curve, measured";
+        let kind = check.kind().ok_or_else(|| {
+            let count = check.kinds().count();
+            let found = if count == 0 {
+                "nothing to check".to_owned()
+            } else {
+                format!("{count} things to check")
+            };
+            Refusal::new(self.file, self.key, found, KINDS)
+        })?;
+        let needed = check.role != Role::Record;
+        match kind {
+            CheckKind::Value(value) => {
+                self.tolerance("value", value.tolerance(), needed)?;
+                self.quantity("value.of", &value.of)
+            }
+            CheckKind::Mode(mode) => {
+                if mode.expected_hz.is_nan() || mode.expected_hz <= 0.0 {
+                    return Err(self.refuse("mode.expected_hz", mode.expected_hz, "a number above 0"));
+                }
+                self.tolerance("mode", mode.tolerance(), needed)
+            }
+            CheckKind::Bound(bound) => self.bound(bound),
+            CheckKind::Trend(trend) => self.trend(trend),
+            CheckKind::Curve(curve) => self.curve(curve, needed),
+            CheckKind::Measured(measured) => self.measured(measured),
+        }
+    }
+
+    /// A tolerance is there where it is needed and never negative.
+    fn tolerance(&self, of: &str, tolerance: Tolerance, needed: bool) -> Result<(), Refusal> {
+        for (key, value) in [
+            ("relative_tolerance", tolerance.relative),
+            ("absolute_tolerance", tolerance.absolute),
+        ] {
+            if let Some(value) = value.filter(|value| *value < 0.0) {
+                return Err(self.refuse(&format!("{of}.{key}"), value, "a number of at least 0"));
+            }
+        }
+        if needed && tolerance == Tolerance::default() {
+            let allowed = "relative_tolerance or, where there is one, absolute_tolerance; only a record needs none";
+            return Err(self.refuse(of, "no tolerance", allowed));
+        }
+        Ok(())
+    }
+
+    fn bound(&self, bound: &BoundCheck) -> Result<(), Refusal> {
+        match (bound.at_least, bound.at_most) {
+            (None, None) => return Err(self.refuse("bound", "no bound", "at_least, at_most or both")),
+            (Some(least), Some(most)) if least > most => {
+                return Err(self.refuse("bound.at_least", least, &format!("at most at_most, {most}")));
+            }
+            _ => {}
+        }
+        self.quantity("bound.of", &bound.of)
+    }
+
+    fn trend(&self, trend: &TrendCheck) -> Result<(), Refusal> {
+        match (trend.trend, trend.within) {
+            (Trend::Flat, None) => {
+                return Err(self.refuse("trend.within", "nothing", "a share: the trend is flat within it"));
+            }
+            (Trend::Flat, Some(within)) if within < 0.0 => {
+                return Err(self.refuse("trend.within", within, "a number of at least 0"));
+            }
+            (Trend::Flat, Some(_)) | (_, None) => {}
+            (_, Some(within)) => return Err(self.refuse("trend.within", within, "nothing, unless the trend is flat")),
+        }
+        self.quantity("trend.of", &trend.of)
+    }
+
+    fn curve(&self, curve: &CurveCheck, needed: bool) -> Result<(), Refusal> {
+        self.tolerance("curve", curve.tolerance(), needed)?;
+        if curve.points.is_empty() {
+            return Err(self.refuse("curve.points", "an empty list", "at least one point"));
+        }
+        match (1..curve.points.len()).find(|&i| curve.points[i][0] <= curve.points[i - 1][0]) {
+            Some(i) => {
+                let allowed = format!("above {}", curve.points[i - 1][0]);
+                Err(self.refuse(&format!("curve.points[{i}][0]"), curve.points[i][0], &allowed))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn measured(&self, measured: &MeasuredCheck) -> Result<(), Refusal> {
+        if measured.uncertainty < 0.0 {
+            return Err(self.refuse("measured.uncertainty", measured.uncertainty, "a number of at least 0"));
+        }
+        self.quantity("measured.of", &measured.of)
+    }
+
+    fn quantity(&self, key: &str, quantity: &Quantity) -> Result<(), Refusal> {
+        let each = |name: &str, list: &[Quantity]| {
+            let parts = (0..).zip(list);
+            parts
+                .map(|(i, part): (usize, _)| self.quantity(&format!("{key}.{name}[{i}]"), part))
+                .collect::<Result<(), Refusal>>()
+        };
+        match quantity {
+            Quantity::Ratio(two) => each("ratio", two.as_slice()),
+            Quantity::Difference(two) => each("difference", two.as_slice()),
+            Quantity::Largest(list) | Quantity::Smallest(list) if list.is_empty() => {
+                Err(self.refuse(key, "an empty list", "at least one quantity"))
+            }
+            Quantity::Largest(list) => each("largest", list),
+            Quantity::Smallest(list) => each("smallest", list),
+            Quantity::History(history) if !["deflection_m", "force_n"].contains(&history.quantity.as_str()) => {
+                let known = ["deflection_m", "force_n"].map(str::to_owned);
+                let key = format!("{}.{key}.history.quantity", self.key);
+                Err(Refusal::unknown(self.file, key, &history.quantity, &known))
+            }
+            Quantity::Select(_) | Quantity::History(_) | Quantity::Number(_) => Ok(()),
+        }
+    }
+}
+
+impl Tolerance {
+    /// How far a value may be from what is expected, in its own unit; nothing where no tolerance is given.
+    pub fn allowed(&self, expected: f64) -> f64 {
+        let relative = self.relative.map(|share| share * expected.abs());
+        relative.into_iter().chain(self.absolute).fold(0.0, f64::max)
+    }
+}
+
+impl ValueCheck {
+    /// Its tolerance.
+    pub fn tolerance(&self) -> Tolerance {
+        Tolerance {
+            relative: self.relative_tolerance,
+            absolute: self.absolute_tolerance,
+        }
+    }
+}
+
+impl ModeCheck {
+    /// Its tolerance.
+    pub fn tolerance(&self) -> Tolerance {
+        Tolerance {
+            relative: self.relative_tolerance,
+            absolute: None,
+        }
+    }
+}
+
+impl CurveCheck {
+    /// Its tolerance.
+    pub fn tolerance(&self) -> Tolerance {
+        Tolerance {
+            relative: self.relative_tolerance,
+            absolute: self.absolute_tolerance,
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Which rows are meant: a value, a list of values or a range for each of some columns.
+//!
+//! Knows the forms and when a cell is meant. Does not know which columns there are.
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+
+/// Columns with what they may hold, in the order of the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Filter(pub Vec<(String, Allowed)>);
+
+/// What a cell may hold.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Allowed {
+    /// One of these: numbers, words, yes and no, or nothing.
+    OneOf(Vec<Value>),
+    /// A number from the first to the second, both included; no bound where absent.
+    Range(Option<f64>, Option<f64>),
+}
+
+/// Numbers closer than this share of each other are the same: decimals of a file and points of a range differ in their
+/// last bits.
+const SAME_NUMBER: f64 = 1e-9;
+
+impl Allowed {
+    /// Whether a cell is meant.
+    pub fn allows(&self, cell: &Value) -> bool {
+        match (self, cell.as_f64()) {
+            (Self::OneOf(values), Some(x)) => values.iter().filter_map(Value::as_f64).any(|v| same(v, x)),
+            (Self::OneOf(values), None) => values.contains(cell),
+            (Self::Range(from, to), Some(x)) => from.is_none_or(|from| x >= from) && to.is_none_or(|to| x <= to),
+            (Self::Range(..), None) => false,
+        }
+    }
+
+    /// The words among the values.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        let values: &[Value] = match self {
+            Self::OneOf(values) => values,
+            Self::Range(..) => &[],
+        };
+        values.iter().filter_map(Value::as_str)
+    }
+
+    fn read(written: &Value) -> Result<Self, String> {
+        let forms = "a value, a list of values or {\"from\": .., \"to\": ..}";
+        match written {
+            Value::Array(list) if list.is_empty() => Err(format!("an empty list, expected {forms}")),
+            Value::Array(list) if list.iter().any(|v| v.is_array() || v.is_object()) => {
+                Err(format!("a list in a list, expected {forms}"))
+            }
+            Value::Array(list) => Ok(Self::OneOf(list.clone())),
+            Value::Object(map) => {
+                if let Some(key) = map.keys().find(|key| *key != "from" && *key != "to") {
+                    return Err(format!("unknown field `{key}`, expected `from` or `to`"));
+                }
+                let end = |key: &str| match map.get(key) {
+                    None => Ok(None),
+                    Some(value) => value
+                        .as_f64()
+                        .map(Some)
+                        .ok_or_else(|| format!("{value} as {key}, expected a number")),
+                };
+                match (end("from")?, end("to")?) {
+                    (None, None) => Err(format!("an empty object, expected {forms}")),
+                    (from, to) => Ok(Self::Range(from, to)),
+                }
+            }
+            single => Ok(Self::OneOf(vec![single.clone()])),
+        }
+    }
+
+    fn written(&self) -> Value {
+        match self {
+            Self::OneOf(values) => match values.as_slice() {
+                [single] => single.clone(),
+                several => several.to_vec().into(),
+            },
+            Self::Range(from, to) => {
+                let ends = [("from", from), ("to", to)];
+                let given = ends
+                    .iter()
+                    .filter_map(|(key, end)| end.map(|end| ((*key).to_owned(), json!(end))));
+                given.collect::<Map<_, _>>().into()
+            }
+        }
+    }
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs())
+}
+
+impl Filter {
+    /// Whether every row is meant.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// What a column may hold, where it is named.
+    pub fn of(&self, column: &str) -> Option<&Allowed> {
+        self.0
+            .iter()
+            .find(|(name, _)| name == column)
+            .map(|(_, allowed)| allowed)
+    }
+
+    /// This filter, and of columns that it does not name what `outer` says of them.
+    #[must_use]
+    pub fn within(&self, outer: &Self) -> Self {
+        let more = outer.0.iter().filter(|(name, _)| self.of(name).is_none());
+        Self(self.0.iter().chain(more).cloned().collect())
+    }
+
+    /// The filter with a column fixed to one value.
+    #[must_use]
+    pub fn fixed(&self, column: &str, value: &Value) -> Self {
+        let others = self.0.iter().filter(|(name, _)| name != column).cloned();
+        Self(
+            others
+                .chain([(column.to_owned(), Allowed::OneOf(vec![value.clone()]))])
+                .collect(),
+        )
+    }
+}
+
+impl Serialize for Filter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let map: Map<String, Value> = self.0.iter().map(|(name, a)| (name.clone(), a.written())).collect();
+        map.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Filter {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let map = Map::<String, Value>::deserialize(deserializer)?;
+        let read = map.into_iter().map(|(name, written)| match Allowed::read(&written) {
+            Ok(allowed) => Ok((name, allowed)),
+            Err(found) => Err(D::Error::custom(format!("{name}: {found}"))),
+        });
+        read.collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl JsonSchema for Filter {
+    fn schema_name() -> Cow<'static, str> {
+        "Filter".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let single = json!({ "type": ["number", "string", "boolean", "null"] });
+        let ends = json!({ "from": { "type": "number" }, "to": { "type": "number" } });
+        let schema = json!({
+            "type": "object",
+            "description": "For each of some columns a value, a list of values or a range, both ends included.",
+            "additionalProperties": { "anyOf": [
+                single,
+                { "type": "array", "minItems": 1, "items": single },
+                { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": ends },
+            ] }
+        });
+        Schema::try_from(schema).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filter(value: Value) -> Filter {
+        serde_json::from_value(value).unwrap()
+    }
+
+    #[test]
+    fn values_lists_ranges_and_nothing_are_told_apart() {
+        let f = filter(json!({"a": 0.1, "b": ["x", null], "c": {"from": 2}, "d": true}));
+        let allows = |column: &str, cell: Value| f.of(column).unwrap().allows(&cell);
+        assert!(allows("a", json!(0.1 + 1e-12)) && !allows("a", json!(0.1001)) && !allows("a", json!(null)));
+        assert!(allows("b", json!("x")) && allows("b", json!(null)) && !allows("b", json!("y")));
+        assert!(allows("c", json!(2)) && !allows("c", json!(1.999)) && !allows("c", json!(null)));
+        assert!(allows("d", json!(true)) && !allows("d", json!(false)));
+    }
+
+    #[test]
+    fn an_inner_filter_has_the_last_word() {
+        let (inner, outer) = (filter(json!({"a": 1})), filter(json!({"a": 2, "b": 3})));
+        assert_eq!(inner.within(&outer), filter(json!({"a": 1, "b": 3})));
+        assert_eq!(outer.fixed("a", &json!(5)), filter(json!({"b": 3, "a": 5})));
+    }
+
+    #[test]
+    fn what_is_no_filter_is_refused_and_what_is_one_is_written_as_it_was_read() {
+        for bad in [
+            json!({"a": []}),
+            json!({"a": [[1]]}),
+            json!({"a": {}}),
+            json!({"a": {"over": 1}}),
+            json!({"a": {"to": "x"}}),
+        ] {
+            assert!(serde_json::from_value::<Filter>(bad.clone()).is_err(), "{bad}");
+        }
+        let written = json!({"a": 1, "b": [1, 2], "c": {"from": 0.0, "to": 1.0}, "d": null});
+        assert_eq!(serde_json::to_value(filter(written.clone())).unwrap(), written);
+    }
+}
