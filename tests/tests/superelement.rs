@@ -254,3 +254,16 @@ fn formulas_give_the_values_they_evaluate_to() {
         apart(&hz(&by_formula(1.05)), &hz(&plain)),
     );
 }
+
+/// The mass by areas and lengths is that of the mass matrix. 1e-12: rounding. Twin: the density.
+#[test]
+fn mass_by_areas_and_lengths_is_that_of_a_unit_heave() {
+    for name in ["smoke", "fu2005"] {
+        let mass_kg = |factor: f64| {
+            let heavy = with(&design(name), |d| d.module.material.density_kg_m3 *= factor);
+            Ready::new(&heavy, Model::Full).module.structural_mass_kg()
+        };
+        let by_areas = design(name).structural_mass_kg();
+        held(name, 1e-12, miss(by_areas, mass_kg(1.0)), miss(by_areas, mass_kg(1.05)));
+    }
+}

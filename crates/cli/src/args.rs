@@ -80,6 +80,15 @@ pub enum Command {
         after_help = "Examples:\n  pontoon compare results/table1 --with studies/table1/reference.json\n  pontoon compare results/fu2005 --with results/fu2005-old --tolerance tolerance.json --format junit"
     )]
     Compare(CompareArguments),
+    /// Identifies numbers of a bridge by a bounded least-squares fit to the checks of references.
+    ///
+    /// The parameters file names what may move and between which bounds, what is held, and which checks are fitted; each
+    /// reference names the study that gives what its checks look at. Writes the bridge found, with its provenance.
+    /// Exit status 1 where the search did not come to its end.
+    #[command(
+        after_help = "Example:\n  pontoon calibrate studies/identification/start.json --with studies/table1 --with studies/fig09_static --parameters studies/identification/parameters.json --out bridge.json"
+    )]
+    Calibrate(CalibrateArguments),
     /// The JSON Schema of a file, for an editor or a checker.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
@@ -115,6 +124,26 @@ pub struct CompareArguments {
     /// How far columns may be from older results: {"default": {"relative_tolerance": 1e-6}, "columns": {"NAME": ...}}.
     #[arg(long, value_name = "FILE")]
     pub tolerance: Option<PathBuf>,
+}
+
+/// What `calibrate` takes.
+#[derive(Debug, Args)]
+pub struct CalibrateArguments {
+    /// The bridge to start from.
+    #[arg(value_name = "BRIDGE")]
+    pub bridge: PathBuf,
+    /// A reference file, or the folder that holds reference.json; may be given several times.
+    #[arg(long, value_name = "REFERENCE", required = true)]
+    pub with: Vec<PathBuf>,
+    /// The file of parameters.
+    #[arg(long, value_name = "FILE")]
+    pub parameters: PathBuf,
+    /// The bridge file to write.
+    #[arg(long, value_name = "BRIDGE")]
+    pub out: PathBuf,
+    /// Threads; as many as the machine has where absent. The bridge does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 }
 
 /// What `plan` takes.
@@ -180,6 +209,8 @@ pub enum SchemaOf {
     Bridge,
     /// A reference file.
     Reference,
+    /// A file of parameters for `calibrate`.
+    Parameters,
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ mod words;
 use args::{Arguments, Command, Format};
 use clap::{CommandFactory, Parser, error::ErrorKind};
 use pontoon_study::Refusal;
+use pontoon_study::calibrate::CalibrateError;
 use pontoon_study::tables::ResultsError;
 use std::process::ExitCode;
 
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Command::Run(run) => commands::run::run(&run, common),
         Command::Plan(plan) => commands::plan::plan(&plan, common),
         Command::Modes(modes) => commands::modes::modes(&modes, common),
+        Command::Calibrate(calibrate) => commands::calibrate::calibrate(&calibrate, common),
         Command::Compare(compare) => commands::compare::compare(&compare, common),
         Command::Schema(schema) => commands::schema::schema(&schema),
     };
@@ -63,5 +65,7 @@ fn main() -> ExitCode {
 
 /// Whether an error is the input's.
 fn is_refusal(error: &anyhow::Error) -> bool {
-    error.is::<Refusal>() || matches!(error.downcast_ref::<ResultsError>(), Some(ResultsError::Refused(_)))
+    error.is::<Refusal>()
+        || matches!(error.downcast_ref::<CalibrateError>(), Some(CalibrateError::Refused(_)))
+        || matches!(error.downcast_ref::<ResultsError>(), Some(ResultsError::Refused(_)))
 }

@@ -68,6 +68,16 @@ fn cell(column: &str, value: &Value) -> String {
     }
 }
 
+/// A number with six digits.
+pub fn significant(x: f64) -> String {
+    if x != 0.0 && (x.abs() < 1e-4 || x.abs() >= 1e7) {
+        return format!("{x:.5e}");
+    }
+    let digits = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    let decimals = usize::try_from(5 - digits).unwrap_or(0);
+    format!("{x:.decimals$}")
+}
+
 /// A duration for people.
 pub fn duration(seconds: f64) -> String {
     match seconds {

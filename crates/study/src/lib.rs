@@ -10,11 +10,13 @@
 //! | [`tables`] | records to files: Parquet tables, summary, manifest |
 //! | [`reference`] | the reference file: checks with their source |
 //! | [`compare`] | results held against a reference, or against older results |
+//! | [`calibrate`] | a bridge's numbers identified from the checks of references |
 //! | [`modes`] | natural frequencies of a bridge file |
 //! | [`schema`] | the JSON Schema of what a person writes |
 //!
 //! Knows files, threads and the clock. Does not know mechanics, and prints nothing.
 
+pub mod calibrate;
 pub mod compare;
 pub mod document;
 pub mod modes;

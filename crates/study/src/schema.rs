@@ -3,6 +3,7 @@
 //! Knows which type stands for which file. Does not know more than those types: cross-checks (a track on the deck, a
 //! time step within a module's passage) are not expressible there.
 
+use crate::calibrate::ParametersSpec;
 use crate::reference::ReferenceSpec;
 use crate::spec::StudySpec;
 use pontoon_core::bridge::BridgeDesign;
@@ -16,6 +17,11 @@ pub fn study() -> Value {
 /// The schema of a bridge file.
 pub fn bridge() -> Value {
     titled(schemars::schema_for!(BridgeDesign), "pontoon bridge")
+}
+
+/// The schema of a file of parameters.
+pub fn parameters() -> Value {
+    titled(schemars::schema_for!(ParametersSpec), "pontoon parameters")
 }
 
 /// The schema of a reference file.

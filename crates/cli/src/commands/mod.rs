@@ -1,5 +1,6 @@
 //! A file a command: what it asks of the study's rooms and how it answers.
 
+pub mod calibrate;
 pub mod compare;
 pub mod modes;
 pub mod plan;

@@ -10,6 +10,7 @@ pub fn schema(arguments: &SchemaArguments) -> Result<Ending> {
     let schema = match arguments.of {
         SchemaOf::Study => pontoon_study::schema::study(),
         SchemaOf::Bridge => pontoon_study::schema::bridge(),
+        SchemaOf::Parameters => pontoon_study::schema::parameters(),
         SchemaOf::Reference => pontoon_study::schema::reference(),
     };
     words::result(&format!("{schema:#}\n"))?;

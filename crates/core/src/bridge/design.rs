@@ -2,9 +2,9 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
-use super::Model;
+use super::{Model, Provenance};
 use crate::input::{InvalidInput, apart, not_negative, positive, within};
-use crate::module::{ModuleDesign, mesh_size};
+use crate::module::{ModuleDesign, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,9 @@ pub struct BridgeDesign {
     /// Where the numbers come from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+    /// How its numbers were identified, where a fit left them; nothing is computed from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<Provenance>,
     /// Number of modules.
     pub modules: usize,
     /// The module.
@@ -292,6 +295,13 @@ impl BridgeDesign {
     /// Place of a position (from 1) along the bridge [m].
     pub fn position_x_m(&self, position: usize) -> f64 {
         (position as f64 - 1.0) * self.module.length_m
+    }
+
+    /// Mass of one module's plates and beams [kg]: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
+    /// Verified by `tests/tests/superelement.rs`.
+    pub fn structural_mass_kg(&self) -> f64 {
+        let extra: Vec<f64> = self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect();
+        mesh_module(&self.module, &extra).mesh.mass_kg()
     }
 
     /// p_b [Pa/m], from the value or the table.

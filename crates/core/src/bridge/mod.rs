@@ -7,6 +7,7 @@ mod design;
 mod load;
 mod prepared;
 mod product;
+mod provenance;
 mod row;
 mod track;
 
@@ -14,6 +15,7 @@ pub use assembly::{Bridge, ConnectorPlace};
 pub use design::{BridgeDesign, Condensation, Connectors, Direction, DraftBuoyancy, Hinges, Supports, Todd};
 pub use load::{Load, Rider};
 pub use prepared::PreparedModule;
+pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 use thiserror::Error;
 pub use track::Track;
 

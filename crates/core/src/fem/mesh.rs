@@ -74,6 +74,20 @@ impl Mesh {
         self.nodes[node.0]
     }
 
+    /// Mass of all elements [kg]: `rho t A` of shells, A half the product of their diagonals, and `rho A L` of beams.
+    pub fn mass_kg(&self) -> f64 {
+        let shells = self.shells.iter().map(|shell| {
+            let [a, b, c, d] = shell.nodes.map(|node| self.place(node));
+            let area = 0.5 * (c - a).cross(&(d - b)).norm();
+            shell.section.density_kg_m3 * shell.section.thickness_m * area
+        });
+        let beams = self.beams.iter().map(|beam| {
+            let [a, b] = beam.nodes.map(|node| self.place(node));
+            beam.section.density_kg_m3 * beam.section.area_m2 * (b - a).norm()
+        });
+        shells.chain(beams).sum()
+    }
+
     /// Number of degrees of freedom.
     pub fn dofs(&self) -> usize {
         self.nodes.len() * DOFS_PER_NODE

@@ -75,29 +75,21 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// What check number `i` of one value finds, what it expects and how far it may be off; an error where the check has no
-    /// value or is of another kind.
-    pub(crate) fn value(&self, i: usize) -> Result<(f64, f64, f64), String> {
+    /// What check number `i` of one value finds; an error where it finds nothing or is of another kind.
+    pub(crate) fn value(&self, i: usize) -> Result<f64, String> {
         let check = &self.reference.spec.checks[i];
         let key = format!("checks[{i}]");
-        let asked = check.kind().and_then(|kind| match kind {
-            CheckKind::Value(value) => Some((value.of.clone(), value.expected, value.tolerance())),
-            CheckKind::Mode(mode) => Some((mode.quantity(), mode.expected_hz, mode.tolerance())),
-            CheckKind::Measured(m) => Some((
-                m.of.clone(),
-                m.value,
-                Tolerance {
-                    relative: None,
-                    absolute: Some(m.uncertainty),
-                },
-            )),
-            CheckKind::Bound(_) | CheckKind::Trend(_) | CheckKind::Curve(_) => None,
-        });
-        let (quantity, expected, tolerance) = asked
+        let quantity = match check.kind() {
+            Some(CheckKind::Value(value)) => Some(value.of.clone()),
+            Some(CheckKind::Mode(mode)) => Some(mode.quantity()),
+            Some(CheckKind::Measured(measured)) => Some(measured.of.clone()),
+            _ => None,
+        };
+        let quantity = quantity
             .filter(|_| check.each.is_empty())
             .ok_or("not a check of one value")?;
         match self.evaluator.value(&key, &quantity, &check.filter) {
-            Ok(got) => Ok((got, expected, tolerance.allowed(expected))),
+            Ok(got) => Ok(got),
             Err(Trouble::Short(reason)) => Err(reason),
             Err(Trouble::Refused(refusal)) => Err(refusal.to_string()),
         }

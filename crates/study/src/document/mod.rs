@@ -3,9 +3,11 @@
 //! Knows JSON and where in it something stands. Does not know what any key means.
 
 mod path;
+mod pretty;
 mod strict;
 mod typed;
 
 pub use path::{DocumentPath, leaves};
+pub use pretty::pretty;
 pub use strict::{canonical, canonical_text, read};
 pub use typed::typed;

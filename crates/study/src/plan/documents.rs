@@ -42,6 +42,8 @@ pub struct VehicleEntry {
     pub vehicle: Vehicle,
     /// Its design as a document, defaults filled in.
     pub document: Value,
+    /// Equal for vehicles that are equal, whatever study they are of.
+    pub key: Arc<str>,
 }
 
 /// An analysis after the axes.
@@ -136,7 +138,12 @@ impl Documents {
         self.vehicles.get(
             format!("{breadth_m} {}", changes.text()),
             read,
-            |id, (vehicle, document)| VehicleEntry { id, vehicle, document },
+            |id, (vehicle, document)| VehicleEntry {
+                id,
+                vehicle,
+                key: canonical_text(&document).into(),
+                document,
+            },
         )
     }
 
@@ -164,6 +171,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     let mut neutral = design.clone();
     neutral.name = String::new();
     neutral.source = None;
+    neutral.provenance = None;
     neutral.connectors.gap_tension_m = 0.0;
     neutral.connectors.gap_compression_m = 0.0;
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();

@@ -76,6 +76,16 @@ impl CheckSpec {
         kinds.next().filter(|_| kinds.next().is_none())
     }
 
+    /// What a check of one value expects and how far it may be off, in the unit of what it looks at; none of another kind.
+    pub fn expected_and_tolerance(&self) -> Option<(f64, f64)> {
+        match self.kind()? {
+            CheckKind::Value(v) => Some((v.expected, v.tolerance().allowed(v.expected))),
+            CheckKind::Mode(m) => Some((m.expected_hz, m.tolerance().allowed(m.expected_hz))),
+            CheckKind::Measured(m) => Some((m.value, m.uncertainty)),
+            CheckKind::Bound(_) | CheckKind::Trend(_) | CheckKind::Curve(_) => None,
+        }
+    }
+
     fn kinds(&self) -> impl Iterator<Item = CheckKind<'_>> {
         [
             self.value.as_ref().map(CheckKind::Value),

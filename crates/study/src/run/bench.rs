@@ -21,7 +21,7 @@ type ModuleKey = (Model, Arc<str>);
 type BridgeKey = (Model, Arc<str>);
 type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
 type CrossingKey = (DampingKey, [u64; 2], [Option<usize>; 2]);
-type CreepingKey = (BridgeKey, usize, Option<(u64, u64)>, u64);
+type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, u64);
 
 /// Damping and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,10 @@ struct Damping {
     frequencies_hz: [f64; 2],
     coefficients: Rayleigh,
 }
+
+/// Modules prepared, to be handed on to a later run that needs some of them again.
+#[derive(Debug, Clone, Default)]
+pub struct PreparedModules(BTreeMap<ModuleKey, Shared<PreparedModule>>);
 
 /// All that the jobs of a run share.
 #[derive(Debug)]
@@ -70,8 +74,9 @@ pub struct BridgeReport {
 }
 
 impl Bench {
-    /// Prepares everything that `jobs` need, each thing once, on the current pool.
-    pub(super) fn prepare(jobs: &[Job], progress: &dyn Progress) -> Self {
+    /// Prepares everything that `jobs` need, each thing once, on the current pool; modules that are `known` are taken from
+    /// there.
+    pub(super) fn prepare(jobs: &[Job], known: &PreparedModules, progress: &dyn Progress) -> Self {
         let mut bench = Self {
             modules: BTreeMap::new(),
             bridges: BTreeMap::new(),
@@ -85,7 +90,13 @@ impl Bench {
         let crossings: Vec<&Job> = jobs.iter().filter(crossing).collect();
         let all: Vec<&Job> = jobs.iter().collect();
         progress.stage("modules: finite elements, condensation");
-        bench.modules = each(&all, module_key, |job| bench.module(job));
+        let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
+        let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
+        bench.modules = each(&new, module_key, |job| bench.module(job));
+        let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
+        bench
+            .modules
+            .extend(taken.map(|(key, module)| (key.clone(), module.clone())));
         progress.stage("bridges: assembly");
         let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
         bench.bridges = each(&loaded, bridge_key, |job| bench.bridge(job, Ends::Supported));
@@ -168,6 +179,11 @@ impl Bench {
         shared(&self.creeping, &creeping_key(job))
             .map(Some)
             .map_err(|e| format!("static peak: {e}"))
+    }
+
+    /// The modules, for a later run.
+    pub(super) fn modules(&self) -> PreparedModules {
+        PreparedModules(self.modules.clone())
     }
 
     /// Modules condensed.
@@ -282,5 +298,5 @@ fn creeping_key(job: &Job) -> CreepingKey {
     let gaps = job
         .gaps_m()
         .map(|(tension, compression)| (tension.to_bits(), compression.to_bits()));
-    (bridge_key(job), job.vehicle.id, gaps, job.load_n.to_bits())
+    (bridge_key(job), job.vehicle.key.clone(), gaps, job.load_n.to_bits())
 }

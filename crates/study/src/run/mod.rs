@@ -10,7 +10,7 @@ mod progress;
 mod record;
 mod statics;
 
-pub use bench::BridgeReport;
+pub use bench::{BridgeReport, PreparedModules};
 pub use progress::{Progress, Silent, Tally};
 pub use record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
 
@@ -69,7 +69,7 @@ pub fn run(study: &Study, jobs: &[Job], threads: usize, progress: &dyn Progress)
     let threads = pool.current_num_threads();
     pool.install(|| {
         let start = Instant::now();
-        let bench = Bench::prepare(jobs, progress);
+        let bench = Bench::prepare(jobs, &PreparedModules::default(), progress);
         let offline_s = start.elapsed().as_secs_f64();
         progress.stage("running jobs");
         let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -101,6 +101,31 @@ pub fn run(study: &Study, jobs: &[Job], threads: usize, progress: &dyn Progress)
             jobs_s,
         })
     })
+}
+
+/// Solves jobs of several studies on the current pool: what any of them share is prepared once, and modules that are
+/// `known` are not prepared again. Leaves a record for each job in their order, and the modules.
+pub(crate) fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<JobRecord>, Prepared) {
+    let alone: Vec<Job> = jobs.iter().map(|(_, job)| (*job).clone()).collect();
+    let bench = Bench::prepare(&alone, known, &Silent);
+    let records = jobs
+        .par_iter()
+        .with_max_len(1)
+        .map(|(study, job)| record(study, job, &bench));
+    let records = records.collect();
+    let prepared = Prepared {
+        modules: bench.modules(),
+        condensations: bench.condensations(),
+    };
+    (records, prepared)
+}
+
+/// What a run prepared.
+pub(crate) struct Prepared {
+    /// The modules.
+    pub modules: PreparedModules,
+    /// How many were condensed for it.
+    pub condensations: usize,
 }
 
 fn record(study: &Study, job: &Job, bench: &Bench) -> JobRecord {

@@ -1,0 +1,132 @@
+//! `pontoon calibrate`: a bridge's numbers identified from references.
+
+use crate::Ending;
+use crate::args::{CalibrateArguments, Common, Format};
+use crate::words;
+use anyhow::{Context, Result};
+use pontoon_study::calibrate::{Calibration, Parameters, calibrate as fit};
+use pontoon_study::document::pretty;
+use pontoon_study::reference::Reference;
+use pontoon_study::spec::read_bridge;
+use pontoon_study::tables::{Folder, FolderError};
+use serde_json::{Value, json};
+use std::ffi::OsStr;
+use std::path::Path;
+
+/// Fits, writes the bridge and says what was found.
+pub fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Ending> {
+    let bridge = read_bridge(&arguments.bridge)?;
+    let references = arguments
+        .with
+        .iter()
+        .map(|path| Reference::open(path))
+        .collect::<Result<Vec<_>, _>>()?;
+    let parameters = Parameters::open(&arguments.parameters)?;
+    let (folder, name) = place(&arguments.out).context("no place for the bridge")?;
+    let told = |candidates: usize, least: f64| {
+        if !common.quiet {
+            words::note(&format!("{candidates} candidates, least sum of squares {least:.4}"));
+        }
+    };
+    let threads = arguments.threads.map_or(0, usize::from);
+    let found = fit(&bridge, &references, &parameters, threads, &told)?;
+    let written = pretty(&found.bridge);
+    folder
+        .write(&name, |file| std::io::Write::write_all(file, written.as_bytes()))
+        .context("bridge not written")?;
+    for failed in &found.failed {
+        words::note(&format!("failed inside the bounds: {failed}"));
+    }
+    words::result(&match common.format {
+        Format::Json => format!("{:#}\n", json!(found)),
+        _ => text(&found, &arguments.out),
+    })?;
+    Ok(if found.converged { Ending::Good } else { Ending::Short })
+}
+
+/// The folder of a file, made where it is missing, and the file's name.
+fn place(out: &Path) -> Result<(Folder, String), FolderError> {
+    let folder = out
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let name = out
+        .file_name()
+        .map(OsStr::to_string_lossy)
+        .unwrap_or_default()
+        .into_owned();
+    Ok((Folder::create(folder)?, name))
+}
+
+fn text(found: &Calibration, out: &Path) -> String {
+    let columns = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let number = |x: f64| Value::from(words::significant(x));
+    let checks: Vec<Vec<Value>> = found
+        .checks
+        .iter()
+        .map(|c| {
+            let share = |x: f64| Value::from(format!("{x:+.3}"));
+            let numbers = [c.expected, c.before, c.after].map(number);
+            let residuals = [c.residual_before, c.residual_after].map(share);
+            [vec![Value::from(c.id.clone())], numbers.to_vec(), residuals.to_vec()].concat()
+        })
+        .collect();
+    let parameters: Vec<Vec<Value>> = found
+        .parameters
+        .iter()
+        .map(|p| {
+            let error = p.standard_error.map_or(Value::Null, number);
+            let range = format!("{} to {}", words::significant(p.lower), words::significant(p.upper));
+            let remark = p.remark.clone().unwrap_or_default();
+            vec![
+                p.name.clone().into(),
+                number(p.start),
+                number(p.found),
+                error,
+                range.into(),
+                remark.into(),
+            ]
+        })
+        .collect();
+    let names: Vec<String> = (1..=found.parameters.len()).map(|i| format!("({i})")).collect();
+    let correlation: Vec<Vec<Value>> = found
+        .correlation
+        .iter()
+        .zip(&found.parameters)
+        .enumerate()
+        .map(|(i, (row, p))| {
+            let cells = row.iter().map(|r| r.map_or(Value::Null, |r| format!("{r:+.2}").into()));
+            [Value::from(format!("({}) {}", i + 1, p.name))]
+                .into_iter()
+                .chain(cells)
+                .collect()
+        })
+        .collect();
+    let undetermined = match found.undetermined.as_slice() {
+        [] => "the data determine every parameter that is not at a bound\n".to_owned(),
+        list => list
+            .iter()
+            .map(|d| format!("the data do not determine {d}\n"))
+            .collect(),
+    };
+    format!(
+        "{}\n{}\n{}\n{undetermined}sum of squares {:.4} before, {:.4} after; {} candidates, {} modules condensed, {} candidates failed\n{}: {}\nbridge in {}\n",
+        words::table(
+            &columns(&["check", "expected", "before", "after", "off before", "off after"]),
+            &checks
+        ),
+        words::table(
+            &columns(&["parameter", "start", "found", "standard error", "bounds", "remark"]),
+            &parameters
+        ),
+        words::table(&[vec!["correlation".to_owned()], names].concat(), &correlation),
+        found.sum_of_squares_start,
+        found.sum_of_squares_best,
+        found.evaluations,
+        found.condensations,
+        found.failed.len(),
+        if found.converged { "converged" } else { "not converged" },
+        found.ending,
+        out.display()
+    )
+}
