@@ -7,6 +7,7 @@ use crate::{Ready, design, with};
 use pontoon_core::bridge::{BridgeDesign, Model, PreparedModule};
 use pontoon_core::fem::{BeamSection, Mesh, NodeId};
 use pontoon_core::module::{Grid, LongitudinalWalls, ModuleMesh, Stiffeners, TransverseWalls};
+use pontoon_core::vehicle::{Axle, Inertia, Vehicle, VehicleDesign};
 use pontoon_core::water::WaterDistribution;
 use std::array::from_fn;
 
@@ -121,6 +122,28 @@ impl BeamModule {
     pub fn continuous_n_m(&self, rigid: f64) -> f64 {
         // two connectors of both trusses each at the height of the posts: 4 k d^2
         rigid * self.bending_stiffness_n_m2 / (self.length_m * 4.0 * self.depth_m.powi(2))
+    }
+
+    /// A vehicle of one axle: half the weight on each line, `points` along a patch of `patch_length_m` whose centre is
+    /// the front.
+    ///
+    /// # Panics
+    /// Where the axle is refused.
+    pub fn axle(&self, patch_length_m: f64, points: usize, inertia: Inertia) -> Vehicle {
+        let axle = Axle {
+            behind_front_m: 0.0,
+            share: 1.0,
+            patch_length_m,
+            patch_width_m: 0.0,
+            track_y_m: self.lines().to_vec(),
+        };
+        let design = VehicleDesign {
+            axles: Some(vec![axle]),
+            inertia,
+            patch_points: points,
+            ..VehicleDesign::default()
+        };
+        design.check(self.breadth_m).expect("an axle")
     }
 
     /// The module in a bridge, every degree of freedom kept.

@@ -6,6 +6,7 @@
 
 pub mod beams;
 pub mod chain;
+pub mod oscillator;
 
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};

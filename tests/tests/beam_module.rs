@@ -5,7 +5,7 @@
 use pontoon_core::analysis::modes::modes;
 use pontoon_core::bridge::Model;
 use pontoon_core::connector::Connection;
-use pontoon_core::vehicle::{Axle, Inertia, Vehicle, VehicleDesign};
+use pontoon_core::vehicle::Inertia;
 use pontoon_tests::beams::BeamModule;
 use pontoon_tests::*;
 use std::f64::consts::PI;
@@ -14,23 +14,6 @@ const EI: f64 = 1e9;
 const MASS_KG_M: f64 = 1500.0;
 const SPAN_M: f64 = 20.0;
 const LOAD_N: f64 = 1e5;
-
-/// A point on each line.
-fn point(module: &BeamModule) -> Vehicle {
-    let axle = Axle {
-        behind_front_m: 0.0,
-        share: 1.0,
-        patch_length_m: 0.0,
-        patch_width_m: 0.0,
-        track_y_m: module.lines().to_vec(),
-    };
-    let design = VehicleDesign {
-        axles: Some(vec![axle]),
-        inertia: Inertia::None,
-        ..VehicleDesign::default()
-    };
-    design.check(module.breadth_m).expect("a vehicle")
-}
 
 /// Next to no water: without any, K without connectors would be singular.
 const WATER_N_M2: f64 = 10.0;
@@ -60,7 +43,7 @@ fn midspan_deflects_as_a_beam() {
         let (module, ready) = span(4, ei, MASS_KG_M, rigid, model);
         let case = ready.case(Connection::Linear, LOAD_N, 0.5 * SPAN_M);
         ready
-            .statics(&point(&module))
+            .statics(&module.axle(0.0, 1, Inertia::None))
             .solve(&case)
             .expect("solved")
             .deflection_m[1]

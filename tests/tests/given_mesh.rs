@@ -55,6 +55,9 @@ fn key(of: Result<PreparedModule, BridgeError>) -> String {
     }
 }
 
+/// The key that a change must be refused with, and the change.
+type Change<T> = (&'static str, fn(&mut T));
+
 fn beam() -> (BeamModule, BridgeDesign) {
     let beam = BeamModule::slender(10.0, 4, 1e9, 1000.0, 1e3);
     let design = beam.design(2, 1e4, 0.0, 1e7);
@@ -68,28 +71,28 @@ fn what_does_not_fit_is_refused_by_name() {
     let (beam, good) = beam();
     let of = |d: &BridgeDesign, mesh: ModuleMesh| PreparedModule::from_mesh(d, mesh, Model::Full);
     assert!(of(&good, beam.mesh()).is_ok());
-    let designs: [(&str, &dyn Fn(&mut BridgeDesign)); 7] = [
-        ("hinges.y_m[1]", &|d| d.hinges.y_m = vec![-1.0, 0.5]),
-        ("connectors.y_m[0]", &|d| d.connectors.y_m = vec![0.0]),
-        ("grid.x", &|d| d.module.length_m = 10.5),
-        ("grid.x", &|d| d.module.length_m = 9.5),
-        ("grid.y", &|d| d.module.breadth_m = 2.1),
-        ("grid.deck[0]", &|d| d.module.depth_m = 1.05),
-        ("modules", &|d| d.modules = 0),
+    let designs: [Change<BridgeDesign>; 7] = [
+        ("hinges.y_m[1]", |d| d.hinges.y_m = vec![-1.0, 0.5]),
+        ("connectors.y_m[0]", |d| d.connectors.y_m = vec![0.0]),
+        ("grid.x", |d| d.module.length_m = 10.5),
+        ("grid.x", |d| d.module.length_m = 9.5),
+        ("grid.y", |d| d.module.breadth_m = 2.1),
+        ("grid.deck[0]", |d| d.module.depth_m = 1.05),
+        ("modules", |d| d.modules = 0),
     ];
     for (expected, change) in designs {
         assert_eq!(key(of(&with(&good, change), beam.mesh())), expected);
     }
-    let meshes: [(&str, &dyn Fn(&mut ModuleMesh)); 7] = [
-        ("beams[3]", &|m| m.mesh.beams[3].nodes[1] = NodeId(1000)),
-        ("grid.bottom[2]", &|m| m.mesh.nodes[2].z = 0.01),
-        ("grid.bottom[2]", &|m| m.mesh.nodes[2].x = f64::NAN),
-        ("grid.deck", &|m| {
+    let meshes: [Change<ModuleMesh>; 7] = [
+        ("beams[3]", |m| m.mesh.beams[3].nodes[1] = NodeId(1000)),
+        ("grid.bottom[2]", |m| m.mesh.nodes[2].z = 0.01),
+        ("grid.bottom[2]", |m| m.mesh.nodes[2].x = f64::NAN),
+        ("grid.deck", |m| {
             m.mesh.nodes.truncate(19);
         }),
-        ("grid.x[2]", &|m| m.grid.x[2] = 2.0),
-        ("grid.x", &|m| m.grid.x.truncate(1)),
-        ("grid.deck", &|m| m.grid.y.insert(1, 0.0)),
+        ("grid.x[2]", |m| m.grid.x[2] = 2.0),
+        ("grid.x", |m| m.grid.x.truncate(1)),
+        ("grid.deck", |m| m.grid.y.insert(1, 0.0)),
     ];
     for (expected, change) in meshes {
         let mut mesh = beam.mesh();
