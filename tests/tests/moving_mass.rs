@@ -48,7 +48,7 @@ impl Galerkin {
     fn new(inertia: Inertia) -> Self {
         Self {
             inertia,
-            modes: 24,
+            modes: if inertia == Inertia::Local { 32 } else { 24 },
             mass_kg: VEHICLE_KG,
             terms: [1.0, 1.0],
         }
@@ -97,7 +97,7 @@ impl Galerkin {
 
     /// Midspan at times `n h`.
     fn midspan_m(&self, h: f64, steps: usize) -> Vec<f64> {
-        let parts = 4;
+        let parts = if self.modes > 24 { 8 } else { 4 };
         let dt = h / parts as f64;
         let (mut q, mut v) = (DVector::zeros(self.modes), DVector::zeros(self.modes));
         let middle = self.shapes(0.5 * SPAN_M, 0);
@@ -145,11 +145,12 @@ fn crossed(inertia: Inertia, elements: usize, h: f64) -> Vec<f64> {
 /// What a wrong Galerkin solution is wrong in.
 type Change = (&'static str, fn(&mut Galerkin));
 
-/// Midspan over the whole crossing, over its largest, for the three kinds of inertia; 40 elements, 1000 steps. 2e-3: the
-/// deck is straight between nodes (a thirtieth of a percent, `tests/tests/moving_load.rs`) and points come on within a step,
-/// with their mass at once (measured 1e-3); twenty-four modes are converged within 1e-3, the slowest where the mass leaves its
-/// motion behind (`local`). Twins: the vehicle's mass at the same
-/// weight; the Coriolis term and the centripetal one 5 % off, and each left out; the other kinds of inertia.
+/// Midspan over the whole crossing, over its largest, for the three kinds of inertia; 80 elements, 1000 steps. 2e-3: the
+/// deck is straight between nodes and points come on within a step (measured 5e-4, and 8e-4 for `local`). Only `local`
+/// converges slowly, in modes as in elements, with order 1: a mass that leaves its motion behind on the beam stirs the high
+/// modes; from 24 to 48 modes and from 40 to 160 elements the two solutions draw near each other, 2e-3, 7e-4, 5e-4. Modes of
+/// the Galerkin solution: 1e-3 against three quarters of them. Twins: the vehicle's mass at the same weight; the Coriolis term
+/// and the centripetal one 5 % off, and each left out; the other kinds of inertia.
 #[test]
 fn midspan_follows_the_galerkin_solution() {
     let h = SPAN_M / speed_m_s() / STEPS as f64;
@@ -159,9 +160,9 @@ fn midspan_follows_the_galerkin_solution() {
         galerkin.midspan_m(h, STEPS)
     };
     for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
-        let (found, exact) = (crossed(inertia, 20, h), of(inertia, |_| {}));
+        let (found, exact) = (crossed(inertia, 40, h), of(inertia, |_| {}));
         let right = apart(&found, &exact);
-        let fewer = apart(&of(inertia, |g| g.modes = 18), &exact);
+        let fewer = apart(&of(inertia, |g| g.modes = g.modes * 3 / 4), &exact);
         held(
             &format!("{inertia:?}, modes of the other"),
             1e-3,
