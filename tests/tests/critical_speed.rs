@@ -5,7 +5,7 @@
 //! left side and r its roots `W = P sum of e^(r s)/D'(r)` over those that decay ahead, and less the same over the others behind.
 //! Without damping that is under P `W = w0 / sqrt(1 - (V/V_cr)^2)`, `w0 = P lambda/2k`, `lambda = (k/4EI)^(1/4)`, `V_cr = (4 k EI
 //! / mu^2)^(1/4)` (S. Timoshenko: Method of analysis of statical and dynamical stresses in rail, Proc. 2nd Int. Congress of
-//! Applied Mechanics, Zurich, 1926; L. Fryba: Vibration of Solids and Structures under Moving Loads, ch. 13).
+//! Applied Mechanics, Zurich, 1926; L. Fryba: Vibration of Solids and Structures under Moving Loads).
 //!
 //! EI = 1e7 N m^2, k = 64 kN/m^2, mu = 6000 + 6000 kg/m: lambda = 0.2 1/m, V_cr = 11.55 m/s. b = 0.6 1/s, an eighth of critical
 //! in heave, so that what the entry stirs up has died away where the deflection is compared, 200 m on in 240 m of beam.

@@ -2,9 +2,9 @@
 //!
 //! Sketch: a beam EI, mu a metre, span L, simple supports, at rest; a mass M of weight M g comes on at t = 0 with speed V.
 //! `w = sum of q_j sin(j pi x/L)`, `mu L/2 (q_j'' + omega_j^2 q_j) = phi_j M (g - a)`, where `a` is 0 (`none`), `w''` under each
-//! point (`local`), or `w'' + 2 V w'_x + V^2 w_xx` of the footprint's mean (`convective`; Fryba 1999, ch. 2, on the mass that
+//! point (`local`), or `w'' + 2 V w'_x + V^2 w_xx` of the footprint's mean (`convective`, the whole acceleration of a mass that
 //! follows the beam). Integrated here by Runge-Kutta steps far below the engine's. No published table of numbers was at hand
-//! to be cited; the equations are.
+//! to be cited; the equations are written out here.
 //!
 //! EI = 1e9 N m^2, mu = 1500 kg/m, L = 20 m, M = mu L/2, `alpha = V L/pi sqrt(mu/EI)` = 0.3, footprint 0.5 m of eight points.
 

@@ -132,7 +132,7 @@ fn joint_sinks_as_by_hand() {
 }
 
 /// Heave, pitch and the fold of the free pair, by their names. 5e-6: modules of this EI bend under the connector, 3e-6 of the
-/// fold. Twins: p_b, m_a, mass; of the fold also hinge offset and connector.
+/// fold (ten times as much with a tenth of it). Twins: p_b, m_a, mass; of the fold also hinge offset and connector.
 #[test]
 fn floating_pair_sounds_as_by_hand() {
     let modes = PAIR.ready().1.modes(9);
