@@ -4,6 +4,10 @@
 
 #![allow(clippy::expect_used)]
 
+pub mod beams;
+pub mod chain;
+pub mod oscillator;
+
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::{Mode, Rayleigh, bending_frequencies_hz, modes, rayleigh};
@@ -85,7 +89,11 @@ pub struct Ready {
 impl Ready {
     /// Prepares a design.
     pub fn new(design: &BridgeDesign, model: Model) -> Self {
-        let module = PreparedModule::new(design, model).expect("a module");
+        Self::of(design, PreparedModule::new(design, model).expect("a module"))
+    }
+
+    /// Prepares a design with a module that was made otherwise.
+    pub fn of(design: &BridgeDesign, module: PreparedModule) -> Self {
         let [free, bridge] =
             [Ends::Free, Ends::Supported].map(|ends| Arc::new(Bridge::new(design, &module, ends).expect("a bridge")));
         Self {

@@ -2,6 +2,7 @@
 //!
 //! Knows where everything is along the bridge. Does not know what is done with it.
 
+use super::fit::check_fit;
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::product::ModuleProduct;
 use super::row::{HeldDof, Row};
@@ -66,15 +67,24 @@ impl Bridge {
     /// Assembles the bridge from one prepared module.
     ///
     /// # Errors
-    /// [`BridgeError`].
+    /// [`BridgeError`]; a module whose mesh does not span the design's or has no line at one of its hinges or connectors is
+    /// refused.
     pub fn new(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Result<Self, BridgeError> {
+        check_fit(design, &module.grid)?;
         let row = Row::number(design, module, ends);
         let k = SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.k))?;
         let m = SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.m))?;
         let grid = &module.grid;
         let (nx, ny, l) = (grid.x.len(), grid.y.len(), design.module.length_m);
-        let centre = grid.y_line(0.0).unwrap_or(ny / 2);
         let of = |j: usize, node: NodeId, direction: usize| row.global(j, &module.row(node, direction));
+        let centre = |j: usize, ix: usize| {
+            let rows: Vec<(f64, SparseRow)> = grid
+                .centre()
+                .into_iter()
+                .map(|(weight, iy)| (weight, of(j, grid.bottom(ix, iy), Z)))
+                .collect();
+            SparseRow::combine(&rows.iter().map(|(w, row)| (*w, row)).collect::<Vec<_>>())
+        };
         let ends_of = |j: usize| [(j, Side::Left), (j, Side::Right)];
         let all_ends = || {
             (0..design.modules)
@@ -96,11 +106,11 @@ impl Bridge {
                 }
             }
         }
-        let mut positions: Vec<SparseRow> = (0..design.modules).map(|j| of(j, grid.bottom(0, centre), Z)).collect();
-        positions.push(of(design.modules - 1, grid.bottom(nx - 1, centre), Z));
+        let mut positions: Vec<SparseRow> = (0..design.modules).map(|j| centre(j, 0)).collect();
+        positions.push(centre(design.modules - 1, nx - 1));
         let stations = || (0..design.modules).flat_map(|j| (0..nx).map(move |ix| (j, ix)));
         let centre_line = stations()
-            .map(|(j, ix)| (j as f64 * l + grid.x[ix], of(j, grid.bottom(ix, centre), Z)))
+            .map(|(j, ix)| (j as f64 * l + grid.x[ix], centre(j, ix)))
             .collect();
         let edges = stations()
             .flat_map(|s| [(s, 0), (s, ny - 1)])

@@ -4,6 +4,7 @@
 
 mod assembly;
 mod design;
+mod fit;
 mod load;
 mod prepared;
 mod product;

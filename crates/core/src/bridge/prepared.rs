@@ -2,9 +2,10 @@
 //!
 //! Knows which nodes carry hinges, connectors, wheels, supports and water. Does not know neighbours.
 
+use super::fit::check_fit;
 use super::{BridgeDesign, BridgeError, Model};
 use crate::fem::{MassKind, NodeId, SparseRow, SymmetricMatrix, assemble};
-use crate::module::{Grid, mesh_module};
+use crate::module::{Grid, ModuleMesh, mesh_module};
 use crate::superelement::SuperElement;
 use crate::water::spread;
 use std::collections::BTreeSet;
@@ -45,7 +46,7 @@ pub struct PreparedModule {
 }
 
 impl PreparedModule {
-    /// Meshes the module, adds the water and, for the super-element, condenses it.
+    /// Meshes the design's box and goes on as [`PreparedModule::from_mesh`].
     ///
     /// # Errors
     /// [`BridgeError`].
@@ -58,7 +59,25 @@ impl PreparedModule {
             .chain(&design.connectors.y_m)
             .copied()
             .collect();
-        let meshed = mesh_module(&design.module, &extra);
+        Self::from_mesh(design, mesh_module(&design.module, &extra), model)
+    }
+
+    /// Takes any mesh for the module, adds the water and, for the super-element, condenses it.
+    ///
+    /// `k = k_structure + k_b`, `m = m_structure + m_a` as for the box (`crate::water::spread` over the cells of the grid's
+    /// bottom, p_b and m_a the design's), so that beams in place of plates meet the same bridge, statics and crossings. Of
+    /// the design's module only length, breadth and depth count here [m], and `mesh.elements_along` for the places of
+    /// [`crate::analysis::statics::StaticSolver::creeping_peak_m`]. The grid spans that length and breadth, bottom nodes lie
+    /// at z = 0 and deck nodes at the depth, and a line across is where a hinge or a connector is.
+    ///
+    /// # Errors
+    /// [`BridgeError::Design`] where the design, the grid or their fit is refused, [`BridgeError::Fem`] where an element is
+    /// degenerate or the mesh leaves a mechanism to condense. Verified by `tests/tests/given_mesh.rs` and
+    /// `tests/tests/beam_module.rs`.
+    pub fn from_mesh(design: &BridgeDesign, meshed: ModuleMesh, model: Model) -> Result<Self, BridgeError> {
+        design.check()?;
+        meshed.check(design.module.depth_m)?;
+        check_fit(design, &meshed.grid)?;
         let (grid, mesh) = (meshed.grid, meshed.mesh);
         let (structure, mass) = assemble(&mesh, MassKind::Consistent)?;
         let heave: Vec<f64> = (0..mesh.dofs()).map(|i| if i % 6 == Z { 1.0 } else { 0.0 }).collect();

@@ -3,63 +3,11 @@
 //! Knows lines, plates and beams. Every line of a wall, a stiffener or a given extra place is a mesh line.
 
 use super::ModuleDesign;
+use super::grid::{Grid, ModuleMesh, cells, line};
 use crate::fem::{BeamSection, Mesh, NodeId, ShellSection};
 use crate::input::SAME_PLACE_M;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// The structured grid of deck and bottom.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
-    /// Lines along the module, from 0 to the length [m].
-    pub x: Vec<f64>,
-    /// Lines across, from minus to plus half the breadth [m].
-    pub y: Vec<f64>,
-    deck: Vec<NodeId>,
-    bottom: Vec<NodeId>,
-}
-
-impl Grid {
-    /// Deck node at lines `ix`, `iy`.
-    pub fn deck(&self, ix: usize, iy: usize) -> NodeId {
-        self.deck[ix * self.y.len() + iy]
-    }
-
-    /// Bottom node at lines `ix`, `iy`.
-    pub fn bottom(&self, ix: usize, iy: usize) -> NodeId {
-        self.bottom[ix * self.y.len() + iy]
-    }
-
-    /// Number of the line across at `y_m`, where there is one.
-    pub fn y_line(&self, y_m: f64) -> Option<usize> {
-        line(&self.y, y_m)
-    }
-
-    /// Bottom cells: their corner nodes in cyclic order and their area [m^2].
-    pub fn bottom_cells(&self) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
-        cells(self.x.len(), self.y.len()).map(|(i, j)| {
-            let area = (self.x[i + 1] - self.x[i]) * (self.y[j + 1] - self.y[j]);
-            (
-                [
-                    self.bottom(i, j),
-                    self.bottom(i + 1, j),
-                    self.bottom(i + 1, j + 1),
-                    self.bottom(i, j + 1),
-                ],
-                area,
-            )
-        })
-    }
-}
-
-/// A module's mesh and its grid.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModuleMesh {
-    /// Nodes, shells, beams.
-    pub mesh: Mesh,
-    /// Deck and bottom.
-    pub grid: Grid,
-}
 
 /// Meshes a checked design, with extra lines across at `extra_y` [m].
 pub fn mesh_module(design: &ModuleDesign, extra_y: &[f64]) -> ModuleMesh {
@@ -95,14 +43,6 @@ pub fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
         lines_across: ny,
         dofs: 6 * (2 * nx * ny + (z.len() - 2) * on_plates),
     }
-}
-
-fn line(lines: &[f64], at: f64) -> Option<usize> {
-    lines.iter().position(|&l| (l - at).abs() <= SAME_PLACE_M)
-}
-
-fn cells(nx: usize, ny: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..nx - 1).flat_map(move |i| (0..ny - 1).map(move |j| (i, j)))
 }
 
 /// Sorted lines without near-duplicates, each interval divided into `parts(length)` equal parts.

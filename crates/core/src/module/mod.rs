@@ -5,6 +5,8 @@
 
 mod box_mesh;
 mod design;
+mod grid;
 
-pub use box_mesh::{Grid, MeshSize, ModuleMesh, mesh_module, mesh_size};
+pub use box_mesh::{MeshSize, mesh_module, mesh_size};
 pub use design::{LongitudinalWalls, Material, MeshDesign, ModuleDesign, Stiffeners, TransverseWalls};
+pub use grid::{Grid, ModuleMesh};

@@ -1,0 +1,31 @@
+//! Whether a module's grid serves a bridge's design.
+//!
+//! Knows that no hinge, connector or end may be dropped for want of a line. Does not know what is done with the lines.
+
+use super::BridgeDesign;
+use crate::input::{InvalidInput, SAME_PLACE_M};
+use crate::module::Grid;
+
+/// Refuses a grid that does not span the design's module, from 0 to its length and half its breadth to either side, or has
+/// no line across at a hinge or a connector.
+pub(super) fn check_fit(design: &BridgeDesign, grid: &Grid) -> Result<(), InvalidInput> {
+    let (length, half) = (design.module.length_m, 0.5 * design.module.breadth_m);
+    for (key, lines, from, to) in [("grid.x", &grid.x, 0.0, length), ("grid.y", &grid.y, -half, half)] {
+        let ends = (lines.first().copied(), lines.last().copied());
+        let fits = |end: Option<f64>, place: f64| end.is_some_and(|end| (end - place).abs() <= SAME_PLACE_M);
+        if !(fits(ends.0, from) && fits(ends.1, to)) {
+            let found = lines.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+            return Err(InvalidInput::new(key, found, format!("lines from {from} to {to}")));
+        }
+    }
+    for (key, places) in [
+        ("hinges.y_m", &design.hinges.y_m),
+        ("connectors.y_m", &design.connectors.y_m),
+    ] {
+        if let Some(i) = places.iter().position(|&y| grid.y_line(y).is_none()) {
+            let allowed = "the place of a line across of the module's mesh";
+            return Err(InvalidInput::new(format!("{key}[{i}]"), places[i], allowed));
+        }
+    }
+    Ok(())
+}
