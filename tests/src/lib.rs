@@ -37,7 +37,16 @@ pub const fn gaps(gap_tension_m: f64, gap_compression_m: f64) -> Connection {
 
 /// A bridge of `studies/bridges`.
 pub fn design(name: &str) -> BridgeDesign {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../studies/bridges/{name}.json"));
+    read_design(&format!("bridges/{name}"))
+}
+
+/// The bridge that the identification starts from, with the prototype's water, masses and truss.
+pub fn start_design() -> BridgeDesign {
+    read_design("identification/start")
+}
+
+fn read_design(place: &str) -> BridgeDesign {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../studies/{place}.json"));
     let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
 }

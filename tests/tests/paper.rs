@@ -1,5 +1,6 @@
-//! The bridge of Fu, Cui, Chen, Wang: Marine Structures 18 (2005) 85-107, against what the paper prints and against the
-//! prototype by which the bridge was identified.
+//! The bridge of Fu, Cui, Chen, Wang: Marine Structures 18 (2005) 85-107: the identified one against what the paper prints,
+//! the one that the identification starts from against the prototype whose numbers it has. That every printed statement
+//! holds is for the references of `studies/fig12_14_gap_tension/reference.json` and its like.
 
 #![allow(clippy::expect_used)]
 
@@ -38,6 +39,12 @@ const MODES: usize = 24;
 fn bridge() -> &'static Ready {
     static READY: OnceLock<Ready> = OnceLock::new();
     READY.get_or_init(|| Ready::new(&design("fu2005"), Model::SuperElement))
+}
+
+/// The bridge that has the prototype's water, masses and truss.
+fn prototype() -> &'static Ready {
+    static READY: OnceLock<Ready> = OnceLock::new();
+    READY.get_or_init(|| Ready::new(&start_design(), Model::SuperElement))
 }
 
 fn full_modes() -> &'static [Mode] {
@@ -81,7 +88,7 @@ fn structural_mass_is_that_of_the_river_link() {
     );
 }
 
-/// 1 %: three printed digits are worth 0.15 %, the rest is the identified water's. Twin: p_b.
+/// 0.5 %: three printed digits are worth 0.15 %, the rest is the identified water's. Twin: p_b.
 #[test]
 fn module_heaves_rolls_and_pitches_as_printed() {
     let modes = |p_b: f64| {
@@ -89,18 +96,18 @@ fn module_heaves_rolls_and_pitches_as_printed() {
         Ready::new(&one, Model::Full).modes(8)
     };
     let [right, wrong] = [1.0, 1.05].map(|p_b| misses(&modes(p_b), &MODULE_HZ));
-    held("module modes", 0.01, right, wrong);
+    held("module modes", 0.005, right, wrong);
 }
 
-/// 3 %: the plates are identified, not printed; fourteen modes hang on three thicknesses and one truss. Twin: E.
+/// 2 %: the plates are identified, not printed; fourteen modes hang on two thicknesses and one truss. Twin: E.
 #[test]
 fn fourteen_modes_as_printed() {
     let right = misses(full_modes(), &BRIDGE_HZ);
-    held("bridge modes", 0.03, right, misses(&modes_of_wrong_e()[0], &BRIDGE_HZ));
+    held("bridge modes", 0.02, right, misses(&modes_of_wrong_e()[0], &BRIDGE_HZ));
 }
 
-/// Above the full model by Rayleigh's principle, but for the eigensolver's 1e-7, and by no more than 0.2 %, a tenth of
-/// what the modes miss the paper by. Twins: E low goes below, E high goes too far above.
+/// Above the full model by Rayleigh's principle, but for the eigensolver's 1e-7, and by no more than 0.1 %, a twentieth
+/// of what the modes may miss the paper by. Twins: E low goes below, E high goes too far above.
 #[test]
 fn super_element_is_an_upper_bound_and_close() {
     let above = |modes: &[Mode]| -> Vec<f64> {
@@ -110,7 +117,7 @@ fn super_element_is_an_upper_bound_and_close() {
     let [right, low, high] = [&bridge().modes(MODES), &modes_of_wrong_e()[0], &modes_of_wrong_e()[1]].map(|m| above(m));
     let below = |ratios: &[f64]| largest(ratios.iter().map(|r| -r));
     held("below the full model", 1e-7, below(&right), below(&low));
-    held("above the full model", 0.002, largest(right), largest(high));
+    held("above the full model", 0.001, largest(right), largest(high));
 }
 
 /// Place of position 7 [m].
@@ -124,33 +131,35 @@ fn standing(ready: &Ready, connection: Connection, load_n: f64) -> StaticRespons
         .expect("solved")
 }
 
-/// 4 %: between the footprints of 6.7 m (which gives the printed 0.141 m) and 3.35 m the prototype moves by 3 %. Twin: the
-/// load. The influential length is read off a printed curve, 4 %; closer, 0.3 %, is the prototype's. Twins: the gaps, p_b.
+/// 2 %: between the footprints of 6.7 m and 3.35 m the prototype moves by 3 %. Twin: the load. The influential length is
+/// read off a printed curve, 3 %; closer, 0.3 %, is the prototype's. Twins: the gaps, p_b.
 #[test]
 fn linear_static_peak_and_influential_length() {
     let right = standing(bridge(), Connection::Linear, PAPER_LOAD_N);
     let heavy = standing(bridge(), Connection::Linear, 1.05 * PAPER_LOAD_N);
     let peak = |r: &StaticResponse| miss(r.deflection_m[6], 0.141);
-    held("linear static peak", 0.04, peak(&right), peak(&heavy));
+    held("linear static peak", 0.02, peak(&right), peak(&heavy));
 
     let hanging = standing(bridge(), PAPER_GAPS, PAPER_LOAD_N);
     let length = |r: &StaticResponse, expected: f64| miss(r.influential_length_m, expected);
-    held("influential length", 0.04, length(&right, 74.0), length(&hanging, 74.0));
-    let stiff_water = Ready::new(&with_p_b(&design("fu2005"), 1.05), Model::SuperElement);
+    held("influential length", 0.03, length(&right, 74.0), length(&hanging, 74.0));
+    let right = standing(prototype(), Connection::Linear, PAPER_LOAD_N);
+    let stiff_water = Ready::new(&with_p_b(&start_design(), 1.05), Model::SuperElement);
     let wrong = standing(&stiff_water, Connection::Linear, PAPER_LOAD_N);
     held("prototype's length", 0.003, length(&right, 72.3), length(&wrong, 72.3));
 }
 
-/// 5 %: a measured peak, printed to three digits, on a bridge whose gaps are nominal. Twin: the load. Prototype, 0.5 %: the
+/// 3 %: a measured peak, printed to three digits, on a bridge whose gaps are nominal. Twin: the load. Prototype, 0.5 %: the
 /// meshes differ. Twin: the compression gap.
 #[test]
 fn static_peak_with_gaps_and_uplift_on_both_sides() {
     let right = standing(bridge(), PAPER_GAPS, PAPER_LOAD_N);
     let light = standing(bridge(), PAPER_GAPS, 0.95 * PAPER_LOAD_N);
     let peak = |r: &StaticResponse, expected: f64| miss(r.deflection_m[6], expected);
-    held("static peak with gaps", 0.05, peak(&right, 0.210), peak(&light, 0.210));
-    let wider = standing(bridge(), gaps(0.028, 1.05 * 0.0055), PAPER_LOAD_N);
-    held("prototype's peak", 0.005, peak(&right, 0.207), peak(&wider, 0.207));
+    held("static peak with gaps", 0.03, peak(&right, 0.210), peak(&light, 0.210));
+    let own = standing(prototype(), PAPER_GAPS, PAPER_LOAD_N);
+    let wider = standing(prototype(), gaps(0.028, 1.05 * 0.0055), PAPER_LOAD_N);
+    held("prototype's peak", 0.005, peak(&own, 0.207), peak(&wider, 0.207));
 
     let uplift = |side: &[f64]| largest(side.iter().map(|w| -w));
     let (left, right) = (uplift(&right.deflection_m[..6]), uplift(&right.deflection_m[7..]));
@@ -216,7 +225,7 @@ fn cross(ready: &Ready, jobs: &[(Connection, f64, f64)]) -> Vec<CrossingResponse
 
 fn crossings() -> &'static [CrossingResponse] {
     static READY: OnceLock<Vec<CrossingResponse>> = OnceLock::new();
-    READY.get_or_init(|| cross(bridge(), &CROSSINGS.map(|c| (connection(c.0), c.1, PAPER_LOAD_N))))
+    READY.get_or_init(|| cross(prototype(), &CROSSINGS.map(|c| (connection(c.0), c.1, PAPER_LOAD_N))))
 }
 
 /// Deflection and uplift of position 7 [m], largest compression and tension of joint 7 [N].
@@ -256,7 +265,7 @@ fn crossings_follow_the_prototype() {
     for (missed, row) in all.iter().zip(&CROSSINGS) {
         println!("  {row:?} {missed:.4?}");
     }
-    let heavy = &cross(bridge(), &[(PAPER_GAPS, 15.0, 1.05 * PAPER_LOAD_N)])[0];
+    let heavy = &cross(prototype(), &[(PAPER_GAPS, 15.0, 1.05 * PAPER_LOAD_N)])[0];
     let heavy = missed(heavy, &CROSSINGS[7]);
     held(
         "deflection of position 7",
@@ -282,7 +291,7 @@ fn hump_grows_by_half_from_3_to_15_m_s() {
     let hump = |gaps_mm: Option<[f64; 2]>| row(gaps_mm, 15.0)[0] / row(gaps_mm, 3.0)[0];
     let right = hump(Some([28.0, 5.5]));
     held("hump ratio", 0.08, (right - 1.5).abs(), (hump(None) - 1.5).abs());
-    let heavy = Ready::new(&with_m_a(&design("fu2005"), 1.05), Model::SuperElement);
+    let heavy = Ready::new(&with_m_a(&start_design(), 1.05), Model::SuperElement);
     let wrong = cross(&heavy, &[3.0, 15.0].map(|v| (PAPER_GAPS, v, PAPER_LOAD_N)));
     let wrong = at_7(&wrong[1])[0] / at_7(&wrong[0])[0];
     let prototype = 31.9 / 21.3;
@@ -317,7 +326,7 @@ fn speed_and_gaps_act_as_printed() {
             fast[2].max(fast[3]) > slow[2].max(slow[3]),
             "{gaps_mm:?}: force grows with speed"
         );
-        let standing = standing(bridge(), connection(gaps_mm), PAPER_LOAD_N).deflection_m[6];
+        let standing = standing(prototype(), connection(gaps_mm), PAPER_LOAD_N).deflection_m[6];
         let creep = slow[0] / standing;
         assert!(
             (0.97..1.06).contains(&creep),
