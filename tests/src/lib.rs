@@ -40,9 +40,14 @@ pub fn design(name: &str) -> BridgeDesign {
     read_design(&format!("bridges/{name}"))
 }
 
-/// The bridge that the identification starts from, with the prototype's water, masses and truss.
-pub fn start_design() -> BridgeDesign {
-    read_design("identification/start")
+/// The bridge that the identification starts from, with its hinges where the prototype has them: the prototype's water,
+/// masses, truss and places.
+pub fn prototype_design() -> BridgeDesign {
+    let mut design = read_design("identification/start");
+    design.hinges.y_m = vec![-1.125, 0.0, 1.125];
+    let lines = &mut design.module.stiffeners.longitudinal_y_m;
+    (lines[4], lines[6]) = (-1.125, 1.125);
+    design
 }
 
 fn read_design(place: &str) -> BridgeDesign {

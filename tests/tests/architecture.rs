@@ -206,7 +206,10 @@ const PURE: [&str; 7] = [
 
 /// Numbers in the unit of something else that is named beside them: a column, a quantity, a parameter whose name ends in
 /// its unit.
-const OF_WHAT_IS_NAMED: [&str; 22] = [
+const OF_WHAT_IS_NAMED: [&str; 25] = [
+    "above",
+    "below",
+    "weights",
     "hold",
     "sets",
     "expected",

@@ -1,5 +1,5 @@
 //! The bridge of Fu, Cui, Chen, Wang: Marine Structures 18 (2005) 85-107: the identified one against what the paper prints,
-//! the one that the identification starts from against the prototype whose numbers it has. That every printed statement
+//! one with the prototype's numbers against the prototype. That every printed statement
 //! holds is for the references of `studies/fig12_14_gap_tension/reference.json` and its like.
 
 #![allow(clippy::expect_used)]
@@ -44,7 +44,7 @@ fn bridge() -> &'static Ready {
 /// The bridge that has the prototype's water, masses and truss.
 fn prototype() -> &'static Ready {
     static READY: OnceLock<Ready> = OnceLock::new();
-    READY.get_or_init(|| Ready::new(&start_design(), Model::SuperElement))
+    READY.get_or_init(|| Ready::new(&prototype_design(), Model::SuperElement))
 }
 
 fn full_modes() -> &'static [Mode] {
@@ -144,7 +144,7 @@ fn linear_static_peak_and_influential_length() {
     let length = |r: &StaticResponse, expected: f64| miss(r.influential_length_m, expected);
     held("influential length", 0.03, length(&right, 74.0), length(&hanging, 74.0));
     let right = standing(prototype(), Connection::Linear, PAPER_LOAD_N);
-    let stiff_water = Ready::new(&with_p_b(&start_design(), 1.05), Model::SuperElement);
+    let stiff_water = Ready::new(&with_p_b(&prototype_design(), 1.05), Model::SuperElement);
     let wrong = standing(&stiff_water, Connection::Linear, PAPER_LOAD_N);
     held("prototype's length", 0.003, length(&right, 72.3), length(&wrong, 72.3));
 }
@@ -291,7 +291,7 @@ fn hump_grows_by_half_from_3_to_15_m_s() {
     let hump = |gaps_mm: Option<[f64; 2]>| row(gaps_mm, 15.0)[0] / row(gaps_mm, 3.0)[0];
     let right = hump(Some([28.0, 5.5]));
     held("hump ratio", 0.08, (right - 1.5).abs(), (hump(None) - 1.5).abs());
-    let heavy = Ready::new(&with_m_a(&start_design(), 1.05), Model::SuperElement);
+    let heavy = Ready::new(&with_m_a(&prototype_design(), 1.05), Model::SuperElement);
     let wrong = cross(&heavy, &[3.0, 15.0].map(|v| (PAPER_GAPS, v, PAPER_LOAD_N)));
     let wrong = at_7(&wrong[1])[0] / at_7(&wrong[0])[0];
     let prototype = 31.9 / 21.3;

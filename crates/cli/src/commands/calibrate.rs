@@ -4,6 +4,7 @@ use crate::Ending;
 use crate::args::{CalibrateArguments, Common, Format};
 use crate::words;
 use anyhow::{Context, Result};
+use pontoon_study::Refusal;
 use pontoon_study::calibrate::{Calibration, Parameters, calibrate as fit};
 use pontoon_study::document::pretty;
 use pontoon_study::reference::Reference;
@@ -22,6 +23,7 @@ pub fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Endin
         .map(|path| Reference::open(path))
         .collect::<Result<Vec<_>, _>>()?;
     let parameters = Parameters::open(&arguments.parameters)?;
+    check_out(&arguments.out, &arguments.bridge)?;
     let (folder, name) = place(&arguments.out).context("no place for the bridge")?;
     let told = |candidates: usize, least: f64| {
         if !common.quiet {
@@ -42,6 +44,16 @@ pub fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Endin
         _ => text(&found, &arguments.out),
     })?;
     Ok(if found.converged { Ending::Good } else { Ending::Short })
+}
+
+/// Refuses to write over a folder or over the bridge that the fit starts from.
+fn check_out(out: &Path, start: &Path) -> Result<(), Refusal> {
+    let found = match (out.is_dir(), out.canonicalize().ok() == start.canonicalize().ok()) {
+        (true, _) => "a folder",
+        (false, true) => "the bridge that the fit starts from",
+        (false, false) => return Ok(()),
+    };
+    Err(Refusal::new(out, "", found, "a file for the bridge found"))
 }
 
 /// The folder of a file, made where it is missing, and the file's name.
@@ -102,8 +114,9 @@ fn text(found: &Calibration, out: &Path) -> String {
                 .collect()
         })
         .collect();
+    let all = found.parameters.iter().all(|p| p.standard_error.is_some());
     let undetermined = match found.undetermined.as_slice() {
-        [] => "the data determine every parameter that is not at a bound\n".to_owned(),
+        [] if all => "the data determine every parameter\n".to_owned(),
         list => list
             .iter()
             .map(|d| format!("the data do not determine {d}\n"))

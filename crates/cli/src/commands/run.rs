@@ -6,7 +6,7 @@ use crate::comparison;
 use crate::progress::Shown;
 use crate::words;
 use anyhow::{Context, Result};
-use pontoon_study::compare::{Comparison, against_reference};
+use pontoon_study::compare::{Comparison, against_reference, check_study};
 use pontoon_study::plan::{Job, Jobs};
 use pontoon_study::reference::Reference;
 use pontoon_study::run::{Outcome, run as run_jobs};
@@ -26,6 +26,9 @@ const FAILURES_SHOWN: usize = 10;
 pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
+    if let Some(reference) = &reference {
+        check_study(reference, &study.spec.name)?;
+    }
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let out = arguments
         .out

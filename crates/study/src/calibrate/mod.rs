@@ -55,7 +55,11 @@ pub fn calibrate(
     let starts = parameters.starts(bridge)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let model = Model::new(bridge, references, parameters, told)?;
-    let fitted = pool.install(|| fit::fit(&starts, &|points| model.residuals(points), &parameters.settings()))?;
+    let fitted = pool.install(|| fit::fit(&starts, &|points| model.residuals(points), &parameters.settings()));
+    if let Some(refusal) = model.refusal() {
+        return Err(refusal.into());
+    }
+    let fitted = fitted?;
     let best: Vec<f64> = fitted.parameters.iter().map(|p| p.best).collect();
     Ok(outcome::calibration(
         &model,

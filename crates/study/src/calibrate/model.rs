@@ -4,13 +4,14 @@
 
 use super::candidate::Candidate;
 use super::parameters::Parameters;
-use crate::compare::Judge;
+use crate::compare::{Judge, Trouble};
 use crate::plan::{Job, Jobs};
 use crate::reference::{CheckKind, CheckSpec, Filter, Quantity, Reference, Role};
 use crate::refusal::Refusal;
 use crate::run::{JobRecord, PreparedModules, solve_together};
 use crate::spec::{BridgeFile, Study};
 use crate::tables::Results;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
@@ -21,6 +22,14 @@ pub(super) struct Model<'a> {
     pub(super) sources: Vec<Source<'a>>,
     told: &'a (dyn Fn(usize, f64) + Sync),
     state: Mutex<State>,
+}
+
+/// Why a candidate has no residuals.
+enum Failure {
+    /// It is the candidate's.
+    Candidate(String),
+    /// It is the reference's, whatever the candidate.
+    Reference(Refusal),
 }
 
 /// A reference with its study.
@@ -39,6 +48,8 @@ struct State {
     candidates: usize,
     condensations: usize,
     least: f64,
+    /// A reference that was found wrong on the way.
+    refusal: Option<Refusal>,
 }
 
 impl<'a> Model<'a> {
@@ -48,6 +59,12 @@ impl<'a> Model<'a> {
         parameters: &'a Parameters,
         told: &'a (dyn Fn(usize, f64) + Sync),
     ) -> Result<Self, Refusal> {
+        for (i, reference) in references.iter().enumerate() {
+            let same = |other: &Reference| other.file.canonicalize().ok() == reference.file.canonicalize().ok();
+            if references[..i].iter().any(same) {
+                return Err(Refusal::new(&reference.file, "", "given twice", "each reference once"));
+            }
+        }
         let known: Vec<String> = references
             .iter()
             .flat_map(|r| &r.spec.checks)
@@ -59,8 +76,17 @@ impl<'a> Model<'a> {
                 if !known.contains(id) {
                     return Err(Refusal::unknown(&parameters.file, key, id, &known));
                 }
-                let meant = references.iter().flat_map(|r| &r.spec.checks).find(|c| c.id == *id);
-                if meant.is_some_and(|check| !has_value(check)) {
+                let mut meant = references.iter().flat_map(|r| &r.spec.checks).filter(|c| c.id == *id);
+                if meant.clone().count() > 1 {
+                    let found = format!("'{id}', which several references have");
+                    return Err(Refusal::new(
+                        &parameters.file,
+                        key,
+                        found,
+                        "an id that one reference has",
+                    ));
+                }
+                if meant.any(|check| !has_value(check)) {
                     let found = format!("'{id}', which is no check of one value with a tolerance");
                     return Err(Refusal::new(
                         &parameters.file,
@@ -69,6 +95,11 @@ impl<'a> Model<'a> {
                         "a value, a mode or a measured value",
                     ));
                 }
+            }
+        }
+        for id in parameters.spec.weights.keys() {
+            if !known.contains(id) {
+                return Err(Refusal::unknown(&parameters.file, format!("weights.{id}"), id, &known));
             }
         }
         let sources = references
@@ -94,11 +125,12 @@ impl<'a> Model<'a> {
                 candidates: 0,
                 condensations: 0,
                 least: f64::INFINITY,
+                refusal: None,
             }),
         })
     }
 
-    /// `(found - expected) / tolerance` of each fitted check, for each of several candidates, all solved together.
+    /// `weight (found - expected) / tolerance` of each fitted check, for each of several candidates, all solved together.
     pub(super) fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<f64>, String>> {
         let prepared: Vec<Result<Vec<(Study, Vec<Job>)>, String>> =
             points.iter().map(|point| self.jobs(point)).collect();
@@ -122,7 +154,18 @@ impl<'a> Model<'a> {
                     .collect();
                 let mut found = Vec::new();
                 for ((source, (study, jobs)), records) in self.sources.iter().zip(studies).zip(&own) {
-                    found.extend(source.residuals(study, jobs, records)?);
+                    found.extend(
+                        source
+                            .residuals(study, jobs, records, &self.parameters.spec.weights)
+                            .map_err(|failure| match failure {
+                                Failure::Candidate(reason) => reason,
+                                Failure::Reference(refusal) => {
+                                    let reason = refusal.to_string();
+                                    self.lock().refusal.get_or_insert(refusal);
+                                    reason
+                                }
+                            })?,
+                    );
                 }
                 Ok(found)
             })
@@ -136,6 +179,11 @@ impl<'a> Model<'a> {
         }
         (self.told)(state.candidates, state.least);
         answers
+    }
+
+    /// What was found wrong with a reference, if anything.
+    pub(super) fn refusal(&self) -> Option<Refusal> {
+        self.lock().refusal.clone()
     }
 
     /// Modules condensed so far.
@@ -209,18 +257,28 @@ impl<'a> Source<'a> {
         self.filters.iter().any(means)
     }
 
-    fn residuals(&self, study: &Study, jobs: &[Job], records: &[JobRecord]) -> Result<Vec<f64>, String> {
+    fn residuals(
+        &self,
+        study: &Study,
+        jobs: &[Job],
+        records: &[JobRecord],
+        weights: &BTreeMap<String, f64>,
+    ) -> Result<Vec<f64>, Failure> {
         if let Some(record) = records.iter().find(|record| record.reason.is_some()) {
             let reason = record.reason.as_deref().unwrap_or_default();
-            return Err(format!("{}: job {}: {reason}", study.spec.name, record.job));
+            let reason = format!("{}: job {}: {reason}", study.spec.name, record.job);
+            return Err(Failure::Candidate(reason));
         }
-        let results = Results::of_run(study, jobs, records, Path::new("candidate"))?;
+        let results = Results::of_run(study, jobs, records, Path::new("candidate")).map_err(Failure::Candidate)?;
         let judge = Judge::new(&results, self.reference);
         let residual = |&i: &usize| {
             let check = &self.reference.spec.checks[i];
             let (expected, tolerance) = check.expected_and_tolerance().unwrap_or_default();
-            let found = judge.value(i).map_err(|reason| format!("{}: {reason}", check.id))?;
-            Ok((found - expected) / tolerance)
+            let found = judge.value(i).map_err(|trouble| match trouble {
+                Trouble::Short(reason) => Failure::Candidate(format!("{}: {reason}", check.id)),
+                Trouble::Refused(refusal) => Failure::Reference(refusal),
+            })?;
+            Ok((found - expected) / tolerance * weights.get(&check.id).unwrap_or(&1.0))
         };
         self.checks.iter().map(residual).collect()
     }
@@ -240,9 +298,9 @@ fn collect(quantity: &Quantity, outer: &Filter, filters: &mut Vec<Filter>) {
         Quantity::Number(_) => {}
         Quantity::Select(select) => filters.push(select.filter.within(outer)),
         Quantity::History(history) => filters.push(history.filter.within(outer)),
-        Quantity::Ratio(two) | Quantity::Difference(two) => two.iter().for_each(|part| collect(part, outer, filters)),
-        Quantity::Largest(list) | Quantity::Smallest(list) => {
-            list.iter().for_each(|part| collect(part, outer, filters))
-        }
+        _ => quantity
+            .parts()
+            .iter()
+            .for_each(|(_, part)| collect(part, outer, filters)),
     }
 }

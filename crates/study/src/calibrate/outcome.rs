@@ -60,7 +60,7 @@ pub struct Calibration {
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Combinations of parameters that the data do not determine, for people.
     pub undetermined: Vec<String>,
-    /// Sum of the squared residuals at the start.
+    /// Sum of the squared residuals at the start, each by its weight.
     pub sum_of_squares_start: f64,
     /// The same at the best point.
     pub sum_of_squares_best: f64,
@@ -156,6 +156,8 @@ fn checks(model: &Model<'_>, fit: &Fit) -> Vec<FittedCheck> {
         .zip(residuals)
         .filter_map(|(check, (&before, &after))| {
             let (expected, tolerance) = check.expected_and_tolerance()?;
+            let weight = model.parameters.spec.weights.get(&check.id).copied().unwrap_or(1.0);
+            let (before, after) = (before / weight, after / weight);
             Some(FittedCheck {
                 id: check.id.clone(),
                 expected,

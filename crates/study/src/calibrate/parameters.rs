@@ -27,6 +27,9 @@ pub struct ParametersSpec {
     /// Ids of the checks to fit; every check of one value with the role hold where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fit: Option<Vec<String>>,
+    /// Factors on the residuals of single checks, by their ids, above 0; 1 where absent.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub weights: BTreeMap<String, f64>,
     /// Step of the differences by which derivatives are formed, as a share of the width between bounds; 0.005 where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difference_share: Option<f64>,
@@ -101,6 +104,9 @@ impl Parameters {
                 );
             }
         }
+        if let Some((key, found, allowed)) = set_twice(&spec) {
+            return refuse(key, found, &allowed);
+        }
         let known = QUANTITIES.map(str::to_owned);
         for (name, value) in &spec.hold {
             let key = format!("hold.{name}");
@@ -117,6 +123,9 @@ impl Parameters {
             if *value <= 0.0 {
                 return refuse(key, value.to_string(), "a number above 0");
             }
+        }
+        if let Some((id, weight)) = spec.weights.iter().find(|(_, weight)| **weight <= 0.0) {
+            return refuse(format!("weights.{id}"), weight.to_string(), "a number above 0");
         }
         for (key, value, most) in [
             ("difference_share", spec.difference_share, 0.25),
@@ -243,4 +252,49 @@ impl Parameters {
     pub(super) fn candidate(&self, bridge: &BridgeFile, point: &[f64]) -> Result<Candidate, Refusal> {
         Candidate::new(self, bridge, point)
     }
+}
+
+/// A number that two parameters set, or a parameter and a mass that is held or moved: where, what, what is allowed.
+fn set_twice(spec: &ParametersSpec) -> Option<(String, String, String)> {
+    let mut taken: Vec<(String, String)> = Vec::new();
+    let masses = [
+        ("structural_mass_kg", "module.material.density_kg_m3"),
+        ("total_mass_kg_m", "added_mass_kg_m"),
+        ("total_mass_kg_m", "todd"),
+    ];
+    for (mass, path) in masses {
+        if spec.hold.contains_key(mass) || spec.parameters.iter().any(|p| p.name == mass && p.sets.is_empty()) {
+            taken.push((path.to_owned(), mass.to_owned()));
+        }
+    }
+    let within = |outer: &str, inner: &str| {
+        inner
+            .strip_prefix(outer)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    for (i, parameter) in spec.parameters.iter().enumerate() {
+        let own = if parameter.sets.is_empty() {
+            vec![&parameter.name]
+        } else {
+            parameter.sets.keys().collect()
+        };
+        for path in &own {
+            if let Some((_, by)) = taken
+                .iter()
+                .find(|(other, _)| within(other, path) || within(path, other))
+            {
+                let key = format!(
+                    "parameters[{i}].{}",
+                    if parameter.sets.is_empty() { "name" } else { "sets" }
+                );
+                return Some((
+                    key,
+                    format!("'{path}', which {by} sets too"),
+                    "each number set once".to_owned(),
+                ));
+            }
+        }
+        taken.extend(own.into_iter().map(|path| (path.clone(), parameter.name.clone())));
+    }
+    None
 }

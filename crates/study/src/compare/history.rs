@@ -19,7 +19,7 @@ pub(super) struct History {
 }
 
 /// The moments of a crossing that matter at one position.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Moments {
     pub speed_m_s: f64,
     /// When the vehicle's centre is at the position [s].
@@ -40,6 +40,9 @@ pub(super) fn moments_of(results: &Results, row: usize, position: usize) -> Resu
             if let Some(path) = axis.strip_prefix(root).and_then(|rest| rest.strip_prefix('.')) {
                 let path = DocumentPath::parse(path).ok_or_else(|| format!("no path: {axis}"))?;
                 let cell = results.jobs().cell(&axis, row);
+                if cell.is_null() {
+                    continue;
+                }
                 // lists stand in a table as their JSON text
                 let text = cell.as_str().filter(|_| !path.get(base).is_some_and(Value::is_string));
                 let value = text.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(cell);
@@ -85,6 +88,14 @@ impl History {
         let to_s = to.map_or(f64::INFINITY, |edge| moments.at(edge));
         let inside = |&(t, _): &(f64, f64)| t >= from_s - SAME_TIME_S && t <= to_s + SAME_TIME_S;
         let (time_s, values): (Vec<f64>, Vec<f64>) = self.points().filter(inside).unzip();
+        let step = self.time_s.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max) + SAME_TIME_S;
+        let ends = self.time_s.first().zip(self.time_s.last());
+        let covers = |(first, last): (&f64, &f64)| {
+            (from.is_none() || from_s >= first - step) && (to.is_none() || to_s <= last + step)
+        };
+        if !ends.is_some_and(covers) {
+            return Err(format!("the history does not reach from {from_s:.3} to {to_s:.3} s"));
+        }
         if time_s.len() < 2 {
             return Err(format!(
                 "the history has {} values between {from_s:.3} and {to_s:.3} s",
@@ -155,6 +166,12 @@ impl History {
     /// Largest `|w(t_a - s) - w(t_a + s)|` over the largest value, where the history has both.
     fn asymmetry(&self, moments: &Moments, way_m: f64, max: f64) -> Result<f64, String> {
         let reach_s = way_m / moments.speed_m_s;
+        let covered = |t: f64| self.at(t).is_some();
+        if !(covered(moments.arrival_s - reach_s) && covered(moments.arrival_s + reach_s)) {
+            return Err(format!(
+                "the history does not reach {way_m} m before and behind the arrival"
+            ));
+        }
         let differences = self
             .time_s
             .iter()

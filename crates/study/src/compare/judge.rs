@@ -2,6 +2,7 @@
 //!
 //! Knows what each kind of check asks of its quantity. Does not know how a quantity is found.
 
+use super::expectation::expected;
 use super::line::{Case, Line, Verdict, number};
 use super::quantity::{Evaluator, Trouble};
 use crate::reference::{
@@ -11,6 +12,7 @@ use crate::reference::{
 use crate::refusal::Refusal;
 use crate::tables::{Results, TableName};
 use serde_json::{Map, Value};
+use std::collections::HashSet;
 
 /// Makes the checks of one reference on results.
 pub(crate) struct Judge<'a> {
@@ -40,6 +42,7 @@ impl<'a> Judge<'a> {
     pub(super) fn line(&self, i: usize) -> Result<Line, Refusal> {
         let check = &self.reference.spec.checks[i];
         let key = format!("checks[{i}]");
+        self.check_outer(&key, check)?;
         let cases = match self.combinations(&key, check)? {
             Ok(combinations) => combinations
                 .into_iter()
@@ -75,24 +78,42 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// What check number `i` of one value finds; an error where it finds nothing or is of another kind.
-    pub(crate) fn value(&self, i: usize) -> Result<f64, String> {
+    /// What check number `i` of one value finds.
+    pub(crate) fn value(&self, i: usize) -> Result<f64, Trouble> {
         let check = &self.reference.spec.checks[i];
         let key = format!("checks[{i}]");
-        let quantity = match check.kind() {
-            Some(CheckKind::Value(value)) => Some(value.of.clone()),
-            Some(CheckKind::Mode(mode)) => Some(mode.quantity()),
-            Some(CheckKind::Measured(measured)) => Some(measured.of.clone()),
-            _ => None,
+        self.check_outer(&key, check)?;
+        let (place, quantity) = match check.kind() {
+            Some(CheckKind::Value(value)) => ("value.of", value.of.clone()),
+            Some(CheckKind::Mode(mode)) => ("mode", mode.quantity()),
+            Some(CheckKind::Measured(measured)) => ("measured.of", measured.of.clone()),
+            _ => return Err(Trouble::Short("not a check of one value".to_owned())),
         };
-        let quantity = quantity
-            .filter(|_| check.each.is_empty())
-            .ok_or("not a check of one value")?;
-        match self.evaluator.value(&key, &quantity, &check.filter) {
-            Ok(got) => Ok(got),
-            Err(Trouble::Short(reason)) => Err(reason),
-            Err(Trouble::Refused(refusal)) => Err(refusal.to_string()),
+        self.evaluator
+            .value(&format!("{key}.{place}"), &quantity, &check.filter)
+    }
+
+    /// Refuses columns of a check's own filter that neither the jobs nor any table that the check looks at has.
+    fn check_outer(&self, key: &str, check: &CheckSpec) -> Result<(), Refusal> {
+        let mut tables = Vec::new();
+        match check.kind() {
+            Some(CheckKind::Value(value)) => tables_of(&value.of, &mut tables),
+            Some(CheckKind::Bound(bound)) => tables_of(&bound.of, &mut tables),
+            Some(CheckKind::Trend(trend)) => tables_of(&trend.of, &mut tables),
+            Some(CheckKind::Measured(measured)) => tables_of(&measured.of, &mut tables),
+            Some(CheckKind::Mode(_)) => tables.push(TableName::Modes),
+            Some(CheckKind::Curve(curve)) => tables.push(curve.table),
+            None => {}
         }
+        let results = self.evaluator.results;
+        for column in &check.filter.0 {
+            let own = |name: &&TableName| results.table(**name).is_some_and(|table| table.has(&column.0));
+            let first = tables.iter().find(own).or(tables.first());
+            let table = first.and_then(|name| results.table(*name));
+            self.evaluator
+                .check_filter(&format!("{key}.where"), &Filter(vec![column.clone()]), table)?;
+        }
+        Ok(())
     }
 
     /// The combinations that a check is made for; the reason where there is none.
@@ -104,11 +125,10 @@ impl<'a> Judge<'a> {
         for (j, column) in check.each.iter().enumerate() {
             self.job_column(&format!("{key}.each[{j}]"), column)?;
         }
-        self.filter_of_jobs(&format!("{key}.where"), &check.filter)?;
-        let mut combinations: Vec<Map<String, Value>> = Vec::new();
+        let (mut combinations, mut seen) = (Vec::new(), HashSet::new());
         for row in self.evaluator.jobs(&check.filter) {
             let of_row: Map<_, _> = check.each.iter().map(|c| (c.clone(), jobs.cell(c, row))).collect();
-            if !combinations.contains(&of_row) {
+            if seen.insert(Value::from(of_row.clone()).to_string()) {
                 combinations.push(of_row);
             }
         }
@@ -128,21 +148,11 @@ impl<'a> Judge<'a> {
         Err(Refusal::unknown(self.evaluator.file, key, column, &known))
     }
 
-    /// The part of a filter that speaks of jobs is made of what jobs have.
-    fn filter_of_jobs(&self, key: &str, filter: &Filter) -> Result<(), Refusal> {
-        let of_jobs = filter
-            .0
-            .iter()
-            .filter(|(name, _)| self.evaluator.results.jobs().has(name));
-        self.evaluator
-            .check_filter(key, &Filter(of_jobs.cloned().collect()), None)
-    }
-
     fn case(&self, key: &str, check: &CheckSpec, case: Map<String, Value>) -> Result<Case, Refusal> {
         let filter = case.iter().fold(check.filter.clone(), |filter, (column, value)| {
             filter.fixed(column, value)
         });
-        self.evaluator.take_left_out();
+        self.evaluator.take_notes();
         let found = match check.kind() {
             Some(CheckKind::Value(v)) => {
                 self.held(&format!("{key}.value.of"), &v.of, &filter, v.expected, v.tolerance())
@@ -151,7 +161,7 @@ impl<'a> Judge<'a> {
                 &format!("{key}.mode"),
                 &m.quantity(),
                 &filter,
-                m.expected_hz,
+                Some(m.expected_hz),
                 m.tolerance(),
             ),
             Some(CheckKind::Measured(m)) => self.measured(&format!("{key}.measured.of"), m, &filter),
@@ -160,18 +170,18 @@ impl<'a> Judge<'a> {
             Some(CheckKind::Curve(c)) => self.curve(&format!("{key}.curve"), c, &filter),
             None => Err(Trouble::Short("nothing to check".to_owned())),
         };
-        let left_out = match self.evaluator.take_left_out() {
-            0 => None,
-            n => Some(format!("{n} failed jobs left out")),
-        };
+        let mut remarks = self.evaluator.take_notes();
         match found {
-            Ok(found) => Ok(Case {
-                case,
-                values: found.values,
-                deviation: found.deviation,
-                margin: found.margin,
-                holds: found.holds,
-                reason: found.reason.or(left_out),
+            Ok(found) => Ok({
+                remarks.splice(0..0, found.reason);
+                Case {
+                    case,
+                    values: found.values,
+                    deviation: found.deviation,
+                    margin: found.margin,
+                    holds: found.holds,
+                    reason: Some(remarks.join("; ")).filter(|text| !text.is_empty()),
+                }
             }),
             Err(Trouble::Short(reason)) => Ok(Case::without_values(case, reason)),
             Err(Trouble::Refused(refusal)) => Err(refusal),
@@ -184,11 +194,11 @@ impl<'a> Judge<'a> {
         key: &str,
         of: &Quantity,
         filter: &Filter,
-        expected: f64,
+        expected: Option<f64>,
         tolerance: Tolerance,
     ) -> Result<Finding, Trouble> {
         let got = self.evaluator.value(key, of, filter)?;
-        Ok(off(got, expected, tolerance))
+        Ok(expected.map_or_else(|| Finding::of(got), |expected| off(got, expected, tolerance)))
     }
 
     fn measured(&self, key: &str, check: &MeasuredCheck, filter: &Filter) -> Result<Finding, Trouble> {
@@ -196,18 +206,22 @@ impl<'a> Judge<'a> {
             relative: None,
             absolute: Some(check.uncertainty),
         };
-        self.held(key, &check.of, filter, check.value, band)
+        self.held(key, &check.of, filter, Some(check.value), band)
     }
 
     fn bound(&self, key: &str, check: &BoundCheck, filter: &Filter) -> Result<Finding, Trouble> {
         let got = self.evaluator.value(key, &check.of, filter)?;
-        let least = check.at_least.map(|bound| (got - bound) / scale(bound));
-        let most = check.at_most.map(|bound| (bound - got) / scale(bound));
-        let margin = least.into_iter().chain(most).fold(f64::INFINITY, f64::min);
+        let lower = check.lower().map(|bound| (got - bound) / scale(bound));
+        let upper = check.upper().map(|bound| (bound - got) / scale(bound));
+        let margin = lower.into_iter().chain(upper).fold(f64::INFINITY, f64::min);
+        let holds = check.at_least.is_none_or(|bound| got >= bound)
+            && check.above.is_none_or(|bound| got > bound)
+            && check.at_most.is_none_or(|bound| got <= bound)
+            && check.below.is_none_or(|bound| got < bound);
         Ok(Finding {
             values: vec![got],
             margin: Some(margin),
-            holds: margin >= 0.0,
+            holds,
             ..Finding::default()
         })
     }
@@ -218,10 +232,10 @@ impl<'a> Judge<'a> {
         self.evaluator
             .number_column(&format!("{key}.along"), jobs, &check.along)?;
         let meant = self.evaluator.jobs(filter);
-        let mut axis: Vec<f64> = meant
-            .into_iter()
-            .filter_map(|row| jobs.number(&check.along, row))
-            .collect();
+        let along = meant.iter().map(|&row| jobs.number(&check.along, row));
+        let Some(mut axis) = along.collect::<Option<Vec<f64>>>() else {
+            return Err(Trouble::Short(format!("jobs that match have no {}", check.along)));
+        };
         axis.sort_by(f64::total_cmp);
         axis.dedup();
         if axis.len() < 2 {
@@ -272,13 +286,20 @@ impl<'a> Judge<'a> {
             .number_column(&format!("{key}.column"), table, &check.column)?;
         self.evaluator
             .number_column(&format!("{key}.against"), table, &check.against)?;
-        let rows = self.evaluator.rows(&format!("{key}.where"), check.table, filter)?;
+        let (rows, _) = self
+            .evaluator
+            .rows(&format!("{key}.where"), check.table, &Filter::default(), filter)?;
         let point = |&row: &usize| table.number(&check.against, row).zip(table.number(&check.column, row));
-        let mut run: Vec<(f64, f64)> = rows.iter().filter_map(point).collect();
+        let Some(mut run) = rows.iter().map(point).collect::<Option<Vec<(f64, f64)>>>() else {
+            return Err(Trouble::Short(format!(
+                "{} is empty in a row that matches",
+                check.column
+            )));
+        };
         run.sort_by(|a, b| a.0.total_cmp(&b.0));
         if run.windows(2).any(|w| w[0].0 == w[1].0) {
             return Err(Trouble::Short(format!(
-                "several rows with one {}: several jobs match",
+                "several rows with one {}: several jobs, or rows of other places, match",
                 check.against
             )));
         }
@@ -306,6 +327,17 @@ impl<'a> Judge<'a> {
                 number(y)
             )),
         })
+    }
+}
+
+impl Finding {
+    /// A value that nothing is expected of.
+    fn of(got: f64) -> Self {
+        Self {
+            values: vec![got],
+            holds: true,
+            ..Self::default()
+        }
     }
 }
 
@@ -362,57 +394,11 @@ impl ModeCheck {
     }
 }
 
-/// What a check expects, for people, and its value where it is one.
-fn expected(check: &CheckSpec) -> (String, Option<f64>) {
-    let with = |value: f64, tolerance: Tolerance| {
-        let relative = tolerance
-            .relative
-            .map(|share| format!(" +- {} %", short(100.0 * share)));
-        let absolute = tolerance.absolute.map(|x| format!(" +- {}", short(x)));
-        let both = [relative, absolute]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(" or");
-        (format!("{}{both}", short(value)), Some(value))
-    };
-    match check.kind() {
-        Some(CheckKind::Value(v)) => with(v.expected, v.tolerance()),
-        Some(CheckKind::Mode(m)) => with(m.expected_hz, m.tolerance()),
-        Some(CheckKind::Measured(m)) => with(
-            m.value,
-            Tolerance {
-                relative: None,
-                absolute: Some(m.uncertainty),
-            },
-        ),
-        Some(CheckKind::Bound(b)) => {
-            let least = b.at_least.map(|x| format!(">= {}", short(x)));
-            let most = b.at_most.map(|x| format!("<= {}", short(x)));
-            (least.into_iter().chain(most).collect::<Vec<_>>().join(", "), None)
-        }
-        Some(CheckKind::Trend(t)) => {
-            let what = match t.trend {
-                Trend::Rises => "rises".to_owned(),
-                Trend::Falls => "falls".to_owned(),
-                Trend::Positive => "positive".to_owned(),
-                Trend::Negative => "negative".to_owned(),
-                Trend::Flat => format!("flat within {} %", short(100.0 * t.within.unwrap_or_default())),
-            };
-            (format!("{what} over {}", t.along), None)
-        }
-        Some(CheckKind::Curve(c)) => {
-            let (text, _) = with(0.0, c.tolerance());
-            (
-                format!("curve of {} points{}", c.points.len(), text.trim_start_matches('0')),
-                None,
-            )
-        }
-        None => (String::new(), None),
+/// The tables that a quantity looks at.
+fn tables_of(quantity: &Quantity, tables: &mut Vec<TableName>) {
+    match quantity {
+        Quantity::Select(select) => tables.push(select.table),
+        Quantity::History(_) => tables.push(TableName::Jobs),
+        _ => quantity.parts().iter().for_each(|(_, part)| tables_of(part, tables)),
     }
-}
-
-/// A number of a reference as a person wrote it.
-fn short(x: f64) -> String {
-    format!("{}", (x * 1e9).round() / 1e9)
 }

@@ -78,7 +78,7 @@ impl Line {
     pub fn got(&self) -> String {
         match self.worst.values.as_slice() {
             [] => "-".to_owned(),
-            values => values.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" > "),
+            values => values.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" -> "),
         }
     }
 
@@ -103,11 +103,26 @@ impl Line {
             0 | 1 => place,
             n => format!("worst of {n}: {place}"),
         };
-        [Some(cases).filter(|c| !c.is_empty()), self.worst.reason.clone()]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join("; ")
+        let held = self.cases.iter().filter(|case| case.holds).count();
+        let some_hold = (self.verdict == Verdict::ExpectedFail && held > 0)
+            .then(|| format!("{held} of {} cases hold", self.cases.len()));
+        let other = self
+            .cases
+            .iter()
+            .filter(|case| case.reason.is_some() && case.reason != self.worst.reason);
+        let others = Some(other.count())
+            .filter(|n| *n > 0)
+            .map(|n| format!("{n} other cases with remarks"));
+        [
+            Some(cases).filter(|c| !c.is_empty()),
+            some_hold,
+            self.worst.reason.clone(),
+            others,
+        ]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join("; ")
     }
 }
 

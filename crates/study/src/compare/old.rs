@@ -8,7 +8,7 @@ use crate::reference::{Role, Tolerance};
 use crate::refusal::Refusal;
 use crate::tables::{Results, Table, TableName};
 use serde_json::{Map, Value, json};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Columns that say which row it is of its job.
 const ROW_KEYS: [&str; 6] = ["position", "joint", "y_m", "number", "quantity", "time_s"];
@@ -62,7 +62,7 @@ type Pairs = HashMap<u64, u64>;
 
 fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
     let key = |r: &Results, row: usize| axes.iter().map(|a| r.jobs().cell(a, row)).collect::<Vec<_>>();
-    let text = |r: &Results, row: usize| Value::from(key(r, row)).to_string();
+    let text = |r: &Results, row: usize| key(r, row).iter().map(place_text).collect::<String>();
     let number = |r: &Results, row: usize| r.jobs().number("job", row).unwrap_or_default() as u64;
     let failed = |r: &Results, row: usize| r.jobs().cell("status", row) == json!("failed");
     let rows: HashMap<String, usize> = (0..new.jobs().rows()).map(|row| (text(new, row), row)).collect();
@@ -112,6 +112,14 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
     };
     let expected = format!("{} jobs", old.jobs().rows());
     (pairs, line("jobs".to_owned(), expected, worst))
+}
+
+/// A place as text: numbers to twelve digits, so that two ways of writing one are one.
+fn place_text(value: &Value) -> String {
+    match value.as_f64() {
+        Some(x) => format!("{:.11e};", x + 0.0),
+        None => format!("{value};"),
+    }
 }
 
 fn line(id: String, expected: String, worst: Case) -> Line {
@@ -165,7 +173,8 @@ fn columns(
         .filter(|k| name != TableName::Jobs && now.has(k))
         .collect();
     let key = |table: &Table, row: usize, job: u64| {
-        Value::from([vec![json!(job)], keys.iter().map(|k| table.cell(k, row)).collect()].concat()).to_string()
+        let own = keys.iter().map(|k| place_text(&table.cell(k, row)));
+        format!("{job};") + &own.collect::<String>()
     };
     let job = |table: &Table, row: usize| table.number("job", row).unwrap_or_default() as u64;
     let rows: HashMap<String, usize> = (0..now.rows()).map(|row| (key(now, row, job(now, row)), row)).collect();
@@ -173,28 +182,82 @@ fn columns(
         .filter_map(|row| Some((row, *pairs.get(&job(then, row))?)))
         .map(|(row, job)| (row, rows.get(&key(then, row, job)).copied()))
         .collect();
-    let numbers = then
+    let new_jobs: HashSet<u64> = pairs.values().copied().collect();
+    let count = (0..now.rows()).filter(|&row| new_jobs.contains(&job(now, row))).count();
+    let mut lines = Vec::new();
+    if count != matched.len() {
+        let worst = Case {
+            case: Map::new(),
+            values: vec![count as f64],
+            deviation: None,
+            margin: None,
+            holds: false,
+            reason: None,
+        };
+        let expected = format!("{} rows of jobs in both", matched.len());
+        lines.push(line(name.word().to_owned(), expected, worst));
+    }
+    let place = |row: usize| -> Map<String, Value> {
+        let of_job = new.row_of_job(job(now, row)).into_iter();
+        let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), new.jobs().cell(a, r))));
+        let own = keys.iter().map(|k| ((*k).to_owned(), now.cell(k, row)));
+        axes.chain(own).filter(|(_, value)| !value.is_null()).collect()
+    };
+    let is_axis = |column: &str| name == TableName::Jobs && axes.iter().any(|axis| axis == column);
+    for column in then
         .names()
-        .filter(|c| then.is_number(c) && *c != "job" && !keys.contains(c));
-    let outcomes = numbers.filter(|c| name != TableName::Jobs || !axes.iter().any(|axis| axis == c));
-    outcomes
-        .filter_map(|column| Some((column, tolerances.of(name.word(), column)?)))
-        .map(|(column, tolerance)| {
-            let mut worst = Worst::default();
-            for &(old_row, new_row) in &matched {
-                let old = then.number(column, old_row);
-                let found = new_row.and_then(|row| now.number(column, row));
-                worst.take(new_row, old, found, tolerance);
-            }
-            let id = format!("{}.{column}", name.word());
-            worst.line(id, tolerance, |row| {
-                let of_job = new.row_of_job(job(now, row)).into_iter();
-                let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), new.jobs().cell(a, r))));
-                let own = keys.iter().map(|k| ((*k).to_owned(), now.cell(k, row)));
-                axes.chain(own).filter(|(_, value)| !value.is_null()).collect()
-            })
-        })
-        .collect()
+        .filter(|c| *c != "job" && *c != "reason" && !keys.contains(c) && !is_axis(c))
+    {
+        let id = format!("{}.{column}", name.word());
+        let old_numbers = || matched.iter().filter_map(|&(row, _)| then.number(column, row));
+        let largest = old_numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let Some(tolerance) = tolerances.of(name.word(), column, largest) else {
+            continue;
+        };
+        if then.is_word_or_flag(column) || now.is_word_or_flag(column) {
+            lines.extend(words(id, column, (now, then), &matched, place));
+            continue;
+        }
+        let mut worst = Worst::default();
+        for &(old_row, new_row) in &matched {
+            let found = new_row.and_then(|row| now.number(column, row));
+            worst.take(new_row, then.number(column, old_row), found, tolerance);
+        }
+        if worst.compared > 0 {
+            lines.push(worst.line(id, tolerance, place));
+        }
+    }
+    lines
+}
+
+/// A column of words, or of yes and no: each is what it was. No line where it is empty in both.
+fn words(
+    id: String,
+    column: &str,
+    (now, then): (&Table, &Table),
+    matched: &[(usize, Option<usize>)],
+    place: impl Fn(usize) -> Map<String, Value>,
+) -> Option<Line> {
+    let cells = |&(old, new): &(usize, Option<usize>)| {
+        let found = new.map(|row| now.cell(column, row)).unwrap_or_default();
+        (new, then.cell(column, old), found)
+    };
+    let filled = matched
+        .iter()
+        .map(cells)
+        .filter(|(_, old, found)| !(old.is_null() && found.is_null()));
+    let different: Vec<_> = filled.clone().filter(|(_, old, found)| old != found).collect();
+    let rows = filled.count();
+    let first = different.first();
+    let worst = Case {
+        case: first.and_then(|(row, ..)| *row).map(place).unwrap_or_default(),
+        values: vec![(rows - different.len()) as f64],
+        deviation: None,
+        margin: None,
+        holds: different.is_empty(),
+        reason: first.map(|(_, old, found)| format!("{found} where it was {old}")),
+    };
+    (rows > 0).then(|| line(id, format!("the same in {rows} rows"), worst))
 }
 
 impl Worst {
@@ -203,7 +266,8 @@ impl Worst {
             (Some(_), None, None) => return,
             (_, Some(old), Some(new)) => {
                 let scale = if old == 0.0 { 1.0 } else { old.abs() };
-                (tolerance.allowed(old) - (new - old).abs()) / scale
+                let margin = (tolerance.allowed(old) - (new - old).abs()) / scale;
+                if margin.is_nan() { f64::NEG_INFINITY } else { margin }
             }
             _ => f64::NEG_INFINITY,
         };
@@ -217,10 +281,9 @@ impl Worst {
     fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> Map<String, Value>) -> Line {
         let (row, old, new) = self.at.unwrap_or((usize::MAX, None, None));
         let holds = self.margin.is_none_or(|margin| margin >= 0.0);
-        let reason = match (old, new, self.compared) {
-            (_, _, 0) => Some("empty in all rows".to_owned()),
-            (Some(_), None, _) => Some("nothing where there was a number".to_owned()),
-            (None, Some(_), _) => Some("a number where there was nothing".to_owned()),
+        let reason = match (old, new) {
+            (Some(_), None) => Some("nothing where there was a number".to_owned()),
+            (None, Some(_)) => Some("a number where there was nothing".to_owned()),
             _ => None,
         };
         let deviation = old

@@ -2,7 +2,7 @@
 //!
 //! Knows rows, filters and what is made of them. Does not know what a quantity should be.
 
-use super::history::{History, moments_of};
+use super::history::{History, Moments, moments_of};
 use crate::reference::{Filter, HistoryQuantity, Quantity, Reduction, SelectQuantity};
 use crate::refusal::Refusal;
 use crate::tables::{Results, Table, TableName};
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Why a quantity has no value.
 #[derive(Debug)]
-pub(super) enum Trouble {
+pub(crate) enum Trouble {
     /// The reference is wrong.
     Refused(Refusal),
     /// The results do not give it.
@@ -43,8 +43,8 @@ pub(super) struct Evaluator<'a> {
     pub(super) file: &'a Path,
     /// Rows of each history, by job, quantity and position.
     histories: OnceCell<HashMap<(u64, String, u64), Vec<usize>>>,
-    /// Failed jobs that a filter met since the last look.
-    left_out: RefCell<BTreeSet<u64>>,
+    /// What is to be said of the quantities evaluated since the last look.
+    notes: RefCell<BTreeSet<String>>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -53,36 +53,30 @@ impl<'a> Evaluator<'a> {
             results,
             file,
             histories: OnceCell::new(),
-            left_out: RefCell::default(),
+            notes: RefCell::default(),
         }
     }
 
-    /// How many failed jobs were met since the last call.
-    pub(super) fn take_left_out(&self) -> usize {
-        std::mem::take(&mut *self.left_out.borrow_mut()).len()
+    /// What is to be said of the quantities evaluated since the last call.
+    pub(super) fn take_notes(&self) -> Vec<String> {
+        std::mem::take(&mut *self.notes.borrow_mut()).into_iter().collect()
+    }
+
+    fn note(&self, text: String) {
+        self.notes.borrow_mut().insert(text);
     }
 
     /// The value of a quantity; `filter` holds for all its parts unless they say otherwise.
     pub(super) fn value(&self, key: &str, quantity: &Quantity, filter: &Filter) -> Result<f64, Trouble> {
-        let parts = |name: &str, list: &[Quantity]| {
-            let each = list.iter().enumerate();
-            each.map(|(i, part)| self.value(&format!("{key}.{name}[{i}]"), part, filter))
-                .collect::<Result<Vec<f64>, Trouble>>()
-        };
         let value = match quantity {
             Quantity::Number(number) => *number,
             Quantity::Select(select) => self.select(&format!("{key}.select"), select, filter)?,
             Quantity::History(history) => self.history(&format!("{key}.history"), history, filter)?,
-            Quantity::Ratio(two) => {
-                let parts = parts("ratio", two.as_slice())?;
-                parts[0] / parts[1]
+            Quantity::Ratio(_) | Quantity::Difference(_) | Quantity::Largest(_) | Quantity::Smallest(_) => {
+                let parts = quantity.parts().into_iter();
+                let values = parts.map(|(place, part)| self.value(&format!("{key}.{place}"), part, filter));
+                combined(quantity, &values.collect::<Result<Vec<f64>, Trouble>>()?)
             }
-            Quantity::Difference(two) => {
-                let parts = parts("difference", two.as_slice())?;
-                parts[0] - parts[1]
-            }
-            Quantity::Largest(list) => parts("largest", list)?.into_iter().fold(f64::NEG_INFINITY, f64::max),
-            Quantity::Smallest(list) => parts("smallest", list)?.into_iter().fold(f64::INFINITY, f64::min),
         };
         if value.is_finite() {
             Ok(value)
@@ -107,7 +101,7 @@ impl<'a> Evaluator<'a> {
     fn select(&self, key: &str, select: &SelectQuantity, outer: &Filter) -> Result<f64, Trouble> {
         let table = self.table(key, select.table)?;
         self.number_column(&format!("{key}.column"), table, &select.column)?;
-        let rows = self.rows(&format!("{key}.where"), select.table, &select.filter.within(outer))?;
+        let (rows, failed) = self.rows(&format!("{key}.where"), select.table, &select.filter, outer)?;
         let values: Vec<f64> = rows
             .iter()
             .filter_map(|&row| table.number(&select.column, row))
@@ -116,16 +110,30 @@ impl<'a> Evaluator<'a> {
             return Ok(values.len() as f64);
         }
         if values.is_empty() {
-            return short(format!("{} empty in all {} rows that match", select.column, rows.len()));
+            let column = &select.column;
+            return short(format!("{column} empty in all {} rows that match", rows.len()));
+        }
+        if select.reduce == Reduction::Only {
+            return match values.as_slice() {
+                [value] if rows.len() == 1 => Ok(*value),
+                _ => short(format!("{} rows match where one is meant", rows.len())),
+            };
+        }
+        if failed > 0 {
+            return short(format!("{failed} failed jobs among those that match"));
+        }
+        if values.len() < rows.len() {
+            self.note(format!(
+                "{} empty in {} of {} rows",
+                select.column,
+                rows.len() - values.len(),
+                rows.len()
+            ));
         }
         Ok(match select.reduce {
-            Reduction::Only if values.len() > 1 => {
-                return short(format!("{} rows match where one is meant", values.len()));
-            }
-            Reduction::Only | Reduction::Count => values[0],
             Reduction::Max => values.into_iter().fold(f64::NEG_INFINITY, f64::max),
             Reduction::Min => values.into_iter().fold(f64::INFINITY, f64::min),
-            Reduction::Mean => values.iter().sum::<f64>() / values.len() as f64,
+            Reduction::Mean | Reduction::Only | Reduction::Count => values.iter().sum::<f64>() / values.len() as f64,
         })
     }
 
@@ -193,44 +201,53 @@ impl<'a> Evaluator<'a> {
         Ok(())
     }
 
-    /// The rows of a table that a filter means, those of failed jobs left out.
-    pub(super) fn rows(&self, key: &str, name: TableName, filter: &Filter) -> Result<Vec<usize>, Trouble> {
-        let table = self.table(key, name)?;
-        self.check_filter(key, filter, Some(table))?;
-        let of_jobs = Filter(
-            filter
-                .0
-                .iter()
-                .filter(|(c, _)| name == TableName::Jobs || !table.has(c) || c == "job")
-                .cloned()
-                .collect(),
-        );
-        let whole = self.whole_jobs(&of_jobs)?;
+    /// The rows of a table that two filters mean, the inner before the outer, those of failed jobs left out; and how many
+    /// jobs failed of those that match. What the outer says of other tables is passed over.
+    pub(super) fn rows(
+        &self,
+        key: &str,
+        name: TableName,
+        inner: &Filter,
+        outer: &Filter,
+    ) -> Result<(Vec<usize>, usize), Trouble> {
+        let table = self.table(key.trim_end_matches(".where"), name)?;
+        self.check_filter(key, inner, Some(table))?;
+        let filter = inner.within(outer);
+        let in_jobs = |column: &str| name == TableName::Jobs || !table.has(column) || column == "job";
+        let of_jobs = filter.0.iter().filter(|(column, _)| in_jobs(column));
+        let (whole, failed) = self.whole_jobs(&Filter(of_jobs.cloned().collect()))?;
         if name == TableName::Jobs {
-            return Ok(whole);
+            return Ok((whole, failed));
         }
-        let own: Vec<_> = filter.0.iter().filter(|(c, _)| table.has(c)).collect();
+        let own: Vec<_> = filter.0.iter().filter(|(column, _)| table.has(column)).collect();
         let meant: BTreeSet<usize> = whole.into_iter().collect();
         let job_row = |row| {
-            table
-                .number("job", row)
-                .and_then(|job| self.results.row_of_job(job as u64))
+            let job = table.number("job", row)?;
+            self.results.row_of_job(job as u64).filter(|job| meant.contains(job))
         };
-        let rows: Vec<usize> = (0..table.rows())
-            .filter(|&row| job_row(row).is_some_and(|job| meant.contains(&job)))
-            .filter(|&row| {
-                own.iter()
+        let mut without = meant.clone();
+        let mut rows = Vec::new();
+        for row in 0..table.rows() {
+            if let Some(job) = job_row(row)
+                && own
+                    .iter()
                     .all(|(column, allowed)| allowed.allows(&table.cell(column, row)))
-            })
-            .collect();
+            {
+                without.remove(&job);
+                rows.push(row);
+            }
+        }
         if rows.is_empty() {
             return short(format!("no row of {} matches", name.word()));
         }
-        Ok(rows)
+        if !without.is_empty() {
+            self.note(format!("{} of {} jobs have no such row", without.len(), meant.len()));
+        }
+        Ok((rows, failed))
     }
 
-    /// The rows of the table of jobs that a filter means and that did not fail, at least one.
-    fn whole_jobs(&self, filter: &Filter) -> Result<Vec<usize>, Trouble> {
+    /// The rows of the table of jobs that a filter means and that did not fail, at least one; and how many failed.
+    fn whole_jobs(&self, filter: &Filter) -> Result<(Vec<usize>, usize), Trouble> {
         let jobs = self.results.jobs();
         let rows = self.jobs(filter);
         let (failed, whole): (Vec<usize>, Vec<usize>) = rows
@@ -242,30 +259,32 @@ impl<'a> Evaluator<'a> {
         if whole.is_empty() {
             return short(format!("only failed jobs match, {} of them", failed.len()));
         }
-        let mut left_out = self.left_out.borrow_mut();
-        left_out.extend(
-            failed
-                .iter()
-                .filter_map(|&row| jobs.number("job", row))
-                .map(|job| job as u64),
-        );
-        Ok(whole)
+        if !failed.is_empty() {
+            self.note(format!("{} failed jobs left out", failed.len()));
+        }
+        Ok((whole, failed.len()))
     }
 
     fn history(&self, key: &str, asked: &HistoryQuantity, outer: &Filter) -> Result<f64, Trouble> {
-        let filter = asked.filter.within(outer);
         self.table(key, TableName::Histories)?;
-        self.check_filter(&format!("{key}.where"), &filter, None)?;
-        let [row] = self.whole_jobs(&filter)?[..] else {
-            return short("several jobs match where one history is meant");
+        self.check_filter(&format!("{key}.where"), &asked.filter, None)?;
+        let of_jobs = |(column, _): &&(String, _)| self.results.jobs().has(column);
+        let filter = asked.filter.within(outer);
+        let filter = Filter(filter.0.iter().filter(of_jobs).cloned().collect());
+        let (whole, _) = self.whole_jobs(&filter)?;
+        let [row] = whole[..] else {
+            return short(format!("{} jobs match where one history is meant", whole.len()));
         };
         let job = self.results.jobs().number("job", row).unwrap_or_default() as u64;
         let history = self.recorded(job, &asked.quantity, asked.position as u64)?;
-        let moments = moments_of(self.results, row, asked.position).map_err(Trouble::Short)?;
-        history
-            .part(&moments, asked.from, asked.to)
-            .and_then(|part| part.reduced(&moments, asked.reduce))
-            .map_err(Trouble::Short)
+        let reduced = if asked.needs_moments() {
+            let moments = moments_of(self.results, row, asked.position).map_err(Trouble::Short)?;
+            let part = history.part(&moments, asked.from, asked.to);
+            part.and_then(|part| part.reduced(&moments, asked.reduce))
+        } else {
+            history.reduced(&Moments::default(), asked.reduce)
+        };
+        reduced.map_err(Trouble::Short)
     }
 
     /// A recorded history.
@@ -288,14 +307,25 @@ impl<'a> Evaluator<'a> {
         let Some(rows) = index.get(&(job, quantity.to_owned(), position)) else {
             return short(format!("no history of {quantity} at {position} was recorded"));
         };
-        let column = |name: &str| {
-            rows.iter()
-                .filter_map(|&row| table.number(name, row))
-                .collect::<Vec<f64>>()
-        };
-        Ok(History {
-            time_s: column("time_s"),
-            values: column("value"),
-        })
+        let point = |&row: &usize| table.number("time_s", row).zip(table.number("value", row));
+        let points: Option<Vec<(f64, f64)>> = rows.iter().map(point).collect();
+        match points {
+            Some(points) => {
+                let (time_s, values) = points.into_iter().unzip();
+                Ok(History { time_s, values })
+            }
+            None => short("a history with empty values"),
+        }
+    }
+}
+
+/// A quantity of several parts, from their values.
+fn combined(quantity: &Quantity, values: &[f64]) -> f64 {
+    match (quantity, values) {
+        (Quantity::Ratio(_), [a, b]) => a / b,
+        (Quantity::Difference(_), [a, b]) => a - b,
+        (Quantity::Largest(_), list) => list.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        (Quantity::Smallest(_), list) => list.iter().copied().fold(f64::INFINITY, f64::min),
+        _ => f64::NAN,
     }
 }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct TolerancesSpec {
-    /// For every column that is not named; `relative_tolerance` 1e-6 where absent.
+    /// For every column that is not named; where absent 1e-6 of the value or of its column's largest, at least 1e-9.
     #[serde(default)]
     default: Option<ColumnTolerance>,
     /// For single columns.
@@ -44,17 +44,13 @@ pub struct Tolerances {
     spec: TolerancesSpec,
 }
 
-/// Without a file: what rounding in another order of summation leaves of a peak after some thousand steps.
-const DEFAULT: Tolerance = Tolerance {
-    relative: Some(1e-6),
-    absolute: None,
-};
+/// Without a file: what rounding on another machine leaves after some thousand steps, as a share of the value or of the
+/// largest magnitude in its column (a force that is nothing beside the others is rounding itself), and never less than a
+/// billionth of the unit (a roll that symmetry makes 0, the energy's residual).
+const DEFAULT_SHARE: f64 = 1e-6;
 
-/// Without a file: what the energy balance may be off, which is rounding itself.
-const DEFAULT_ENERGY: Tolerance = Tolerance {
-    relative: Some(1e-6),
-    absolute: Some(1e-9),
-};
+/// See [`DEFAULT_SHARE`].
+const DEFAULT_LEAST: f64 = 1e-9;
 
 impl Tolerances {
     /// Reads a file of tolerances.
@@ -99,15 +95,19 @@ impl Tolerances {
 
     /// Refuses names that are no columns of the results.
     pub(super) fn check(&self, known: &[String]) -> Result<(), Refusal> {
-        let is_known = |name: &str| known.iter().any(|k| k == name || k.split('.').nth(1) == Some(name));
+        let is_known = |name: &str| {
+            known
+                .iter()
+                .any(|k| k == name || k.split_once('.').is_some_and(|(_, column)| column == name))
+        };
         match self.spec.columns.keys().find(|name| !is_known(name)) {
             Some(name) => Err(Refusal::unknown(&self.file, format!("columns.{name}"), name, known)),
             None => Ok(()),
         }
     }
 
-    /// The tolerance of a column; none where it is not compared.
-    pub(super) fn of(&self, table: &str, column: &str) -> Option<Tolerance> {
+    /// The tolerance of a column whose largest magnitude is `largest`; none where it is not compared.
+    pub(super) fn of(&self, table: &str, column: &str, largest: f64) -> Option<Tolerance> {
         let named = self
             .spec
             .columns
@@ -120,8 +120,10 @@ impl Tolerances {
         match named.or(self.spec.default.as_ref()) {
             Some(tolerance) if tolerance.ignore => None,
             Some(tolerance) => Some(own(tolerance)),
-            None if ["energy_residual", "numerical_dissipation"].contains(&column) => Some(DEFAULT_ENERGY),
-            None => Some(DEFAULT),
+            None => Some(Tolerance {
+                relative: Some(DEFAULT_SHARE),
+                absolute: Some((DEFAULT_SHARE * largest).max(DEFAULT_LEAST)),
+            }),
         }
     }
 }

@@ -3,8 +3,8 @@
 //! Knows files. Does not know results: what they do not have is found when they are compared.
 
 use super::spec::{
-    BoundCheck, CheckKind, CheckSpec, CurveCheck, MeasuredCheck, ModeCheck, Quantity, ReferenceSpec, Role, Tolerance,
-    Trend, TrendCheck, ValueCheck,
+    BoundCheck, CheckKind, CheckSpec, CurveCheck, HistoryQuantity, HistoryReduction, ModeCheck, Quantity,
+    ReferenceSpec, Role, Tolerance, Trend, TrendCheck, ValueCheck,
 };
 use crate::document::{read, typed};
 use crate::refusal::Refusal;
@@ -57,8 +57,9 @@ impl Reference {
                 file: &self.file,
                 key: &key,
             };
-            if check.id.trim().is_empty() {
-                return Err(place.refuse("id", "an empty id", "a name unlike any other check's"));
+            if check.id.trim().is_empty() || check.id.chars().any(char::is_control) {
+                let found = format!("{:?}", check.id);
+                return Err(place.refuse("id", found, "a name of one line, unlike any other check's"));
             }
             if self.spec.checks[..i].iter().any(|other| other.id == check.id) {
                 return Err(place.refuse("id", format!("'{}' twice", check.id), "each id once"));
@@ -79,7 +80,7 @@ impl CheckSpec {
     /// What a check of one value expects and how far it may be off, in the unit of what it looks at; none of another kind.
     pub fn expected_and_tolerance(&self) -> Option<(f64, f64)> {
         match self.kind()? {
-            CheckKind::Value(v) => Some((v.expected, v.tolerance().allowed(v.expected))),
+            CheckKind::Value(v) => v.expected.map(|expected| (expected, v.tolerance().allowed(expected))),
             CheckKind::Mode(m) => Some((m.expected_hz, m.tolerance().allowed(m.expected_hz))),
             CheckKind::Measured(m) => Some((m.value, m.uncertainty)),
             CheckKind::Bound(_) | CheckKind::Trend(_) | CheckKind::Curve(_) => None,
@@ -125,24 +126,38 @@ impl Place<'_> {
         let needed = check.role != Role::Record;
         match kind {
             CheckKind::Value(value) => {
-                self.tolerance("value", value.tolerance(), needed)?;
-                self.quantity("value.of", &value.of)
+                if needed && value.expected.is_none() {
+                    return Err(self.refuse("value.expected", "nothing", "a number; only a record needs none"));
+                }
+                self.tolerance("value", value.tolerance(), needed, value.expected)?;
+                self.quantity("value.of", &value.of, check, None)
             }
             CheckKind::Mode(mode) => {
                 if mode.expected_hz.is_nan() || mode.expected_hz <= 0.0 {
                     return Err(self.refuse("mode.expected_hz", mode.expected_hz, "a number above 0"));
                 }
-                self.tolerance("mode", mode.tolerance(), needed)
+                self.tolerance("mode", mode.tolerance(), needed, Some(mode.expected_hz))
             }
-            CheckKind::Bound(bound) => self.bound(bound),
-            CheckKind::Trend(trend) => self.trend(trend),
+            CheckKind::Bound(bound) => {
+                self.bound(bound)?;
+                self.quantity("bound.of", &bound.of, check, None)
+            }
+            CheckKind::Trend(trend) => {
+                self.trend(trend)?;
+                self.quantity("trend.of", &trend.of, check, Some(&trend.along))
+            }
             CheckKind::Curve(curve) => self.curve(curve, needed),
-            CheckKind::Measured(measured) => self.measured(measured),
+            CheckKind::Measured(measured) => {
+                if measured.uncertainty < 0.0 {
+                    return Err(self.refuse("measured.uncertainty", measured.uncertainty, "a number of at least 0"));
+                }
+                self.quantity("measured.of", &measured.of, check, None)
+            }
         }
     }
 
-    /// A tolerance is there where it is needed and never negative.
-    fn tolerance(&self, of: &str, tolerance: Tolerance, needed: bool) -> Result<(), Refusal> {
+    /// A tolerance is there where it is needed and never negative; a share of nothing is none.
+    fn tolerance(&self, of: &str, tolerance: Tolerance, needed: bool, expected: Option<f64>) -> Result<(), Refusal> {
         for (key, value) in [
             ("relative_tolerance", tolerance.relative),
             ("absolute_tolerance", tolerance.absolute),
@@ -150,6 +165,10 @@ impl Place<'_> {
             if let Some(value) = value.filter(|value| *value < 0.0) {
                 return Err(self.refuse(&format!("{of}.{key}"), value, "a number of at least 0"));
             }
+        }
+        if needed && expected == Some(0.0) && tolerance.absolute.is_none() {
+            let allowed = "absolute_tolerance: a share of an expected 0 is nothing";
+            return Err(self.refuse(of, "no tolerance", allowed));
         }
         if needed && tolerance == Tolerance::default() {
             let allowed = "relative_tolerance or, where there is one, absolute_tolerance; only a record needs none";
@@ -159,14 +178,29 @@ impl Place<'_> {
     }
 
     fn bound(&self, bound: &BoundCheck) -> Result<(), Refusal> {
-        match (bound.at_least, bound.at_most) {
-            (None, None) => return Err(self.refuse("bound", "no bound", "at_least, at_most or both")),
+        let (lower, upper) = (bound.lower(), bound.upper());
+        match (lower, upper) {
+            (None, None) => {
+                return Err(self.refuse(
+                    "bound",
+                    "no bound",
+                    "at_least, above, at_most, below, one or two of them",
+                ));
+            }
             (Some(least), Some(most)) if least > most => {
-                return Err(self.refuse("bound.at_least", least, &format!("at most at_most, {most}")));
+                return Err(self.refuse("bound", format!("from {least} to {most}"), "bounds in order"));
             }
             _ => {}
         }
-        self.quantity("bound.of", &bound.of)
+        for (first, second, names) in [
+            (bound.at_least, bound.above, "at_least and above"),
+            (bound.at_most, bound.below, "at_most and below"),
+        ] {
+            if first.is_some() && second.is_some() {
+                return Err(self.refuse("bound", names, "one of the two"));
+            }
+        }
+        Ok(())
     }
 
     fn trend(&self, trend: &TrendCheck) -> Result<(), Refusal> {
@@ -180,11 +214,11 @@ impl Place<'_> {
             (Trend::Flat, Some(_)) | (_, None) => {}
             (_, Some(within)) => return Err(self.refuse("trend.within", within, "nothing, unless the trend is flat")),
         }
-        self.quantity("trend.of", &trend.of)
+        Ok(())
     }
 
     fn curve(&self, curve: &CurveCheck, needed: bool) -> Result<(), Refusal> {
-        self.tolerance("curve", curve.tolerance(), needed)?;
+        self.tolerance("curve", curve.tolerance(), needed, None)?;
         if curve.points.is_empty() {
             return Err(self.refuse("curve.points", "an empty list", "at least one point"));
         }
@@ -197,35 +231,90 @@ impl Place<'_> {
         }
     }
 
-    fn measured(&self, measured: &MeasuredCheck) -> Result<(), Refusal> {
-        if measured.uncertainty < 0.0 {
-            return Err(self.refuse("measured.uncertainty", measured.uncertainty, "a number of at least 0"));
+    /// A quantity looks at results somewhere, and no part of it fixes a column that the check itself moves.
+    fn quantity(&self, key: &str, quantity: &Quantity, check: &CheckSpec, along: Option<&str>) -> Result<(), Refusal> {
+        if !quantity.looks_at_results() {
+            return Err(self.refuse(key, "numbers alone", "a select or a history somewhere in it"));
         }
-        self.quantity("measured.of", &measured.of)
+        self.part(key, quantity, check, along)
     }
 
-    fn quantity(&self, key: &str, quantity: &Quantity) -> Result<(), Refusal> {
-        let each = |name: &str, list: &[Quantity]| {
-            let parts = (0..).zip(list);
-            parts
-                .map(|(i, part): (usize, _)| self.quantity(&format!("{key}.{name}[{i}]"), part))
-                .collect::<Result<(), Refusal>>()
-        };
-        match quantity {
-            Quantity::Ratio(two) => each("ratio", two.as_slice()),
-            Quantity::Difference(two) => each("difference", two.as_slice()),
-            Quantity::Largest(list) | Quantity::Smallest(list) if list.is_empty() => {
-                Err(self.refuse(key, "an empty list", "at least one quantity"))
-            }
-            Quantity::Largest(list) => each("largest", list),
-            Quantity::Smallest(list) => each("smallest", list),
-            Quantity::History(history) if !["deflection_m", "force_n"].contains(&history.quantity.as_str()) => {
-                let known = ["deflection_m", "force_n"].map(str::to_owned);
-                let key = format!("{}.{key}.history.quantity", self.key);
-                Err(Refusal::unknown(self.file, key, &history.quantity, &known))
-            }
-            Quantity::Select(_) | Quantity::History(_) | Quantity::Number(_) => Ok(()),
+    fn part(&self, key: &str, quantity: &Quantity, check: &CheckSpec, along: Option<&str>) -> Result<(), Refusal> {
+        for (name, part) in quantity.parts() {
+            self.part(&format!("{key}.{name}"), part, check, along)?;
         }
+        let filter = match quantity {
+            Quantity::Largest(list) | Quantity::Smallest(list) if list.is_empty() => {
+                return Err(self.refuse(key, "an empty list", "at least one quantity"));
+            }
+            Quantity::History(history) => {
+                if !["deflection_m", "force_n"].contains(&history.quantity.as_str()) {
+                    let known = ["deflection_m", "force_n"].map(str::to_owned);
+                    let key = format!("{}.{key}.history.quantity", self.key);
+                    return Err(Refusal::unknown(self.file, key, &history.quantity, &known));
+                }
+                Some(("history", &history.filter))
+            }
+            Quantity::Select(select) => Some(("select", &select.filter)),
+            _ => None,
+        };
+        let moved = |name: &str| check.each.iter().any(|c| c == name) || along == Some(name);
+        match filter.and_then(|(of, filter)| Some((of, filter.0.iter().find(|(name, _)| moved(name))?))) {
+            Some((of, (name, _))) => {
+                let key = format!("{key}.{of}.where.{name}");
+                Err(self.refuse(
+                    &key,
+                    "a column that the check itself moves",
+                    "no column of each or along",
+                ))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+impl Quantity {
+    /// Its parts with their places.
+    pub fn parts(&self) -> Vec<(String, &Self)> {
+        let (name, list): (&str, &[Self]) = match self {
+            Self::Ratio(two) => ("ratio", two.as_slice()),
+            Self::Difference(two) => ("difference", two.as_slice()),
+            Self::Largest(list) => ("largest", list),
+            Self::Smallest(list) => ("smallest", list),
+            Self::Select(_) | Self::History(_) | Self::Number(_) => ("", &[]),
+        };
+        list.iter()
+            .enumerate()
+            .map(|(i, part)| (format!("{name}[{i}]"), part))
+            .collect()
+    }
+
+    fn looks_at_results(&self) -> bool {
+        match self {
+            Self::Select(_) | Self::History(_) => true,
+            Self::Number(_) => false,
+            _ => self.parts().iter().any(|(_, part)| part.looks_at_results()),
+        }
+    }
+}
+
+impl HistoryQuantity {
+    /// Whether it matters when the vehicle is where.
+    pub fn needs_moments(&self) -> bool {
+        let whole = self.from.is_none() && self.to.is_none();
+        !whole || matches!(self.reduce, HistoryReduction::AsymmetryWithinM(_))
+    }
+}
+
+impl BoundCheck {
+    /// The lower bound, whether it is allowed itself or not.
+    pub fn lower(&self) -> Option<f64> {
+        self.at_least.or(self.above)
+    }
+
+    /// The upper bound, whether it is allowed itself or not.
+    pub fn upper(&self) -> Option<f64> {
+        self.at_most.or(self.below)
     }
 }
 

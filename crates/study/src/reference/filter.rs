@@ -31,7 +31,9 @@ impl Allowed {
         match (self, cell.as_f64()) {
             (Self::OneOf(values), Some(x)) => values.iter().filter_map(Value::as_f64).any(|v| same(v, x)),
             (Self::OneOf(values), None) => values.contains(cell),
-            (Self::Range(from, to), Some(x)) => from.is_none_or(|from| x >= from) && to.is_none_or(|to| x <= to),
+            (Self::Range(from, to), Some(x)) => {
+                from.is_none_or(|from| x >= from || same(from, x)) && to.is_none_or(|to| x <= to || same(to, x))
+            }
             (Self::Range(..), None) => false,
         }
     }
@@ -66,6 +68,7 @@ impl Allowed {
                 };
                 match (end("from")?, end("to")?) {
                     (None, None) => Err(format!("an empty object, expected {forms}")),
+                    (Some(from), Some(to)) if from > to => Err(format!("from {from} to {to}, expected ends in order")),
                     (from, to) => Ok(Self::Range(from, to)),
                 }
             }

@@ -33,7 +33,7 @@ pub enum Role {
     Hold,
     /// It is run and expected to fail; that it holds is told as a change.
     ExpectedFail,
-    /// It is printed beside what is expected and never judged.
+    /// It is printed beside what is expected and never judged; but where nothing is found it falls short like any other.
     Record,
 }
 
@@ -110,13 +110,16 @@ pub struct Tolerance {
 pub struct ValueCheck {
     /// What is looked at.
     pub of: Quantity,
-    /// What it should be, in the unit of its column.
-    pub expected: f64,
+    /// What it should be, in the unit of its column; may be absent where a record is kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected: Option<f64>,
     /// How far it may be off as a share of `expected`; may be absent where a record is kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
     pub relative_tolerance: Option<f64>,
     /// How far it may be off in its own unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
     pub absolute_tolerance: Option<f64>,
 }
 
@@ -132,6 +135,12 @@ pub struct BoundCheck {
     /// Largest value allowed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_most: Option<f64>,
+    /// What it must be larger than.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub above: Option<f64>,
+    /// What it must be smaller than.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub below: Option<f64>,
 }
 
 /// A trend over an axis of the jobs, from the axis's least value to its largest.

@@ -96,6 +96,19 @@ impl Results {
         let jobs = tables
             .remove(&TableName::Jobs)
             .ok_or_else(|| damaged(&file, "no table of jobs"))?;
+        let jobs_file = folder.join(TableName::Jobs.file());
+        if let Some(column) = ["job", "status", "reason"].into_iter().find(|column| !jobs.has(column)) {
+            return Err(damaged(&jobs_file, &format!("no column {column}")));
+        }
+        let mut numbers = std::collections::BTreeSet::new();
+        let whole = |row| {
+            jobs.number("job", row)
+                .filter(|n| *n >= 0.0 && n.fract() == 0.0)
+                .map(|n| n as u64)
+        };
+        if !(0..jobs.rows()).all(|row| whole(row).is_some_and(|number| numbers.insert(number))) {
+            return Err(damaged(&jobs_file, "job numbers that are not whole or not unique"));
+        }
         let count = manifest["jobs"].as_u64();
         if count != Some(jobs.rows() as u64) {
             return Err(damaged(

@@ -68,12 +68,19 @@ impl Table {
     /// The table of a data frame.
     ///
     /// # Errors
-    /// The table library's, where a column is of none of the types that tables have.
+    /// The table library's, where a column is of none of the types that tables have or a number is not finite.
     pub(super) fn from_frame(frame: &DataFrame) -> PolarsResult<Self> {
         let columns = frame.columns().iter().map(|column| {
             let series = column.as_materialized_series();
             let cells = match series.dtype() {
-                DataType::Float64 => Cells::Numbers(series.f64()?.iter().collect()),
+                DataType::Float64 => {
+                    let numbers: Vec<Option<f64>> = series.f64()?.iter().collect();
+                    if numbers.iter().flatten().any(|x| !x.is_finite()) {
+                        let text = format!("column {} holds what is no finite number", column.name());
+                        return Err(PolarsError::ComputeError(text.into()));
+                    }
+                    Cells::Numbers(numbers)
+                }
                 DataType::Int64 => Cells::Numbers(series.i64()?.iter().map(|v| v.map(|v| v as f64)).collect()),
                 DataType::String => Cells::Words(series.str()?.iter().map(|v| v.map(str::to_owned)).collect()),
                 DataType::Boolean => Cells::Flags(series.bool()?.iter().collect()),
@@ -103,6 +110,11 @@ impl Table {
     /// Whether there is a column of a name.
     pub fn has(&self, column: &str) -> bool {
         self.names().any(|name| name == column)
+    }
+
+    /// Whether a column holds words or yes and no.
+    pub fn is_word_or_flag(&self, column: &str) -> bool {
+        matches!(self.cells(column), Some(Cells::Words(_) | Cells::Flags(_)))
     }
 
     /// Whether a column holds numbers.
