@@ -219,7 +219,8 @@ impl<'a> Source<'a> {
         let residual = |&i: &usize| {
             let check = &self.reference.spec.checks[i];
             let (expected, tolerance) = check.expected_and_tolerance().unwrap_or_default();
-            let found = judge.value(i).map_err(|reason| format!("{}: {reason}", check.id))?;
+            let found = judge.value(i).map_err(|refusal| refusal.to_string())?;
+            let found = found.map_err(|reason| format!("{}: {reason}", check.id))?;
             Ok((found - expected) / tolerance)
         };
         self.checks.iter().map(residual).collect()

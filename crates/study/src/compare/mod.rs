@@ -2,6 +2,8 @@
 //!
 //! Knows what a check asks of tables and what becomes of it. Does not know how a comparison is written down.
 
+mod asked;
+mod expected;
 mod history;
 mod judge;
 mod line;
@@ -16,7 +18,6 @@ pub use tolerances::Tolerances;
 
 use crate::reference::Reference;
 use crate::refusal::Refusal;
-use crate::spec::Study;
 use crate::tables::Results;
 
 /// Makes every check of a reference on results.
@@ -24,17 +25,10 @@ use crate::tables::Results;
 /// # Errors
 /// [`Refusal`] where the reference belongs to another study, or names a column, word or job that the results do not have.
 pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
-    if let Some(path) = reference.study() {
-        let name = Study::open(&path)?.spec.name;
-        if name != results.name {
-            let found = format!("results of the study '{}'", results.name);
-            return Err(Refusal::new(
-                &results.place,
-                "",
-                found,
-                format!("results of '{name}', to which the reference belongs"),
-            ));
-        }
+    if let Some(name) = reference.study_name()?.filter(|name| *name != results.name) {
+        let found = format!("results of the study '{}'", results.name);
+        let allowed = format!("results of '{name}', to which the reference belongs");
+        return Err(Refusal::new(&results.place, "", found, allowed));
     }
     let judge = Judge::new(results, reference);
     let lines = (0..reference.spec.checks.len())

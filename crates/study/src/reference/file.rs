@@ -1,6 +1,6 @@
 //! A reference opened: its file read, its checks made sure to be checks.
 //!
-//! Knows files. Does not know results: what they do not have is found when they are compared.
+//! Knows files, and the study that a reference belongs to. Does not know results: what they do not have is found when they are compared.
 
 use super::spec::{
     BoundCheck, CheckKind, CheckSpec, CurveCheck, MeasuredCheck, ModeCheck, Quantity, ReferenceSpec, Role, Tolerance,
@@ -8,6 +8,7 @@ use super::spec::{
 };
 use crate::document::{read, typed};
 use crate::refusal::Refusal;
+use crate::spec::Study;
 use std::path::{Path, PathBuf};
 
 /// A reference file, read and checked.
@@ -40,6 +41,15 @@ impl Reference {
     pub fn study(&self) -> Option<PathBuf> {
         let folder = self.file.parent().unwrap_or(Path::new(""));
         self.spec.study.as_ref().map(|study| folder.join(study))
+    }
+
+    /// The name of the study it belongs to; none where it holds any results.
+    ///
+    /// # Errors
+    /// [`Refusal`] where that study cannot be opened.
+    pub fn study_name(&self) -> Result<Option<String>, Refusal> {
+        let study = self.study().map(|path| Study::open(&path)).transpose()?;
+        Ok(study.map(|study| study.spec.name))
     }
 
     fn check(&self) -> Result<(), Refusal> {
@@ -206,10 +216,8 @@ impl Place<'_> {
 
     fn quantity(&self, key: &str, quantity: &Quantity) -> Result<(), Refusal> {
         let each = |name: &str, list: &[Quantity]| {
-            let parts = (0..).zip(list);
-            parts
-                .map(|(i, part): (usize, _)| self.quantity(&format!("{key}.{name}[{i}]"), part))
-                .collect::<Result<(), Refusal>>()
+            let mut parts = list.iter().enumerate();
+            parts.try_for_each(|(i, part)| self.quantity(&format!("{key}.{name}[{i}]"), part))
         };
         match quantity {
             Quantity::Ratio(two) => each("ratio", two.as_slice()),
