@@ -44,7 +44,7 @@ pub fn against_old(new: &Results, old: &Results, tolerances: &Tolerances) -> Res
     let mut lines = vec![jobs];
     for name in TableName::ALL {
         match (new.table(name), old.table(name)) {
-            (Some(now), Some(then)) => lines.extend(columns(name, (now, then), &pairs, &axes, tolerances, new)),
+            (Some(now), Some(then)) => lines.extend(columns(name, (now, then), &pairs, &axes, tolerances, old)),
             (None, Some(_)) => lines.push(missing(name)),
             (_, None) => {}
         }
@@ -66,9 +66,11 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
     let number = |r: &Results, row: usize| r.jobs().number("job", row).unwrap_or_default() as u64;
     let failed = |r: &Results, row: usize| r.jobs().cell("status", row) == json!("failed");
     let rows: HashMap<String, usize> = (0..new.jobs().rows()).map(|row| (text(new, row), row)).collect();
-    let (mut pairs, mut lost, mut broken, mut first) = (Pairs::new(), 0, 0, None);
+    let (mut pairs, mut known, mut lost, mut broken, mut first) = (Pairs::new(), 0, 0, 0, None);
     for row in 0..old.jobs().rows() {
-        match rows.get(&text(old, row)) {
+        let now = rows.get(&text(old, row));
+        known += usize::from(now.is_some());
+        match now {
             Some(&now) if failed(new, now) && !failed(old, row) => {
                 broken += 1;
                 first.get_or_insert(row);
@@ -89,11 +91,11 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
             reasons.push(format!("{count} {what}"));
         }
     };
-    tell(lost, "old jobs without a new one");
-    tell(broken, "jobs that fail now and did not then");
+    tell(lost, "of the old jobs without a new one");
+    tell(broken, "of the jobs fail now and did not then");
     tell(
-        new.jobs().rows().saturating_sub(old.jobs().rows()),
-        "more new jobs than old ones",
+        new.jobs().rows().saturating_sub(known),
+        "of the new jobs without an old one",
     );
     if pairs.is_empty() {
         reasons.push("no job succeeded in both".to_owned());
@@ -146,8 +148,10 @@ fn missing(name: TableName) -> Line {
 /// The largest difference of one column so far.
 #[derive(Default)]
 struct Worst {
-    /// Row of the new table, old value, new value.
+    /// Row of the old table, old value, new value.
     at: Option<(usize, Option<f64>, Option<f64>)>,
+    /// Rows of the old table without one of the new.
+    lost: usize,
     margin: Option<f64>,
     compared: usize,
 }
@@ -158,7 +162,7 @@ fn columns(
     pairs: &Pairs,
     axes: &[String],
     tolerances: &Tolerances,
-    new: &Results,
+    old: &Results,
 ) -> Vec<Line> {
     let keys: Vec<&str> = ROW_KEYS
         .into_iter()
@@ -182,15 +186,15 @@ fn columns(
         .map(|(column, tolerance)| {
             let mut worst = Worst::default();
             for &(old_row, new_row) in &matched {
-                let old = then.number(column, old_row);
-                let found = new_row.and_then(|row| now.number(column, row));
-                worst.take(new_row, old, found, tolerance);
+                let was = then.number(column, old_row);
+                let found = new_row.map(|row| now.number(column, row));
+                worst.take(old_row, was, found, tolerance);
             }
             let id = format!("{}.{column}", name.word());
             worst.line(id, tolerance, |row| {
-                let of_job = new.row_of_job(job(now, row)).into_iter();
-                let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), new.jobs().cell(a, r))));
-                let own = keys.iter().map(|k| ((*k).to_owned(), now.cell(k, row)));
+                let of_job = old.row_of_job(job(then, row)).into_iter();
+                let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), old.jobs().cell(a, r))));
+                let own = keys.iter().map(|k| ((*k).to_owned(), then.cell(k, row)));
                 axes.chain(own).filter(|(_, value)| !value.is_null()).collect()
             })
         })
@@ -198,10 +202,12 @@ fn columns(
 }
 
 impl Worst {
-    fn take(&mut self, row: Option<usize>, old: Option<f64>, new: Option<f64>, tolerance: Tolerance) {
-        let margin = match (row, old, new) {
-            (Some(_), None, None) => return,
-            (_, Some(old), Some(new)) => {
+    /// Takes a row of the old table with its old and its new value; there is no new value where there is no such row.
+    fn take(&mut self, row: usize, old: Option<f64>, new: Option<Option<f64>>, tolerance: Tolerance) {
+        self.lost += usize::from(new.is_none());
+        let margin = match (old, new) {
+            (None, Some(None)) => return,
+            (Some(old), Some(Some(new))) => {
                 let scale = if old == 0.0 { 1.0 } else { old.abs() };
                 (tolerance.allowed(old) - (new - old).abs()) / scale
             }
@@ -210,17 +216,20 @@ impl Worst {
         self.compared += 1;
         if self.margin.is_none_or(|least| margin < least) {
             self.margin = Some(margin);
-            self.at = Some((row.unwrap_or(usize::MAX), old, new));
+            self.at = Some((row, old, new.flatten()));
         }
     }
 
     fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> Map<String, Value>) -> Line {
-        let (row, old, new) = self.at.unwrap_or((usize::MAX, None, None));
+        let (row, old, new) = self
+            .at
+            .map_or((None, None, None), |(row, old, new)| (Some(row), old, new));
         let holds = self.margin.is_none_or(|margin| margin >= 0.0);
-        let reason = match (old, new, self.compared) {
-            (_, _, 0) => Some("empty in all rows".to_owned()),
-            (Some(_), None, _) => Some("nothing where there was a number".to_owned()),
-            (None, Some(_), _) => Some("a number where there was nothing".to_owned()),
+        let reason = match (old, new, self.compared, self.lost) {
+            (_, _, 0, _) => Some("empty in all rows".to_owned()),
+            (_, _, _, lost @ 1..) => Some(format!("{lost} of the rows are no longer there")),
+            (Some(_), None, ..) => Some("nothing where there was a number".to_owned()),
+            (None, Some(_), ..) => Some("a number where there was nothing".to_owned()),
             _ => None,
         };
         let deviation = old
@@ -233,7 +242,7 @@ impl Worst {
             format!("{} {within}", super::line::number(old))
         });
         let worst = Case {
-            case: if row == usize::MAX { Map::new() } else { place(row) },
+            case: row.map(place).unwrap_or_default(),
             values: new.into_iter().collect(),
             deviation,
             margin: self.margin.filter(|margin| margin.is_finite()),
