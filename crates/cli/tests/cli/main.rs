@@ -5,6 +5,11 @@
 #![allow(clippy::unwrap_used)]
 
 mod bounds;
+mod compare;
+mod compare_formats;
+mod compare_histories;
+mod compare_input;
+mod compare_kinds;
 mod refusals;
 mod results;
 mod stage;
