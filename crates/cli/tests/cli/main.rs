@@ -10,6 +10,8 @@ mod compare_formats;
 mod compare_histories;
 mod compare_input;
 mod compare_kinds;
+mod damaged;
+mod old_results;
 mod refusals;
 mod results;
 mod stage;
