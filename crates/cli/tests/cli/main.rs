@@ -5,6 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod bounds;
+mod calibrate;
+mod calibrate_input;
 mod compare;
 mod compare_formats;
 mod compare_histories;
