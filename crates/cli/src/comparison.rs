@@ -27,7 +27,7 @@ fn cells(line: &Line) -> [String; 7] {
 pub fn written(compared: &Comparison, format: Format) -> Result<String> {
     Ok(match format {
         Format::Text => text(compared),
-        Format::Json => json(compared),
+        Format::Json => format!("{:#}\n", object(compared)),
         Format::Markdown => markdown(compared),
         Format::Junit => junit(compared)?,
     })
@@ -45,19 +45,20 @@ pub fn text(compared: &Comparison) -> String {
     format!("{table}\n{results} against {with}: {}\n", compared.tally())
 }
 
-fn json(compared: &Comparison) -> String {
+/// A comparison as a JSON object, with its lines and whether nothing falls short.
+pub fn object(compared: &Comparison) -> Value {
     let mut object = json!(compared);
     object["good"] = compared.good().into();
-    format!("{object:#}\n")
+    object
 }
 
 /// A table whose text cannot leave its cell.
 fn markdown(compared: &Comparison) -> String {
     let escaped = |text: &str| {
-        text.replace('\\', "\\\\")
+        words::printable(text)
+            .replace('\\', "\\\\")
             .replace('|', "\\|")
             .replace('<', "&lt;")
-            .replace('\n', " ")
     };
     let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let mut out = format!(

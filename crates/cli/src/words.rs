@@ -52,11 +52,16 @@ pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
     cells.iter().fold(line(columns), |text, row| text + &line(row))
 }
 
+/// A word that keeps to its line: a blank for whatever is no character to be seen.
+pub fn printable(word: &str) -> String {
+    word.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
 /// How a cell is written for people: axes as they are, computed lengths to a tenth of a millimetre, forces to a newton.
 fn cell(column: &str, value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
-        Value::String(word) => word.clone(),
+        Value::String(word) => printable(word),
         Value::Number(n) => match n.as_f64() {
             Some(x) if column.starts_with("peak_") && column.ends_with("_m") => format!("{x:.4}"),
             Some(x) if column.starts_with("peak_") && column.ends_with("_n") => format!("{x:.0}"),

@@ -5,13 +5,12 @@ use crate::args::{CalibrateArguments, Common, Format};
 use crate::words;
 use anyhow::{Context, Result};
 use pontoon_study::Refusal;
-use pontoon_study::calibrate::{Calibration, Parameters, calibrate as fit};
+use pontoon_study::calibrate::{Calibration, Parameters, Task};
 use pontoon_study::document::pretty;
 use pontoon_study::reference::Reference;
 use pontoon_study::spec::read_bridge;
-use pontoon_study::tables::{Folder, FolderError};
+use pontoon_study::tables::Folder;
 use serde_json::{Value, json};
-use std::ffi::OsStr;
 use std::path::Path;
 
 /// Fits, writes the bridge and says what was found.
@@ -24,14 +23,14 @@ pub fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Endin
         .collect::<Result<Vec<_>, _>>()?;
     let parameters = Parameters::open(&arguments.parameters)?;
     check_out(&arguments.out, &arguments.bridge)?;
-    let (folder, name) = place(&arguments.out).context("no place for the bridge")?;
     let told = |candidates: usize, least: f64| {
         if !common.quiet {
             words::note(&format!("{candidates} candidates, least sum of squares {least:.4}"));
         }
     };
-    let threads = arguments.threads.map_or(0, usize::from);
-    let found = fit(&bridge, &references, &parameters, threads, &told)?;
+    let task = Task::new(&bridge, &references, &parameters, &told)?;
+    let (folder, name) = place(&arguments.out)?;
+    let found = task.fit(arguments.threads.map_or(0, usize::from))?;
     let written = pretty(&found.bridge);
     folder
         .write(&name, |file| std::io::Write::write_all(file, written.as_bytes()))
@@ -46,28 +45,32 @@ pub fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Endin
     Ok(if found.converged { Ending::Good } else { Ending::Short })
 }
 
-/// Refuses to write over a folder or over the bridge that the fit starts from.
+/// Refuses to write over the bridge that the fit starts from.
 fn check_out(out: &Path, start: &Path) -> Result<(), Refusal> {
-    let found = match (out.is_dir(), out.canonicalize().ok() == start.canonicalize().ok()) {
-        (true, _) => "a folder",
-        (false, true) => "the bridge that the fit starts from",
-        (false, false) => return Ok(()),
-    };
-    Err(Refusal::new(out, "", found, "a file for the bridge found"))
+    if out.canonicalize().ok() != start.canonicalize().ok() {
+        return Ok(());
+    }
+    let found = "the bridge that the fit starts from";
+    Err(Refusal::new(out, "", found, "another file for the bridge found"))
 }
 
 /// The folder of a file, made where it is missing, and the file's name.
-fn place(out: &Path) -> Result<(Folder, String), FolderError> {
+fn place(out: &Path) -> Result<(Folder, String)> {
+    let allowed = "the name of a bridge file";
+    let Some(name) = out.file_name().filter(|_| !out.is_dir()) else {
+        return Err(Refusal::new(out, "", "a folder", allowed).into());
+    };
+    let Some(name) = name.to_str() else {
+        return Err(Refusal::new(out, "", "a name that is no text", allowed).into());
+    };
     let folder = out
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    let name = out
-        .file_name()
-        .map(OsStr::to_string_lossy)
-        .unwrap_or_default()
-        .into_owned();
-    Ok((Folder::create(folder)?, name))
+    Ok((
+        Folder::create(folder).context("no place for the bridge")?,
+        name.to_owned(),
+    ))
 }
 
 fn text(found: &Calibration, out: &Path) -> String {
@@ -77,7 +80,14 @@ fn text(found: &Calibration, out: &Path) -> String {
         .checks
         .iter()
         .map(|c| {
-            let share = |x: f64| Value::from(format!("{x:+.3}"));
+            let share = |x: f64| {
+                let text = if x.abs() < 1e6 {
+                    format!("{x:+.3}")
+                } else {
+                    format!("{x:+.3e}")
+                };
+                Value::from(text)
+            };
             let numbers = [c.expected, c.before, c.after].map(number);
             let residuals = [c.residual_before, c.residual_after].map(share);
             [vec![Value::from(c.id.clone())], numbers.to_vec(), residuals.to_vec()].concat()

@@ -6,7 +6,7 @@ use crate::comparison;
 use crate::progress::Shown;
 use crate::words;
 use anyhow::{Context, Result};
-use pontoon_study::compare::{Comparison, against_reference, check_study};
+use pontoon_study::compare::{Comparison, against_reference};
 use pontoon_study::plan::{Job, Jobs};
 use pontoon_study::reference::Reference;
 use pontoon_study::run::{Outcome, run as run_jobs};
@@ -27,7 +27,7 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     if let Some(reference) = &reference {
-        check_study(reference, &study.spec.name)?;
+        check_reference(reference, &study)?;
     }
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let out = arguments
@@ -62,6 +62,18 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     } else {
         Ending::Short
     })
+}
+
+/// Refuses a reference of another study, before anything runs.
+fn check_reference(reference: &Reference, study: &Study) -> Result<(), Refusal> {
+    match reference.study_name()?.filter(|name| *name != study.spec.name) {
+        Some(name) => {
+            let allowed = format!("the study '{}', whose results are held", study.spec.name);
+            let found = format!("the study '{name}'");
+            Err(Refusal::new(&reference.file, "study", found, allowed))
+        }
+        None => Ok(()),
+    }
 }
 
 fn failures(outcome: &Outcome) {
@@ -124,7 +136,7 @@ fn object(
         "summary": summary.rows.iter().map(row).collect::<Vec<_>>(),
     });
     if let Some(compared) = compared {
-        object["comparison"] = json!(compared);
+        object["comparison"] = comparison::object(compared);
     }
     format!("{object:#}\n")
 }

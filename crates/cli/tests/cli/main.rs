@@ -5,6 +5,15 @@
 #![allow(clippy::unwrap_used)]
 
 mod bounds;
+mod calibrate;
+mod calibrate_input;
+mod compare;
+mod compare_formats;
+mod compare_histories;
+mod compare_input;
+mod compare_kinds;
+mod damaged;
+mod old_results;
 mod refusals;
 mod results;
 mod stage;

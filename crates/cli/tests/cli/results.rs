@@ -5,12 +5,6 @@ use polars::prelude::{DataFrame, ParquetReader, SerReader};
 use serde_json::{Value, json};
 use std::fs;
 
-fn table(stage: &Stage, path: &str) -> DataFrame {
-    ParquetReader::new(fs::File::open(stage.path(path)).unwrap())
-        .finish()
-        .unwrap()
-}
-
 fn columns(frame: &DataFrame) -> Vec<String> {
     frame.get_column_names().iter().map(|name| name.to_string()).collect()
 }
@@ -58,15 +52,15 @@ fn tables_have_their_columns_and_a_row_for_everything() {
         .write()
         .pontoon(&["run", "study.json", "--out", "r", "--format", "json", "--quiet"]);
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
-    let jobs = table(&stage, "r/jobs.parquet");
+    let jobs = stage.table("r/jobs.parquet");
     assert_eq!(columns(&jobs), JOBS.split_whitespace().collect::<Vec<_>>());
     // Linear and two gaps at two speeds: the linear points of the second gap are equal to those of the first.
     assert_eq!(jobs.height(), 6);
     assert_eq!(jobs.column("gap_tension_m").unwrap().null_count(), 2);
-    assert_eq!(table(&stage, "r/positions.parquet").height(), 6 * 4);
-    assert_eq!(table(&stage, "r/connectors.parquet").height(), 6 * 2 * 3);
+    assert_eq!(stage.table("r/positions.parquet").height(), 6 * 4);
+    assert_eq!(stage.table("r/connectors.parquet").height(), 6 * 2 * 3);
     let steps: i64 = jobs.column("steps").unwrap().i64().unwrap().iter().flatten().sum();
-    let histories = table(&stage, "r/histories.parquet");
+    let histories = stage.table("r/histories.parquet");
     assert_eq!(columns(&histories), ["job", "time_s", "quantity", "position", "value"]);
     assert!(
         histories.height() as i64 >= 2 * steps,
@@ -128,7 +122,7 @@ fn a_module_is_condensed_once_for_each_bridge_and_not_for_its_connectors() {
         let manifest = stage.manifest("r");
         let counts = (&manifest["distinct_bridges"], &manifest["condensations"]);
         assert_eq!(counts, (&json!(bridges), &json!(condensations)), "{axis}");
-        let jobs = table(&stage, "r/jobs.parquet");
+        let jobs = stage.table("r/jobs.parquet");
         assert_eq!(jobs.height(), 12, "{axis}");
         let column = jobs.column(axis).unwrap().f64().unwrap().clone();
         assert!(column.get(0) != column.get(1), "the last axis changes fastest");
@@ -143,7 +137,7 @@ fn a_failed_job_is_a_row_and_the_others_go_on() {
     let output = stage.write().pontoon(&["run", "study.json", "--out", "r"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("job 1 failed: "), "{}", stderr(&output));
-    let jobs = table(&stage, "r/jobs.parquet");
+    let jobs = stage.table("r/jobs.parquet");
     let text = |name: &str, row: usize| jobs.column(name).unwrap().str().unwrap().get(row).map(str::to_owned);
     assert_eq!(
         (text("status", 0).as_deref(), text("status", 1).as_deref()),
@@ -153,7 +147,7 @@ fn a_failed_job_is_a_row_and_the_others_go_on() {
     let peaks = jobs.column("peak_deflection_m").unwrap().f64().unwrap().clone();
     assert!(peaks.get(0).is_some_and(|p| p > 0.0) && peaks.get(1).is_none());
     assert_eq!(stage.manifest("r")["failed"], json!(1));
-    assert_eq!(table(&stage, "r/positions.parquet").height(), 2 * 4);
+    assert_eq!(stage.table("r/positions.parquet").height(), 2 * 4);
 }
 
 #[test]
@@ -182,12 +176,12 @@ fn static_cases_have_places_and_deflections() {
         json!([{ "grid": { "connection": ["linear", "nonlinear"], "load_position": [2, 3], "load_n": 1e5 } }]);
     let output = stage.write().pontoon(&["run", "study.json", "--out", "r"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let jobs = table(&stage, "r/jobs.parquet");
+    let jobs = stage.table("r/jobs.parquet");
     assert!(!columns(&jobs).contains(&"speed_m_s".to_owned()));
     assert_eq!(jobs.column("load_x_m").unwrap().f64().unwrap().get(1), Some(2.0 * 6.7));
     assert_eq!(jobs.column("influential_length_m").unwrap().null_count(), 0);
     assert_eq!(jobs.column("peak_deflection_time_s").unwrap().null_count(), 4);
-    let positions = table(&stage, "r/positions.parquet");
+    let positions = stage.table("r/positions.parquet");
     let at = |name: &str, row: usize| positions.column(name).unwrap().f64().unwrap().get(row).unwrap();
     for row in 0..positions.height() {
         assert_eq!(

@@ -1,6 +1,7 @@
-//! A folder with a study and its bridge, and the program run in it.
+//! A folder with a study and its bridge, the program run in it, and what it left.
 
-use serde_json::Value;
+use polars::prelude::{DataFrame, DataType, ParquetReader, SerReader};
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -47,6 +48,32 @@ impl Stage {
         self
     }
 
+    /// Writes a document beside them.
+    pub fn json(&self, name: &str, document: &Value) {
+        fs::write(self.path(name), format!("{document:#}")).unwrap();
+    }
+
+    /// Writes the documents and runs the study into a folder, to its good end.
+    pub fn ran(&self, out: &str) {
+        let output = self.write().pontoon(&["run", "study.json", "--out", out, "--quiet"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+
+    /// Holds results against `reference.json` made of some checks; exit status and the lines of the comparison.
+    pub fn held(&self, results: &str, checks: &Value) -> (Option<i32>, Vec<Value>) {
+        self.json("reference.json", &reference(checks));
+        self.compared(results, "reference.json")
+    }
+
+    /// Holds results against what has a name; exit status and the lines of the comparison.
+    pub fn compared(&self, results: &str, with: &str) -> (Option<i32>, Vec<Value>) {
+        let output = self.pontoon(&["compare", results, "--with", with, "--format", "json"]);
+        let text = stdout(&output);
+        let object: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}{}", stderr(&output)));
+        assert_eq!(object["good"], json!(output.status.code() == Some(0)));
+        (output.status.code(), object["lines"].as_array().unwrap().clone())
+    }
+
     /// Runs the program in the folder.
     pub fn pontoon(&self, words: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_pontoon"))
@@ -54,6 +81,24 @@ impl Stage {
             .current_dir(self.dir.path())
             .output()
             .unwrap()
+    }
+
+    /// A table in a folder of results.
+    pub fn table(&self, path: &str) -> DataFrame {
+        ParquetReader::new(fs::File::open(self.path(path)).unwrap())
+            .finish()
+            .unwrap()
+    }
+
+    /// A column of numbers of a table.
+    pub fn numbers(&self, path: &str, column: &str) -> Vec<Option<f64>> {
+        let column = self
+            .table(path)
+            .column(column)
+            .unwrap()
+            .cast(&DataType::Float64)
+            .unwrap();
+        column.f64().unwrap().iter().collect()
     }
 
     /// The names of everything in the folder, sorted.
@@ -78,4 +123,20 @@ pub fn stdout(output: &Output) -> String {
 /// What a program wrote on standard error.
 pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A reference of some checks.
+pub fn reference(checks: &Value) -> Value {
+    json!({ "name": "expected", "source": "the tables themselves", "checks": checks })
+}
+
+/// An end with status 2 and one message that holds all parts; nothing on standard output.
+pub fn is_refused(output: &Output, parts: &[&str]) {
+    let message = stderr(output);
+    assert_eq!(output.status.code(), Some(2), "{parts:?}: {message}{}", stdout(output));
+    assert_eq!(message.lines().count(), 1, "{message}");
+    for part in [&["found ", "allowed: "], parts].concat() {
+        assert!(message.contains(part), "no '{part}' in: {message}");
+    }
+    assert_eq!(stdout(output), "", "{message}");
 }

@@ -12,6 +12,9 @@ use serde_json::{Value, json};
 /// Quantities of a bridge that are no number of its file.
 pub(super) const QUANTITIES: [&str; 2] = ["structural_mass_kg", "total_mass_kg_m"];
 
+/// The number of the file that follows each.
+pub(super) const FOLLOWS: [&str; 2] = ["module.material.density_kg_m3", "added_mass_kg_m"];
+
 /// A bridge at a point of the parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {

@@ -22,7 +22,7 @@ pub use parameters::{Parameters, ParametersSpec};
 use crate::reference::Reference;
 use crate::refusal::Refusal;
 use crate::spec::BridgeFile;
-use fit::FitError;
+use fit::{FitError, Parameter};
 use model::Model;
 use thiserror::Error;
 
@@ -32,38 +32,74 @@ pub enum CalibrateError {
     /// The input is refused.
     #[error(transparent)]
     Refused(#[from] Refusal),
+    /// The bridge that the search starts from, or the one next to it that lies off the bounds, gives no residuals.
+    #[error("the bridge to start from fails, at {at}: {reason}")]
+    Start {
+        /// The parameters.
+        at: String,
+        /// What failed.
+        reason: String,
+    },
     /// The fit could not begin.
     #[error(transparent)]
-    Fit(#[from] FitError),
+    Fit(FitError),
     /// No pool of threads.
     #[error("no pool of threads: {0}")]
     Pool(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Fits the parameters of a bridge to the checks of references on `threads` threads (0: as many as the machine has). `told`
-/// is told of each batch: candidates so far, the least sum of squares among them.
-///
-/// # Errors
-/// [`CalibrateError`].
-pub fn calibrate(
-    bridge: &BridgeFile,
-    references: &[Reference],
-    parameters: &Parameters,
-    threads: usize,
-    told: &(dyn Fn(usize, f64) + Sync),
-) -> Result<Calibration, CalibrateError> {
-    let starts = parameters.starts(bridge)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let model = Model::new(bridge, references, parameters, told)?;
-    let fitted = pool.install(|| fit::fit(&starts, &|points| model.residuals(points), &parameters.settings()));
-    if let Some(refusal) = model.refusal() {
-        return Err(refusal.into());
+/// A calibration whose input has been checked as far as can be without computing anything.
+pub struct Task<'a> {
+    bridge: &'a BridgeFile,
+    parameters: &'a Parameters,
+    starts: Vec<Parameter>,
+    model: Model<'a>,
+}
+
+impl<'a> Task<'a> {
+    /// The fit of the parameters of a bridge to the checks of references. `told` is told of each batch: candidates so
+    /// far, the least sum of squares among them.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn new(
+        bridge: &'a BridgeFile,
+        references: &'a [Reference],
+        parameters: &'a Parameters,
+        told: &'a (dyn Fn(usize, f64) + Sync),
+    ) -> Result<Self, Refusal> {
+        Ok(Self {
+            bridge,
+            parameters,
+            starts: parameters.starts(bridge)?,
+            model: Model::new(bridge, references, parameters, told)?,
+        })
     }
-    let fitted = fitted?;
-    let best: Vec<f64> = fitted.parameters.iter().map(|p| p.best).collect();
-    Ok(outcome::calibration(
-        &model,
-        fitted,
-        parameters.candidate(bridge, &best)?,
-    ))
+
+    /// Fits on `threads` threads (0: as many as the machine has).
+    ///
+    /// # Errors
+    /// [`CalibrateError`]; it is the input that is refused where the bridge to start from names what cannot be.
+    pub fn fit(&self, threads: usize) -> Result<Calibration, CalibrateError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let residuals = |points: &[Vec<f64>]| self.model.residuals(points);
+        let fitted = pool.install(|| fit::fit(&self.starts, &residuals, &self.parameters.settings()));
+        let fitted = fitted.map_err(|error| self.explained(error))?;
+        let best: Vec<f64> = fitted.parameters.iter().map(|p| p.best).collect();
+        let best = self.parameters.candidate(self.bridge, &best)?;
+        Ok(outcome::calibration(&self.model, fitted, best))
+    }
+
+    fn explained(&self, error: FitError) -> CalibrateError {
+        match error {
+            FitError::Start { parameters, reason } => match self.model.refused_at_start() {
+                Some(refusal) => refusal.into(),
+                None => CalibrateError::Start {
+                    at: self.parameters.point(&parameters),
+                    reason,
+                },
+            },
+            other => CalibrateError::Fit(other),
+        }
+    }
 }

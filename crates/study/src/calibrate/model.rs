@@ -4,7 +4,7 @@
 
 use super::candidate::Candidate;
 use super::parameters::Parameters;
-use crate::compare::{Judge, Trouble};
+use crate::compare::Judge;
 use crate::plan::{Job, Jobs};
 use crate::reference::{CheckKind, CheckSpec, Filter, Quantity, Reference, Role};
 use crate::refusal::Refusal;
@@ -24,13 +24,8 @@ pub(super) struct Model<'a> {
     state: Mutex<State>,
 }
 
-/// Why a candidate has no residuals.
-enum Failure {
-    /// It is the candidate's.
-    Candidate(String),
-    /// It is the reference's, whatever the candidate.
-    Reference(Refusal),
-}
+/// What a candidate is computed for: each study with its jobs.
+type Work = Vec<(Study, Vec<Job>)>;
 
 /// A reference with its study.
 pub(super) struct Source<'a> {
@@ -48,8 +43,8 @@ struct State {
     candidates: usize,
     condensations: usize,
     least: f64,
-    /// A reference that was found wrong on the way.
-    refusal: Option<Refusal>,
+    /// What was refused before anything else was asked for: the input is to blame, no candidate.
+    refused: Option<Refusal>,
 }
 
 impl<'a> Model<'a> {
@@ -125,15 +120,17 @@ impl<'a> Model<'a> {
                 candidates: 0,
                 condensations: 0,
                 least: f64::INFINITY,
-                refusal: None,
+                refused: None,
             }),
         })
     }
 
     /// `weight (found - expected) / tolerance` of each fitted check, for each of several candidates, all solved together.
     pub(super) fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<f64>, String>> {
-        let prepared: Vec<Result<Vec<(Study, Vec<Job>)>, String>> =
-            points.iter().map(|point| self.jobs(point)).collect();
+        let prepared: Vec<Result<Work, String>> = points
+            .iter()
+            .map(|point| self.jobs(point).map_err(|refusal| self.told_of(refusal)))
+            .collect();
         let all: Vec<(&Study, &Job)> = prepared
             .iter()
             .flatten()
@@ -154,18 +151,8 @@ impl<'a> Model<'a> {
                     .collect();
                 let mut found = Vec::new();
                 for ((source, (study, jobs)), records) in self.sources.iter().zip(studies).zip(&own) {
-                    found.extend(
-                        source
-                            .residuals(study, jobs, records, &self.parameters.spec.weights)
-                            .map_err(|failure| match failure {
-                                Failure::Candidate(reason) => reason,
-                                Failure::Reference(refusal) => {
-                                    let reason = refusal.to_string();
-                                    self.lock().refusal.get_or_insert(refusal);
-                                    reason
-                                }
-                            })?,
-                    );
+                    let residuals = source.residuals(study, jobs, records, &self.parameters.spec.weights);
+                    found.extend(residuals.map_err(|refusal| self.told_of(refusal))??);
                 }
                 Ok(found)
             })
@@ -181,9 +168,19 @@ impl<'a> Model<'a> {
         answers
     }
 
-    /// What was found wrong with a reference, if anything.
-    pub(super) fn refusal(&self) -> Option<Refusal> {
-        self.lock().refusal.clone()
+    /// What is wrong with the input itself, where the first candidates were refused.
+    pub(super) fn refused_at_start(&self) -> Option<Refusal> {
+        self.lock().refused.clone()
+    }
+
+    /// Keeps what the first candidates were refused for, and says it.
+    fn told_of(&self, refusal: Refusal) -> String {
+        let text = refusal.to_string();
+        let mut state = self.lock();
+        if state.candidates == 0 {
+            state.refused.get_or_insert(refusal);
+        }
+        text
     }
 
     /// Modules condensed so far.
@@ -196,8 +193,8 @@ impl<'a> Model<'a> {
     }
 
     /// For each reference its study with the candidate's bridge, and the jobs that the checks need.
-    fn jobs(&self, point: &[f64]) -> Result<Vec<(Study, Vec<Job>)>, String> {
-        let candidate = Candidate::new(self.parameters, self.bridge, point).map_err(|e| e.to_string())?;
+    fn jobs(&self, point: &[f64]) -> Result<Work, Refusal> {
+        let candidate = Candidate::new(self.parameters, self.bridge, point)?;
         let of_source = |source: &Source<'_>| {
             let mut study = source.study.clone();
             study.bridge = BridgeFile {
@@ -206,7 +203,7 @@ impl<'a> Model<'a> {
                 design: candidate.design.clone(),
             };
             let jobs = Jobs::new(&study).filter(|job| job.as_ref().map_or(true, |job| source.needs(job)));
-            let jobs = jobs.collect::<Result<Vec<Job>, Refusal>>().map_err(|e| e.to_string())?;
+            let jobs = jobs.collect::<Result<Vec<Job>, Refusal>>()?;
             Ok((study, jobs))
         };
         self.sources.iter().map(of_source).collect()
@@ -249,38 +246,42 @@ impl<'a> Source<'a> {
         let mut axes = self.study.path_axes();
         axes.extend(crate::spec::SHORT_NAMES.map(str::to_owned));
         let means = |filter: &Filter| {
-            let of_axes = filter.0.iter().filter(|(name, _)| axes.contains(name));
-            of_axes
-                .map(|(name, allowed)| allowed.allows(&job.column(name)))
-                .all(|meant| meant)
+            let mut of_axes = filter.0.iter().filter(|(name, _)| axes.contains(name));
+            of_axes.all(|(name, allowed)| allowed.allows(&job.column(name)))
         };
         self.filters.iter().any(means)
     }
 
+    /// The residuals, or in the inner result why there are none.
     fn residuals(
         &self,
         study: &Study,
         jobs: &[Job],
         records: &[JobRecord],
         weights: &BTreeMap<String, f64>,
-    ) -> Result<Vec<f64>, Failure> {
+    ) -> Result<Result<Vec<f64>, String>, Refusal> {
         if let Some(record) = records.iter().find(|record| record.reason.is_some()) {
             let reason = record.reason.as_deref().unwrap_or_default();
-            let reason = format!("{}: job {}: {reason}", study.spec.name, record.job);
-            return Err(Failure::Candidate(reason));
+            return Ok(Err(format!("{}: job {}: {reason}", study.spec.name, record.job)));
         }
-        let results = Results::of_run(study, jobs, records, Path::new("candidate")).map_err(Failure::Candidate)?;
+        let results = match Results::of_run(study, jobs, records, Path::new("candidate")) {
+            Ok(results) => results,
+            Err(reason) => return Ok(Err(reason)),
+        };
         let judge = Judge::new(&results, self.reference);
-        let residual = |&i: &usize| {
+        let mut residuals = Vec::new();
+        for &i in &self.checks {
             let check = &self.reference.spec.checks[i];
             let (expected, tolerance) = check.expected_and_tolerance().unwrap_or_default();
-            let found = judge.value(i).map_err(|trouble| match trouble {
-                Trouble::Short(reason) => Failure::Candidate(format!("{}: {reason}", check.id)),
-                Trouble::Refused(refusal) => Failure::Reference(refusal),
-            })?;
-            Ok((found - expected) / tolerance * weights.get(&check.id).unwrap_or(&1.0))
-        };
-        self.checks.iter().map(residual).collect()
+            match judge.value(i)? {
+                Ok(found) => {
+                    let weight = weights.get(&check.id).unwrap_or(&1.0);
+                    residuals.push(weight * (found - expected) / tolerance);
+                }
+                Err(reason) => return Ok(Err(format!("{}: {reason}", check.id))),
+            }
+        }
+        Ok(Ok(residuals))
     }
 }
 

@@ -116,15 +116,12 @@ pub(super) fn calibration(model: &Model<'_>, fit: Fit, best: Candidate) -> Calib
         format!("{} (in widths between bounds)", parts.collect::<Vec<_>>().join(" "))
     });
     let failed = fit.failed.iter().map(|point| {
-        let at = specs
-            .iter()
-            .zip(&point.parameters)
-            .map(|(spec, value)| format!("{} {value:.6e}", spec.name));
+        let at = model.parameters.point(&point.parameters);
         let what = match point.purpose {
             Purpose::Trial => "a step refused".to_owned(),
             Purpose::Difference(k) => format!("a difference over {} not taken", specs[k].name),
         };
-        format!("{}: {}; {what}", at.collect::<Vec<_>>().join(", "), point.reason)
+        format!("{at}: {}; {what}", point.reason)
     });
     let (undetermined, failed) = (undetermined.collect(), failed.collect());
     let mut design = best.design;

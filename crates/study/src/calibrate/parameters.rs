@@ -2,7 +2,7 @@
 //!
 //! Knows its keys and that each names something of the bridge. Does not know references' checks or fits.
 
-use super::candidate::{Candidate, QUANTITIES};
+use super::candidate::{Candidate, FOLLOWS, QUANTITIES};
 use super::fit::{Parameter, Settings};
 use crate::document::{DocumentPath, leaves, read, typed};
 use crate::refusal::Refusal;
@@ -68,6 +68,37 @@ pub struct Parameters {
     pub spec: ParametersSpec,
 }
 
+impl ParametersSpec {
+    /// Refuses numbers of the bridge that two parameters move, or a parameter and a quantity.
+    fn each_number_once(&self, file: &Path) -> Result<(), Refusal> {
+        let mut taken: Vec<(&str, &str)> = Vec::new();
+        for name in self
+            .hold
+            .keys()
+            .chain(self.parameters.iter().filter(|p| p.sets.is_empty()).map(|p| &p.name))
+        {
+            if let Some((_, follows)) = QUANTITIES.iter().zip(FOLLOWS).find(|(quantity, _)| *quantity == name) {
+                taken.push((follows, name));
+            }
+        }
+        for (i, parameter) in self.parameters.iter().enumerate() {
+            let own = parameter.sets.is_empty().then_some(&parameter.name);
+            for path in own.into_iter().chain(parameter.sets.keys()) {
+                if let Some((_, other)) = taken.iter().find(|(number, _)| number == path) {
+                    let key = match own {
+                        Some(_) => format!("parameters[{i}].name"),
+                        None => format!("parameters[{i}].sets.{path}"),
+                    };
+                    let found = format!("'{path}', which follows '{other}'");
+                    return Err(Refusal::new(file, key, found, "numbers that nothing else moves"));
+                }
+                taken.push((path, &parameter.name));
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Parameters {
     /// Reads a file of parameters.
     ///
@@ -86,6 +117,10 @@ impl Parameters {
         }
         for (i, parameter) in spec.parameters.iter().enumerate() {
             let key = |name: &str| format!("parameters[{i}].{name}");
+            if !(parameter.upper - parameter.lower).is_finite() {
+                let found = format!("{}, too far from lower, {}", parameter.upper, parameter.lower);
+                return refuse(key("upper"), found, "bounds whose distance is a number");
+            }
             if parameter.lower >= parameter.upper {
                 return refuse(
                     key("upper"),
@@ -104,9 +139,7 @@ impl Parameters {
                 );
             }
         }
-        if let Some((key, found, allowed)) = set_twice(&spec) {
-            return refuse(key, found, &allowed);
-        }
+        spec.each_number_once(file)?;
         let known = QUANTITIES.map(str::to_owned);
         for (name, value) in &spec.hold {
             let key = format!("hold.{name}");
@@ -151,6 +184,13 @@ impl Parameters {
             document,
             spec,
         })
+    }
+
+    /// A point in words: each name with its value.
+    pub(super) fn point(&self, values: &[f64]) -> String {
+        let each = self.spec.parameters.iter().zip(values);
+        let words: Vec<String> = each.map(|(spec, value)| format!("{} {value:.6e}", spec.name)).collect();
+        words.join(", ")
     }
 
     /// What steers the fit.
@@ -211,6 +251,12 @@ impl Parameters {
         let number = |at: String, path: &str| {
             let value = DocumentPath::parse(path).and_then(|p| p.get(document).cloned());
             match value.as_ref().map(Value::as_f64) {
+                Some(_) if value.as_ref().is_some_and(Value::is_u64) => Err(Refusal::new(
+                    &self.file,
+                    at,
+                    format!("'{path}', a whole number, which cannot move a little"),
+                    "the path of a number that need not be whole",
+                )),
                 Some(Some(number)) => Ok(number),
                 Some(None) => Err(Refusal::new(
                     &self.file,
@@ -252,49 +298,4 @@ impl Parameters {
     pub(super) fn candidate(&self, bridge: &BridgeFile, point: &[f64]) -> Result<Candidate, Refusal> {
         Candidate::new(self, bridge, point)
     }
-}
-
-/// A number that two parameters set, or a parameter and a mass that is held or moved: where, what, what is allowed.
-fn set_twice(spec: &ParametersSpec) -> Option<(String, String, String)> {
-    let mut taken: Vec<(String, String)> = Vec::new();
-    let masses = [
-        ("structural_mass_kg", "module.material.density_kg_m3"),
-        ("total_mass_kg_m", "added_mass_kg_m"),
-        ("total_mass_kg_m", "todd"),
-    ];
-    for (mass, path) in masses {
-        if spec.hold.contains_key(mass) || spec.parameters.iter().any(|p| p.name == mass && p.sets.is_empty()) {
-            taken.push((path.to_owned(), mass.to_owned()));
-        }
-    }
-    let within = |outer: &str, inner: &str| {
-        inner
-            .strip_prefix(outer)
-            .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-    };
-    for (i, parameter) in spec.parameters.iter().enumerate() {
-        let own = if parameter.sets.is_empty() {
-            vec![&parameter.name]
-        } else {
-            parameter.sets.keys().collect()
-        };
-        for path in &own {
-            if let Some((_, by)) = taken
-                .iter()
-                .find(|(other, _)| within(other, path) || within(path, other))
-            {
-                let key = format!(
-                    "parameters[{i}].{}",
-                    if parameter.sets.is_empty() { "name" } else { "sets" }
-                );
-                return Some((
-                    key,
-                    format!("'{path}', which {by} sets too"),
-                    "each number set once".to_owned(),
-                ));
-            }
-        }
-        taken.extend(own.into_iter().map(|path| (path.clone(), parameter.name.clone())));
-    }
-    None
 }

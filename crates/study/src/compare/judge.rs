@@ -2,9 +2,10 @@
 //!
 //! Knows what each kind of check asks of its quantity. Does not know how a quantity is found.
 
-use super::expectation::expected;
+use super::asked::Asked;
+use super::expected::expected;
 use super::line::{Case, Line, Verdict, number};
-use super::quantity::{Evaluator, Trouble};
+use super::quantity::Evaluator;
 use crate::reference::{
     Allowed, BoundCheck, CheckKind, CheckSpec, CurveCheck, Filter, MeasuredCheck, ModeCheck, Quantity, Reduction,
     Reference, Role, SelectQuantity, Tolerance, Trend, TrendCheck,
@@ -34,26 +35,23 @@ impl<'a> Judge<'a> {
     pub(crate) fn new(results: &'a Results, reference: &'a Reference) -> Self {
         Self {
             reference,
-            evaluator: Evaluator::new(results, &reference.file),
+            evaluator: Evaluator::new(results),
         }
     }
 
     /// Makes check number `i`.
     pub(super) fn line(&self, i: usize) -> Result<Line, Refusal> {
+        self.asked(i).check()?;
         let check = &self.reference.spec.checks[i];
-        let key = format!("checks[{i}]");
-        self.check_outer(&key, check)?;
-        let cases = match self.combinations(&key, check)? {
-            Ok(combinations) => combinations
-                .into_iter()
-                .map(|case| self.case(&key, check, case))
-                .collect::<Result<Vec<Case>, Refusal>>()?,
-            Err(reason) => vec![Case::without_values(Map::new(), reason)],
+        let combinations = self.combinations(check);
+        let cases: Vec<Case> = if combinations.is_empty() {
+            vec![Case::without_values(Map::new(), "no job matches".to_owned())]
+        } else {
+            combinations.into_iter().map(|case| self.case(check, case)).collect()
         };
-        let of_case = |case: &Case| case.margin.unwrap_or(f64::NEG_INFINITY);
         let mut worst = &cases[0];
         for case in &cases[1..] {
-            if of_case(case) < of_case(worst) {
+            if case.is_worse_than(worst) {
                 worst = case;
             }
         }
@@ -78,53 +76,41 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// What check number `i` of one value finds.
-    pub(crate) fn value(&self, i: usize) -> Result<f64, Trouble> {
+    fn asked(&self, i: usize) -> Asked<'_> {
+        Asked {
+            results: self.evaluator.results,
+            file: &self.reference.file,
+            key: format!("checks[{i}]"),
+            check: &self.reference.spec.checks[i],
+        }
+    }
+
+    /// What check number `i` of one value finds; in the inner result an error where it finds nothing or is of another
+    /// kind.
+    ///
+    /// # Errors
+    /// [`Refusal`] where it names what the results cannot have.
+    pub(crate) fn value(&self, i: usize) -> Result<Result<f64, String>, Refusal> {
+        self.asked(i).check()?;
         let check = &self.reference.spec.checks[i];
-        let key = format!("checks[{i}]");
-        self.check_outer(&key, check)?;
-        let (place, quantity) = match check.kind() {
-            Some(CheckKind::Value(value)) => ("value.of", value.of.clone()),
-            Some(CheckKind::Mode(mode)) => ("mode", mode.quantity()),
-            Some(CheckKind::Measured(measured)) => ("measured.of", measured.of.clone()),
-            _ => return Err(Trouble::Short("not a check of one value".to_owned())),
+        let quantity = match check.kind() {
+            Some(CheckKind::Value(value)) => Some(value.of.clone()),
+            Some(CheckKind::Mode(mode)) => Some(mode.quantity()),
+            Some(CheckKind::Measured(measured)) => Some(measured.of.clone()),
+            _ => None,
         };
-        self.evaluator
-            .value(&format!("{key}.{place}"), &quantity, &check.filter)
+        Ok(quantity
+            .filter(|_| check.each.is_empty())
+            .ok_or_else(|| "not a check of one value".to_owned())
+            .and_then(|quantity| self.evaluator.value(&quantity, &check.filter)))
     }
 
-    /// Refuses columns of a check's own filter that neither the jobs nor any table that the check looks at has.
-    fn check_outer(&self, key: &str, check: &CheckSpec) -> Result<(), Refusal> {
-        let mut tables = Vec::new();
-        match check.kind() {
-            Some(CheckKind::Value(value)) => tables_of(&value.of, &mut tables),
-            Some(CheckKind::Bound(bound)) => tables_of(&bound.of, &mut tables),
-            Some(CheckKind::Trend(trend)) => tables_of(&trend.of, &mut tables),
-            Some(CheckKind::Measured(measured)) => tables_of(&measured.of, &mut tables),
-            Some(CheckKind::Mode(_)) => tables.push(TableName::Modes),
-            Some(CheckKind::Curve(curve)) => tables.push(curve.table),
-            None => {}
-        }
-        let results = self.evaluator.results;
-        for column in &check.filter.0 {
-            let own = |name: &&TableName| results.table(**name).is_some_and(|table| table.has(&column.0));
-            let first = tables.iter().find(own).or(tables.first());
-            let table = first.and_then(|name| results.table(*name));
-            self.evaluator
-                .check_filter(&format!("{key}.where"), &Filter(vec![column.clone()]), table)?;
-        }
-        Ok(())
-    }
-
-    /// The combinations that a check is made for; the reason where there is none.
-    fn combinations(&self, key: &str, check: &CheckSpec) -> Result<Result<Vec<Map<String, Value>>, String>, Refusal> {
+    /// The combinations that a check is made for: one without columns where it has no `each`.
+    fn combinations(&self, check: &CheckSpec) -> Vec<Map<String, Value>> {
         if check.each.is_empty() {
-            return Ok(Ok(vec![Map::new()]));
+            return vec![Map::new()];
         }
         let jobs = self.evaluator.results.jobs();
-        for (j, column) in check.each.iter().enumerate() {
-            self.job_column(&format!("{key}.each[{j}]"), column)?;
-        }
         let (mut combinations, mut seen) = (Vec::new(), HashSet::new());
         for row in self.evaluator.jobs(&check.filter) {
             let of_row: Map<_, _> = check.each.iter().map(|c| (c.clone(), jobs.cell(c, row))).collect();
@@ -132,85 +118,59 @@ impl<'a> Judge<'a> {
                 combinations.push(of_row);
             }
         }
-        Ok(if combinations.is_empty() {
-            Err("no job matches".to_owned())
-        } else {
-            Ok(combinations)
-        })
+        combinations
     }
 
-    fn job_column(&self, key: &str, column: &str) -> Result<(), Refusal> {
-        let jobs = self.evaluator.results.jobs();
-        if jobs.has(column) {
-            return Ok(());
-        }
-        let known: Vec<String> = jobs.names().map(str::to_owned).collect();
-        Err(Refusal::unknown(self.evaluator.file, key, column, &known))
-    }
-
-    fn case(&self, key: &str, check: &CheckSpec, case: Map<String, Value>) -> Result<Case, Refusal> {
+    fn case(&self, check: &CheckSpec, case: Map<String, Value>) -> Case {
         let filter = case.iter().fold(check.filter.clone(), |filter, (column, value)| {
             filter.fixed(column, value)
         });
         self.evaluator.take_notes();
         let found = match check.kind() {
-            Some(CheckKind::Value(v)) => {
-                self.held(&format!("{key}.value.of"), &v.of, &filter, v.expected, v.tolerance())
-            }
-            Some(CheckKind::Mode(m)) => self.held(
-                &format!("{key}.mode"),
-                &m.quantity(),
-                &filter,
-                Some(m.expected_hz),
-                m.tolerance(),
-            ),
-            Some(CheckKind::Measured(m)) => self.measured(&format!("{key}.measured.of"), m, &filter),
-            Some(CheckKind::Bound(b)) => self.bound(&format!("{key}.bound.of"), b, &filter),
-            Some(CheckKind::Trend(t)) => self.trend(&format!("{key}.trend"), t, &filter),
-            Some(CheckKind::Curve(c)) => self.curve(&format!("{key}.curve"), c, &filter),
-            None => Err(Trouble::Short("nothing to check".to_owned())),
+            Some(CheckKind::Value(v)) => self.held(&v.of, &filter, v.expected, v.tolerance()),
+            Some(CheckKind::Mode(m)) => self.held(&m.quantity(), &filter, Some(m.expected_hz), m.tolerance()),
+            Some(CheckKind::Measured(m)) => self.measured(m, &filter),
+            Some(CheckKind::Bound(b)) => self.bound(b, &filter),
+            Some(CheckKind::Trend(t)) => self.trend(t, &filter),
+            Some(CheckKind::Curve(c)) => self.curve(c, &filter),
+            None => Err("nothing to check".to_owned()),
         };
-        let mut remarks = self.evaluator.take_notes();
+        let notes = self.evaluator.take_notes();
         match found {
-            Ok(found) => Ok({
-                remarks.splice(0..0, found.reason);
-                Case {
-                    case,
-                    values: found.values,
-                    deviation: found.deviation,
-                    margin: found.margin,
-                    holds: found.holds,
-                    reason: Some(remarks.join("; ")).filter(|text| !text.is_empty()),
-                }
-            }),
-            Err(Trouble::Short(reason)) => Ok(Case::without_values(case, reason)),
-            Err(Trouble::Refused(refusal)) => Err(refusal),
+            Ok(found) => Case {
+                case,
+                values: found.values,
+                deviation: found.deviation,
+                margin: found.margin,
+                holds: found.holds,
+                reason: found.reason.into_iter().chain(notes).reduce(|a, b| format!("{a}; {b}")),
+            },
+            Err(reason) => Case::without_values(case, reason),
         }
     }
 
     /// `|got - expected|` within a tolerance.
     fn held(
         &self,
-        key: &str,
         of: &Quantity,
         filter: &Filter,
         expected: Option<f64>,
         tolerance: Tolerance,
-    ) -> Result<Finding, Trouble> {
-        let got = self.evaluator.value(key, of, filter)?;
+    ) -> Result<Finding, String> {
+        let got = self.evaluator.value(of, filter)?;
         Ok(expected.map_or_else(|| Finding::of(got), |expected| off(got, expected, tolerance)))
     }
 
-    fn measured(&self, key: &str, check: &MeasuredCheck, filter: &Filter) -> Result<Finding, Trouble> {
+    fn measured(&self, check: &MeasuredCheck, filter: &Filter) -> Result<Finding, String> {
         let band = Tolerance {
             relative: None,
             absolute: Some(check.uncertainty),
         };
-        self.held(key, &check.of, filter, Some(check.value), band)
+        self.held(&check.of, filter, Some(check.value), band)
     }
 
-    fn bound(&self, key: &str, check: &BoundCheck, filter: &Filter) -> Result<Finding, Trouble> {
-        let got = self.evaluator.value(key, &check.of, filter)?;
+    fn bound(&self, check: &BoundCheck, filter: &Filter) -> Result<Finding, String> {
+        let got = self.evaluator.value(&check.of, filter)?;
         let lower = check.lower().map(|bound| (got - bound) / scale(bound));
         let upper = check.upper().map(|bound| (bound - got) / scale(bound));
         let margin = lower.into_iter().chain(upper).fold(f64::INFINITY, f64::min);
@@ -226,33 +186,27 @@ impl<'a> Judge<'a> {
         })
     }
 
-    fn trend(&self, key: &str, check: &TrendCheck, filter: &Filter) -> Result<Finding, Trouble> {
-        self.job_column(&format!("{key}.along"), &check.along)?;
+    fn trend(&self, check: &TrendCheck, filter: &Filter) -> Result<Finding, String> {
         let jobs = self.evaluator.results.jobs();
-        self.evaluator
-            .number_column(&format!("{key}.along"), jobs, &check.along)?;
         let meant = self.evaluator.jobs(filter);
         let along = meant.iter().map(|&row| jobs.number(&check.along, row));
         let Some(mut axis) = along.collect::<Option<Vec<f64>>>() else {
-            return Err(Trouble::Short(format!("jobs that match have no {}", check.along)));
+            return Err(format!("jobs that match have no {}", check.along));
         };
         axis.sort_by(f64::total_cmp);
         axis.dedup();
         if axis.len() < 2 {
-            return Err(Trouble::Short(format!(
+            return Err(format!(
                 "{} values of {} match, a trend needs two",
                 axis.len(),
                 check.along
-            )));
+            ));
         }
         let at = |x: &f64| {
-            self.evaluator.value(
-                &format!("{key}.of"),
-                &check.of,
-                &filter.fixed(&check.along, &Value::from(*x)),
-            )
+            let filter = filter.fixed(&check.along, &Value::from(*x));
+            self.evaluator.value(&check.of, &filter)
         };
-        let values = axis.iter().map(at).collect::<Result<Vec<f64>, Trouble>>()?;
+        let values = axis.iter().map(at).collect::<Result<Vec<f64>, String>>()?;
         let (least, most) = (
             values.iter().copied().fold(f64::INFINITY, f64::min),
             values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
@@ -280,35 +234,23 @@ impl<'a> Judge<'a> {
         })
     }
 
-    fn curve(&self, key: &str, check: &CurveCheck, filter: &Filter) -> Result<Finding, Trouble> {
-        let table = self.evaluator.table(key, check.table)?;
-        self.evaluator
-            .number_column(&format!("{key}.column"), table, &check.column)?;
-        self.evaluator
-            .number_column(&format!("{key}.against"), table, &check.against)?;
-        let (rows, _) = self
-            .evaluator
-            .rows(&format!("{key}.where"), check.table, &Filter::default(), filter)?;
+    fn curve(&self, check: &CurveCheck, filter: &Filter) -> Result<Finding, String> {
+        let table = self.evaluator.table(check.table)?;
+        let (rows, _) = self.evaluator.rows(check.table, filter)?;
         let point = |&row: &usize| table.number(&check.against, row).zip(table.number(&check.column, row));
         let Some(mut run) = rows.iter().map(point).collect::<Option<Vec<(f64, f64)>>>() else {
-            return Err(Trouble::Short(format!(
-                "{} is empty in a row that matches",
-                check.column
-            )));
+            return Err(format!("{} is empty in a row that matches", check.column));
         };
         run.sort_by(|a, b| a.0.total_cmp(&b.0));
         if run.windows(2).any(|w| w[0].0 == w[1].0) {
-            return Err(Trouble::Short(format!(
-                "several rows with one {}: several jobs, or rows of other places, match",
-                check.against
-            )));
+            return Err(format!("several rows with one {}: several jobs match", check.against));
         }
         let largest = check.points.iter().map(|p| p[1].abs()).fold(0.0, f64::max);
         let allowed = check.tolerance().allowed(largest);
         let mut worst: Option<([f64; 2], f64)> = None;
         for &[x, y] in &check.points {
             let got = interpolated(&run, x)
-                .ok_or_else(|| Trouble::Short(format!("{} {x} lies outside the rows that match", check.against)))?;
+                .ok_or_else(|| format!("{} {x} lies outside the rows that match", check.against))?;
             if worst.is_none_or(|([_, y0], got0)| (got - y).abs() > (got0 - y0).abs()) {
                 worst = Some(([x, y], got));
             }
@@ -331,7 +273,7 @@ impl<'a> Judge<'a> {
 }
 
 impl Finding {
-    /// A value that nothing is expected of.
+    /// A value of which nothing is expected.
     fn of(got: f64) -> Self {
         Self {
             values: vec![got],
@@ -369,19 +311,6 @@ fn interpolated(run: &[(f64, f64)], x: f64) -> Option<f64> {
     Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 }
 
-impl Case {
-    fn without_values(case: Map<String, Value>, reason: String) -> Self {
-        Self {
-            case,
-            values: Vec::new(),
-            deviation: None,
-            margin: None,
-            holds: false,
-            reason: Some(reason),
-        }
-    }
-}
-
 impl ModeCheck {
     fn quantity(&self) -> Quantity {
         let shape = Allowed::OneOf(vec![Value::from(self.shape.clone())]);
@@ -394,11 +323,63 @@ impl ModeCheck {
     }
 }
 
-/// The tables that a quantity looks at.
-fn tables_of(quantity: &Quantity, tables: &mut Vec<TableName>) {
-    match quantity {
-        Quantity::Select(select) => tables.push(select.table),
-        Quantity::History(_) => tables.push(TableName::Jobs),
-        _ => quantity.parts().iter().for_each(|(_, part)| tables_of(part, tables)),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tolerance(relative: Option<f64>, absolute: Option<f64>) -> Tolerance {
+        Tolerance { relative, absolute }
+    }
+
+    #[test]
+    fn a_margin_is_what_the_tolerance_leaves() {
+        let within = off(1.02, 1.0, tolerance(Some(0.05), None));
+        assert!(within.holds && (within.margin.unwrap() - 0.03).abs() < 1e-12);
+        let beyond = off(0.94, 1.0, tolerance(Some(0.05), None));
+        assert!(!beyond.holds && (beyond.margin.unwrap() + 0.01).abs() < 1e-12);
+        assert!((beyond.deviation.unwrap() + 0.06).abs() < 1e-12);
+        // a share of the magnitude: what is expected below zero has the same room
+        assert!(off(-1.04, -1.0, tolerance(Some(0.05), None)).holds);
+        // on the edge it holds still
+        assert!(off(1.5, 1.0, tolerance(None, Some(0.5))).holds);
+    }
+
+    #[test]
+    fn the_wider_tolerance_counts_and_nothing_is_expected_in_its_own_unit() {
+        assert!(off(1.04, 1.0, tolerance(Some(0.01), Some(0.05))).holds);
+        assert!(off(1.04, 1.0, tolerance(Some(0.05), Some(0.01))).holds);
+        let of_nothing = off(0.02, 0.0, tolerance(Some(0.5), Some(0.03)));
+        assert!(of_nothing.holds && (of_nothing.margin.unwrap() - 0.01).abs() < 1e-12);
+        assert!(!off(1e-9, 0.0, tolerance(Some(0.5), None)).holds);
+    }
+
+    #[test]
+    fn without_a_tolerance_there_is_no_margin() {
+        let record = off(1.3, 1.0, Tolerance::default());
+        assert!(record.margin.is_none() && (record.deviation.unwrap() - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn between_rows_is_a_line_and_outside_them_nothing() {
+        let run = [(0.0, 1.0), (2.0, 3.0), (3.0, -1.0)];
+        for (x, y) in [
+            (0.0, Some(1.0)),
+            (1.0, Some(2.0)),
+            (2.0, Some(3.0)),
+            (2.5, Some(1.0)),
+            (3.0, Some(-1.0)),
+        ] {
+            assert_eq!(interpolated(&run, x), y, "{x}");
+        }
+        // a point of a file differs from a row in its last bits
+        assert_eq!(interpolated(&run, 3.0 + 1e-12), Some(-1.0));
+        assert_eq!(
+            (
+                interpolated(&run, -0.1),
+                interpolated(&run, 3.1),
+                interpolated(&[], 0.0)
+            ),
+            (None, None, None)
+        );
     }
 }

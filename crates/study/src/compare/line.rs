@@ -52,6 +52,34 @@ pub struct Case {
     pub reason: Option<String>,
 }
 
+impl Case {
+    /// Whether it decides before another: nothing found before something, the lesser margin before the larger, and where
+    /// there are no margins the larger deviation.
+    pub(super) fn is_worse_than(&self, other: &Self) -> bool {
+        let found = |case: &Self| u8::from(!case.values.is_empty());
+        let left = |case: &Self| {
+            let off = case.deviation.map_or(0.0, |share| -share.abs());
+            case.margin.unwrap_or(off)
+        };
+        found(self)
+            .cmp(&found(other))
+            .then(left(self).total_cmp(&left(other)))
+            .is_lt()
+    }
+
+    /// A case for which nothing was found.
+    pub(super) fn without_values(case: Map<String, Value>, reason: String) -> Self {
+        Self {
+            case,
+            values: Vec::new(),
+            deviation: None,
+            margin: None,
+            holds: false,
+            reason: Some(reason),
+        }
+    }
+}
+
 /// One check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Line {
@@ -198,5 +226,28 @@ mod tests {
             ["0.1412", "74.00", "230300", "-0.0001235", "0", "1.000e12", "10.000"]
         );
         assert_eq!([0.021, -0.000_04, 1e-9].map(percent), ["+2.10 %", "-4e-3 %", "+1e-7 %"]);
+    }
+
+    fn case(values: &[f64], margin: Option<f64>, deviation: Option<f64>) -> Case {
+        Case {
+            values: values.to_vec(),
+            margin,
+            deviation,
+            ..Case::without_values(Map::new(), String::new())
+        }
+    }
+
+    #[test]
+    fn nothing_found_is_worse_than_any_margin_and_a_lesser_margin_than_a_larger() {
+        let (nothing, short, good) = (
+            case(&[], None, None),
+            case(&[1.0], Some(-2.0), Some(2.0)),
+            case(&[1.0], Some(0.1), Some(0.0)),
+        );
+        assert!(nothing.is_worse_than(&short) && short.is_worse_than(&good) && nothing.is_worse_than(&good));
+        assert!(!good.is_worse_than(&good) && !short.is_worse_than(&nothing));
+        let (near, far) = (case(&[1.0], None, Some(0.01)), case(&[1.0], None, Some(-0.02)));
+        assert!(far.is_worse_than(&near) && !near.is_worse_than(&far));
+        assert!(nothing.is_worse_than(&far));
     }
 }

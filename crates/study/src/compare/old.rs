@@ -6,9 +6,9 @@ use super::line::{Case, Comparison, Line, Verdict};
 use super::tolerances::Tolerances;
 use crate::reference::{Role, Tolerance};
 use crate::refusal::Refusal;
-use crate::tables::{Results, Table, TableName};
+use crate::tables::{Kind, Results, Table, TableName};
 use serde_json::{Map, Value, json};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// Columns that say which row it is of its job.
 const ROW_KEYS: [&str; 6] = ["position", "joint", "y_m", "number", "quantity", "time_s"];
@@ -44,7 +44,7 @@ pub fn against_old(new: &Results, old: &Results, tolerances: &Tolerances) -> Res
     let mut lines = vec![jobs];
     for name in TableName::ALL {
         match (new.table(name), old.table(name)) {
-            (Some(now), Some(then)) => lines.extend(columns(name, (now, then), &pairs, &axes, tolerances, new)),
+            (Some(now), Some(then)) => lines.extend(columns(name, (now, then), &pairs, &axes, tolerances, old)),
             (None, Some(_)) => lines.push(missing(name)),
             (_, None) => {}
         }
@@ -66,9 +66,11 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
     let number = |r: &Results, row: usize| r.jobs().number("job", row).unwrap_or_default() as u64;
     let failed = |r: &Results, row: usize| r.jobs().cell("status", row) == json!("failed");
     let rows: HashMap<String, usize> = (0..new.jobs().rows()).map(|row| (text(new, row), row)).collect();
-    let (mut pairs, mut lost, mut broken, mut first) = (Pairs::new(), 0, 0, None);
+    let (mut pairs, mut known, mut lost, mut broken, mut first) = (Pairs::new(), 0, 0, 0, None);
     for row in 0..old.jobs().rows() {
-        match rows.get(&text(old, row)) {
+        let now = rows.get(&text(old, row));
+        known += usize::from(now.is_some());
+        match now {
             Some(&now) if failed(new, now) && !failed(old, row) => {
                 broken += 1;
                 first.get_or_insert(row);
@@ -89,11 +91,11 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
             reasons.push(format!("{count} {what}"));
         }
     };
-    tell(lost, "old jobs without a new one");
-    tell(broken, "jobs that fail now and did not then");
+    tell(lost, "of the old jobs without a new one");
+    tell(broken, "of the jobs fail now and did not then");
     tell(
-        new.jobs().rows().saturating_sub(old.jobs().rows()),
-        "more new jobs than old ones",
+        new.jobs().rows().saturating_sub(known),
+        "of the new jobs without an old one",
     );
     if pairs.is_empty() {
         reasons.push("no job succeeded in both".to_owned());
@@ -154,8 +156,10 @@ fn missing(name: TableName) -> Line {
 /// The largest difference of one column so far.
 #[derive(Default)]
 struct Worst {
-    /// Row of the new table, old value, new value.
+    /// Row of the old table, old value, new value.
     at: Option<(usize, Option<f64>, Option<f64>)>,
+    /// Rows of the old table without one of the new.
+    lost: usize,
     margin: Option<f64>,
     compared: usize,
 }
@@ -166,7 +170,7 @@ fn columns(
     pairs: &Pairs,
     axes: &[String],
     tolerances: &Tolerances,
-    new: &Results,
+    old: &Results,
 ) -> Vec<Line> {
     let keys: Vec<&str> = ROW_KEYS
         .into_iter()
@@ -182,89 +186,84 @@ fn columns(
         .filter_map(|row| Some((row, *pairs.get(&job(then, row))?)))
         .map(|(row, job)| (row, rows.get(&key(then, row, job)).copied()))
         .collect();
-    let new_jobs: HashSet<u64> = pairs.values().copied().collect();
-    let count = (0..now.rows()).filter(|&row| new_jobs.contains(&job(now, row))).count();
     let mut lines = Vec::new();
-    if count != matched.len() {
-        let worst = Case {
-            case: Map::new(),
-            values: vec![count as f64],
-            deviation: None,
-            margin: None,
-            holds: false,
-            reason: None,
-        };
-        let expected = format!("{} rows of jobs in both", matched.len());
-        lines.push(line(name.word().to_owned(), expected, worst));
-    }
     let place = |row: usize| -> Map<String, Value> {
-        let of_job = new.row_of_job(job(now, row)).into_iter();
-        let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), new.jobs().cell(a, r))));
-        let own = keys.iter().map(|k| ((*k).to_owned(), now.cell(k, row)));
+        let of_job = old.row_of_job(job(then, row)).into_iter();
+        let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), old.jobs().cell(a, r))));
+        let own = keys.iter().map(|k| ((*k).to_owned(), then.cell(k, row)));
         axes.chain(own).filter(|(_, value)| !value.is_null()).collect()
     };
     let is_axis = |column: &str| name == TableName::Jobs && axes.iter().any(|axis| axis == column);
-    for column in then
-        .names()
-        .filter(|c| *c != "job" && *c != "reason" && !keys.contains(c) && !is_axis(c))
-    {
+    let is_outcome = |c: &&str| *c != "job" && *c != "reason" && !keys.contains(c) && !is_axis(c);
+    for column in then.names().filter(is_outcome) {
         let id = format!("{}.{column}", name.word());
-        let old_numbers = || matched.iter().filter_map(|&(row, _)| then.number(column, row));
-        let largest = old_numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let was = || matched.iter().filter_map(|&(row, _)| then.number(column, row));
+        let largest = was().fold(0.0, |most: f64, x| most.max(x.abs()));
         let Some(tolerance) = tolerances.of(name.word(), column, largest) else {
             continue;
         };
-        if then.is_word_or_flag(column) || now.is_word_or_flag(column) {
-            lines.extend(words(id, column, (now, then), &matched, place));
+        let of_words = [now, then].iter().any(|table| table.kind(column) == Some(Kind::Words));
+        if of_words {
+            lines.push(words(id, column, (now, then), &matched, place));
             continue;
         }
         let mut worst = Worst::default();
         for &(old_row, new_row) in &matched {
-            let found = new_row.and_then(|row| now.number(column, row));
-            worst.take(new_row, then.number(column, old_row), found, tolerance);
+            let found = new_row.map(|row| now.number(column, row));
+            worst.take(old_row, then.number(column, old_row), found, tolerance);
         }
-        if worst.compared > 0 {
-            lines.push(worst.line(id, tolerance, place));
-        }
+        lines.push(worst.line(id, tolerance, place));
     }
     lines
 }
 
-/// A column of words, or of yes and no: each is what it was. No line where it is empty in both.
+/// A column of words: each is what it was.
 fn words(
     id: String,
     column: &str,
     (now, then): (&Table, &Table),
     matched: &[(usize, Option<usize>)],
     place: impl Fn(usize) -> Map<String, Value>,
-) -> Option<Line> {
+) -> Line {
     let cells = |&(old, new): &(usize, Option<usize>)| {
         let found = new.map(|row| now.cell(column, row)).unwrap_or_default();
-        (new, then.cell(column, old), found)
+        (old, then.cell(column, old), found)
     };
-    let filled = matched
+    let different: Vec<_> = matched
         .iter()
         .map(cells)
-        .filter(|(_, old, found)| !(old.is_null() && found.is_null()));
-    let different: Vec<_> = filled.clone().filter(|(_, old, found)| old != found).collect();
-    let rows = filled.count();
-    let first = different.first();
-    let worst = Case {
-        case: first.and_then(|(row, ..)| *row).map(place).unwrap_or_default(),
-        values: vec![(rows - different.len()) as f64],
-        deviation: None,
-        margin: None,
-        holds: different.is_empty(),
-        reason: first.map(|(_, old, found)| format!("{found} where it was {old}")),
-    };
-    (rows > 0).then(|| line(id, format!("the same in {rows} rows"), worst))
+        .filter(|(_, old, found)| old != found)
+        .collect();
+    let mut worst = Case::told((matched.len() - different.len()) as f64, String::new());
+    worst.holds = different.is_empty();
+    worst.reason = different
+        .first()
+        .map(|(_, old, found)| format!("{found} where it was {old}"));
+    worst.case = different.first().map(|(row, ..)| place(*row)).unwrap_or_default();
+    line(id, format!("the same in {} rows", matched.len()), worst)
+}
+
+impl Case {
+    /// A case that falls short with a count.
+    fn told(count: f64, reason: String) -> Self {
+        Self {
+            case: Map::new(),
+            values: vec![count],
+            deviation: None,
+            margin: None,
+            holds: false,
+            reason: Some(reason),
+        }
+    }
 }
 
 impl Worst {
-    fn take(&mut self, row: Option<usize>, old: Option<f64>, new: Option<f64>, tolerance: Tolerance) {
-        let margin = match (row, old, new) {
-            (Some(_), None, None) => return,
-            (_, Some(old), Some(new)) => {
+    /// Takes a row of the old table with its old and its new value; there is no new value where there is no such row.
+    fn take(&mut self, row: usize, old: Option<f64>, new: Option<Option<f64>>, tolerance: Tolerance) {
+        self.lost += usize::from(new.is_none());
+        let margin = match (old, new) {
+            (None, Some(None)) => return,
+            (Some(old), Some(Some(new))) => {
                 let scale = if old == 0.0 { 1.0 } else { old.abs() };
                 let margin = (tolerance.allowed(old) - (new - old).abs()) / scale;
                 if margin.is_nan() { f64::NEG_INFINITY } else { margin }
@@ -274,16 +273,20 @@ impl Worst {
         self.compared += 1;
         if self.margin.is_none_or(|least| margin < least) {
             self.margin = Some(margin);
-            self.at = Some((row.unwrap_or(usize::MAX), old, new));
+            self.at = Some((row, old, new.flatten()));
         }
     }
 
     fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> Map<String, Value>) -> Line {
-        let (row, old, new) = self.at.unwrap_or((usize::MAX, None, None));
+        let (row, old, new) = self
+            .at
+            .map_or((None, None, None), |(row, old, new)| (Some(row), old, new));
         let holds = self.margin.is_none_or(|margin| margin >= 0.0);
-        let reason = match (old, new) {
-            (Some(_), None) => Some("nothing where there was a number".to_owned()),
-            (None, Some(_)) => Some("a number where there was nothing".to_owned()),
+        let reason = match (old, new, self.compared, self.lost) {
+            (_, _, 0, _) => Some("empty in all rows".to_owned()),
+            (_, _, _, lost @ 1..) => Some(format!("{lost} of the rows are no longer there")),
+            (Some(_), None, ..) => Some("nothing where there was a number".to_owned()),
+            (None, Some(_), ..) => Some("a number where there was nothing".to_owned()),
             _ => None,
         };
         let deviation = old
@@ -296,7 +299,7 @@ impl Worst {
             format!("{} {within}", super::line::number(old))
         });
         let worst = Case {
-            case: if row == usize::MAX { Map::new() } else { place(row) },
+            case: row.map(place).unwrap_or_default(),
             values: new.into_iter().collect(),
             deviation,
             margin: self.margin.filter(|margin| margin.is_finite()),

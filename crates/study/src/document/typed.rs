@@ -105,8 +105,11 @@ fn plain(expected: &str) -> String {
         "a boolean" => "true or false".to_owned(),
         "a sequence" => "a list".to_owned(),
         "a map" => "an object".to_owned(),
+        "string or map" => "a word or an object".to_owned(),
+        "fewer elements in array" => "fewer".to_owned(),
         "map with a single key" => "an object with a single key".to_owned(),
         other if other.starts_with("struct ") => "an object".to_owned(),
+        other if other.starts_with("an array of") => other.replace("an array", "a list"),
         other => other.to_owned(),
     }
 }

@@ -1,6 +1,6 @@
 //! A reference opened: its file read, its checks made sure to be checks.
 //!
-//! Knows files. Does not know results: what they do not have is found when they are compared.
+//! Knows files, and the study that a reference belongs to. Does not know results: what they do not have is found when they are compared.
 
 use super::spec::{
     BoundCheck, CheckKind, CheckSpec, CurveCheck, HistoryQuantity, HistoryReduction, ModeCheck, Quantity,
@@ -8,6 +8,7 @@ use super::spec::{
 };
 use crate::document::{read, typed};
 use crate::refusal::Refusal;
+use crate::spec::Study;
 use std::path::{Path, PathBuf};
 
 /// A reference file, read and checked.
@@ -42,6 +43,15 @@ impl Reference {
         self.spec.study.as_ref().map(|study| folder.join(study))
     }
 
+    /// The name of the study it belongs to; none where it holds any results.
+    ///
+    /// # Errors
+    /// [`Refusal`] where that study cannot be opened.
+    pub fn study_name(&self) -> Result<Option<String>, Refusal> {
+        let study = self.study().map(|path| Study::open(&path)).transpose()?;
+        Ok(study.map(|study| study.spec.name))
+    }
+
     fn check(&self) -> Result<(), Refusal> {
         if self.spec.checks.is_empty() {
             return Err(Refusal::new(
@@ -57,9 +67,8 @@ impl Reference {
                 file: &self.file,
                 key: &key,
             };
-            if check.id.trim().is_empty() || check.id.chars().any(char::is_control) {
-                let found = format!("{:?}", check.id);
-                return Err(place.refuse("id", found, "a name of one line, unlike any other check's"));
+            if check.id.trim().is_empty() {
+                return Err(place.refuse("id", "an empty id", "a name unlike any other check's"));
             }
             if self.spec.checks[..i].iter().any(|other| other.id == check.id) {
                 return Err(place.refuse("id", format!("'{}' twice", check.id), "each id once"));
@@ -129,14 +138,14 @@ impl Place<'_> {
                 if needed && value.expected.is_none() {
                     return Err(self.refuse("value.expected", "nothing", "a number; only a record needs none"));
                 }
-                self.tolerance("value", value.tolerance(), needed, value.expected)?;
+                self.tolerance("value", value.tolerance(), needed)?;
                 self.quantity("value.of", &value.of, check, None)
             }
             CheckKind::Mode(mode) => {
                 if mode.expected_hz.is_nan() || mode.expected_hz <= 0.0 {
                     return Err(self.refuse("mode.expected_hz", mode.expected_hz, "a number above 0"));
                 }
-                self.tolerance("mode", mode.tolerance(), needed, Some(mode.expected_hz))
+                self.tolerance("mode", mode.tolerance(), needed)
             }
             CheckKind::Bound(bound) => {
                 self.bound(bound)?;
@@ -156,8 +165,8 @@ impl Place<'_> {
         }
     }
 
-    /// A tolerance is there where it is needed and never negative; a share of nothing is none.
-    fn tolerance(&self, of: &str, tolerance: Tolerance, needed: bool, expected: Option<f64>) -> Result<(), Refusal> {
+    /// A tolerance is there where it is needed and never negative.
+    fn tolerance(&self, of: &str, tolerance: Tolerance, needed: bool) -> Result<(), Refusal> {
         for (key, value) in [
             ("relative_tolerance", tolerance.relative),
             ("absolute_tolerance", tolerance.absolute),
@@ -165,10 +174,6 @@ impl Place<'_> {
             if let Some(value) = value.filter(|value| *value < 0.0) {
                 return Err(self.refuse(&format!("{of}.{key}"), value, "a number of at least 0"));
             }
-        }
-        if needed && expected == Some(0.0) && tolerance.absolute.is_none() {
-            let allowed = "absolute_tolerance: a share of an expected 0 is nothing";
-            return Err(self.refuse(of, "no tolerance", allowed));
         }
         if needed && tolerance == Tolerance::default() {
             let allowed = "relative_tolerance or, where there is one, absolute_tolerance; only a record needs none";
@@ -188,7 +193,12 @@ impl Place<'_> {
                 ));
             }
             (Some(least), Some(most)) if least > most => {
-                return Err(self.refuse("bound", format!("from {least} to {most}"), "bounds in order"));
+                let key = if bound.at_least.is_some() {
+                    "bound.at_least"
+                } else {
+                    "bound.above"
+                };
+                return Err(self.refuse(key, least, &format!("at most the upper bound, {most}")));
             }
             _ => {}
         }
@@ -218,7 +228,7 @@ impl Place<'_> {
     }
 
     fn curve(&self, curve: &CurveCheck, needed: bool) -> Result<(), Refusal> {
-        self.tolerance("curve", curve.tolerance(), needed, None)?;
+        self.tolerance("curve", curve.tolerance(), needed)?;
         if curve.points.is_empty() {
             return Err(self.refuse("curve.points", "an empty list", "at least one point"));
         }
@@ -233,10 +243,11 @@ impl Place<'_> {
 
     /// A quantity looks at results somewhere, and no part of it fixes a column that the check itself moves.
     fn quantity(&self, key: &str, quantity: &Quantity, check: &CheckSpec, along: Option<&str>) -> Result<(), Refusal> {
-        if !quantity.looks_at_results() {
-            return Err(self.refuse(key, "numbers alone", "a select or a history somewhere in it"));
+        self.part(key, quantity, check, along)?;
+        if quantity.looks_at_results() {
+            return Ok(());
         }
-        self.part(key, quantity, check, along)
+        Err(self.refuse(key, "numbers alone", "a select or a history somewhere in it"))
     }
 
     fn part(&self, key: &str, quantity: &Quantity, check: &CheckSpec, along: Option<&str>) -> Result<(), Refusal> {

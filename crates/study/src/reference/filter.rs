@@ -3,10 +3,11 @@
 //! Knows the forms and when a cell is meant. Does not know which columns there are.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::Error as _;
+use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
+use std::fmt;
 
 /// Columns with what they may hold, in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -68,7 +69,9 @@ impl Allowed {
                 };
                 match (end("from")?, end("to")?) {
                     (None, None) => Err(format!("an empty object, expected {forms}")),
-                    (Some(from), Some(to)) if from > to => Err(format!("from {from} to {to}, expected ends in order")),
+                    (Some(from), Some(to)) if from > to => {
+                        Err(format!("a range from {from} to {to}, expected from at most to"))
+                    }
                     (from, to) => Ok(Self::Range(from, to)),
                 }
             }
@@ -76,7 +79,8 @@ impl Allowed {
         }
     }
 
-    fn written(&self) -> Value {
+    /// As a file writes it.
+    pub fn written(&self) -> Value {
         match self {
             Self::OneOf(values) => match values.as_slice() {
                 [single] => single.clone(),
@@ -139,12 +143,32 @@ impl Serialize for Filter {
 
 impl<'de> Deserialize<'de> for Filter {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let map = Map::<String, Value>::deserialize(deserializer)?;
-        let read = map.into_iter().map(|(name, written)| match Allowed::read(&written) {
-            Ok(allowed) => Ok((name, allowed)),
-            Err(found) => Err(D::Error::custom(format!("{name}: {found}"))),
-        });
-        read.collect::<Result<_, _>>().map(Self)
+        deserializer.deserialize_map(FilterVisitor).map(Self)
+    }
+}
+
+/// Reads a filter entry by entry, so that a mistake is told with the path of its column.
+struct FilterVisitor;
+
+impl<'de> Visitor<'de> for FilterVisitor {
+    type Value = Vec<(String, Allowed)>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object of columns and what they may hold")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut read = Vec::new();
+        while let Some(entry) = map.next_entry()? {
+            read.push(entry);
+        }
+        Ok(read)
+    }
+}
+
+impl<'de> Deserialize<'de> for Allowed {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(&Value::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }
 
@@ -202,6 +226,9 @@ mod tests {
             json!({"a": {}}),
             json!({"a": {"over": 1}}),
             json!({"a": {"to": "x"}}),
+            json!({"a": {"from": 2, "to": 1}}),
+            json!([1]),
+            json!("a"),
         ] {
             assert!(serde_json::from_value::<Filter>(bad.clone()).is_err(), "{bad}");
         }

@@ -328,3 +328,54 @@ pub enum HistoryReduction {
     /// vehicle's centre is at the history's position.
     AsymmetryWithinM(f64),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    #[test]
+    fn quantities_are_written_as_they_were_read() {
+        let select =
+            json!({ "select": { "table": "jobs", "column": "steps", "where": { "job": 1 }, "reduce": "max" } });
+        let history = json!({ "history": { "quantity": "force_n", "position": 7, "from": { "centre_past_m": -3.0 },
+            "to": { "after_leaving_s": 1.0 }, "reduce": { "asymmetry_within_m": 18.0 } } });
+        for written in [
+            json!({ "ratio": [select, { "number": 2.0 }] }),
+            json!({ "difference": [history, { "largest": [select] }] }),
+            json!({ "smallest": [select, history] }),
+        ] {
+            let read: Quantity = serde_json::from_value(written.clone()).unwrap();
+            assert_eq!(serde_json::to_value(read).unwrap(), written);
+        }
+    }
+
+    #[test]
+    fn what_is_no_quantity_is_not_read() {
+        for bad in [
+            json!(1),
+            json!("number"),
+            json!({}),
+            json!({ "number": 1, "select": {} }),
+            json!({ "number": null }),
+            json!({ "ratio": [{ "number": 1 }] }),
+            json!({ "select": { "table": "jobs" } }),
+            json!({ "select": { "table": "jobs", "column": "steps", "reduce": "sum" } }),
+            json!({ "history": { "quantity": "force_n", "position": 7 } }),
+            json!({ "history": { "quantity": "force_n", "position": 7, "reduce": "max", "from": 3 } }),
+        ] {
+            assert!(serde_json::from_value::<Quantity>(bad.clone()).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_of_a_check_is_held_everywhere() {
+        let check: CheckSpec = serde_json::from_value(json!({ "id": "a" })).unwrap();
+        assert_eq!(
+            (check.role, check.filter.is_empty(), check.each.len()),
+            (Role::Hold, true, 0)
+        );
+        let back: Value = serde_json::to_value(&check).unwrap();
+        assert_eq!(back, json!({ "id": "a", "role": "hold" }));
+    }
+}

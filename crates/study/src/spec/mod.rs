@@ -12,4 +12,4 @@ pub use analysis::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec};
 pub use axes::{Axis, AxisName, Block, Point, SHORT_NAMES};
 pub use design::{AxisMap, Design};
 pub use study::{BridgeFile, HistoriesSpec, RecordSpec, Study, StudySpec, read_bridge};
-pub(crate) use study::{check_histories, filled_vehicle, to_value};
+pub(crate) use study::{check_histories, filled_vehicle, text_and_hash, to_value};

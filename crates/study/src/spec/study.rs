@@ -212,7 +212,8 @@ impl Study {
     }
 }
 
-fn text_and_hash(document: &Value) -> (String, String) {
+/// A document on one line and the blake3 hash of that text.
+pub(crate) fn text_and_hash(document: &Value) -> (String, String) {
     let text = canonical_text(document);
     let hash = blake3::hash(text.as_bytes()).to_hex().to_string();
     (text, hash)

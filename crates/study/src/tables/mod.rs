@@ -16,11 +16,11 @@ pub use folder::{Folder, FolderError};
 pub use manifest::{Manifest, Moment, check_own};
 pub use results::{Results, ResultsError};
 pub use summary::{Cell, SummaryTable};
-pub use table::{Table, TableName};
+pub use table::{Kind, Table, TableName};
 
 use crate::plan::Job;
 use crate::run::Outcome;
-use crate::spec::{Kind, Study};
+use crate::spec::{Kind as StudyKind, Study};
 
 /// Writes all tables of a run into its folder, the manifest with their hashes last.
 ///
@@ -38,7 +38,7 @@ pub fn write(
     let record = &study.spec.record;
     folder.remove(manifest::FILE)?;
     let kind = study.spec.analysis.kind;
-    let modes = kind == Kind::Modes;
+    let modes = kind == StudyKind::Modes;
     let tables = [
         ("jobs.parquet", Some(frames::jobs(study, jobs, records))),
         (

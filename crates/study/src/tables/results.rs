@@ -9,7 +9,7 @@ use super::table::{Table, TableName};
 use crate::plan::Job;
 use crate::refusal::Refusal;
 use crate::run::JobRecord;
-use crate::spec::{Kind, Study};
+use crate::spec::{Kind, Study, text_and_hash};
 use polars::prelude::{ParquetReader, PolarsResult, SerReader};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
@@ -77,6 +77,15 @@ impl Results {
         let hashes = manifest["tables"]
             .as_object()
             .ok_or_else(|| damaged(&file, "no hashes of its tables, as an earlier version left none"))?;
+        for document in ["study", "bridge"] {
+            let (_, hash) = text_and_hash(&manifest[document]);
+            if manifest[format!("{document}_blake3")].as_str() != Some(&hash) {
+                return Err(damaged(&file, &format!("a {document} that is not the one of its hash")));
+            }
+        }
+        if manifest["study"]["name"].as_str() != Some(name) {
+            return Err(damaged(&file, &format!("'{name}', which is not the study's name")));
+        }
         let mut tables = BTreeMap::new();
         for table in TableName::ALL {
             let path = folder.join(table.file());

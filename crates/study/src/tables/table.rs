@@ -64,6 +64,28 @@ enum Cells {
     Flags(Vec<Option<bool>>),
 }
 
+/// What the cells of a column are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Numbers.
+    Numbers,
+    /// Words.
+    Words,
+    /// Yes and no.
+    Flags,
+}
+
+impl Kind {
+    /// What a file writes in such a column's place.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Numbers => "numbers",
+            Self::Words => "words",
+            Self::Flags => "true and false",
+        }
+    }
+}
+
 impl Table {
     /// The table of a data frame.
     ///
@@ -112,14 +134,19 @@ impl Table {
         self.names().any(|name| name == column)
     }
 
-    /// Whether a column holds words or yes and no.
-    pub fn is_word_or_flag(&self, column: &str) -> bool {
-        matches!(self.cells(column), Some(Cells::Words(_) | Cells::Flags(_)))
+    /// What a column holds; none where it is empty in all rows, as its type then says nothing, or not there.
+    pub fn kind(&self, column: &str) -> Option<Kind> {
+        let (any, kind) = match self.cells(column)? {
+            Cells::Numbers(list) => (list.iter().any(Option::is_some), Kind::Numbers),
+            Cells::Words(list) => (list.iter().any(Option::is_some), Kind::Words),
+            Cells::Flags(list) => (list.iter().any(Option::is_some), Kind::Flags),
+        };
+        any.then_some(kind)
     }
 
-    /// Whether a column holds numbers.
+    /// Whether a column's cells can be had as numbers.
     pub fn is_number(&self, column: &str) -> bool {
-        matches!(self.cells(column), Some(Cells::Numbers(_)))
+        matches!(self.cells(column), Some(Cells::Numbers(_) | Cells::Flags(_)))
     }
 
     fn cells(&self, column: &str) -> Option<&Cells> {

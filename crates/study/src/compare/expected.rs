@@ -1,6 +1,6 @@
 //! What a check expects, in words.
 //!
-//! Knows the kinds of checks. Does not know results.
+//! Knows how a person writes a reference. Does not know results.
 
 use crate::reference::{CheckKind, CheckSpec, Tolerance, Trend};
 
@@ -65,4 +65,60 @@ fn short(x: f64) -> String {
         return format!("{x:e}");
     }
     format!("{}", (x * 1e9).round() / 1e9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    #[test]
+    fn what_is_expected_is_written_as_a_person_wrote_it() {
+        let written = |check: Value| {
+            let check: CheckSpec = serde_json::from_value(check).unwrap();
+            expected(&check).0
+        };
+        let of = json!({ "number": 1 });
+        let made = |kind: &str, what: Value| json!({ "id": "a", kind: what });
+        for (kind, what, text) in [
+            (
+                "value",
+                json!({ "of": of, "expected": 0.141, "relative_tolerance": 0.02 }),
+                "0.141 +- 2 %",
+            ),
+            (
+                "value",
+                json!({ "of": of, "expected": 74, "relative_tolerance": 0.1, "absolute_tolerance": 3 }),
+                "74 +- 10 % or +- 3",
+            ),
+            (
+                "measured",
+                json!({ "of": of, "value": 2, "uncertainty": 0.5 }),
+                "2 +- 0.5",
+            ),
+            ("bound", json!({ "of": of, "at_least": 1, "at_most": 2 }), ">= 1, <= 2"),
+            (
+                "trend",
+                json!({ "of": of, "along": "x", "trend": "flat", "within": 0.05 }),
+                "flat within 5 % over x",
+            ),
+            (
+                "trend",
+                json!({ "of": of, "along": "x", "trend": "negative" }),
+                "negative over x",
+            ),
+            (
+                "mode",
+                json!({ "shape": "heave", "expected_hz": 0.36, "relative_tolerance": 0.01 }),
+                "0.36 +- 1 %",
+            ),
+            (
+                "curve",
+                json!({ "table": "jobs", "column": "a", "against": "b", "points": [[0, 1]], "absolute_tolerance": 0.1 }),
+                "curve of 1 points +- 0.1",
+            ),
+        ] {
+            assert_eq!(written(made(kind, what)), text);
+        }
+    }
 }
