@@ -5,11 +5,15 @@
 #![allow(clippy::expect_used)]
 
 use pontoon_core::analysis::modes::Mode;
-use pontoon_core::bridge::Model;
+use pontoon_core::bridge::{Model, Supports};
 use pontoon_core::connector::Connection;
 use pontoon_core::response::{CrossingResponse, StaticResponse};
 use pontoon_core::vehicle::Inertia;
+use pontoon_study::document::{canonical_text, read};
+use pontoon_study::reference::Reference;
 use pontoon_tests::*;
+use serde_json::Value;
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// Table 1 of the paper, full model [Hz].
@@ -71,6 +75,53 @@ fn misses(modes: &[Mode], table: &[(&str, f64)]) -> f64 {
         );
         miss(found, hz)
     }))
+}
+
+/// What the paper prints of the bridge itself stands in its file to the last digit.
+#[test]
+fn the_bridge_has_the_printed_dimensions_gaps_and_supports() {
+    let d = design("fu2005");
+    assert_eq!((d.modules, d.positions()), (15, 16));
+    let module = &d.module;
+    assert_eq!((module.length_m, module.breadth_m, module.depth_m), (6.7, 8.082, 1.07));
+    assert_eq!(module.material.youngs_modulus_pa, 2e11);
+    let gaps_m = (d.connectors.gap_tension_m, d.connectors.gap_compression_m);
+    assert_eq!(gaps_m, (0.028, 0.0055));
+    assert_eq!(d.supports, Supports::default());
+    assert!((d.position_x_m(7) - POSITION_7_M).abs() < 1e-12);
+    let plates = [
+        module.deck_thickness_m,
+        module.bottom_thickness_m,
+        module.side_thickness_m,
+        module.end_thickness_m,
+        module.longitudinal_walls.thickness_m,
+        module.transverse_walls.thickness_m,
+    ];
+    assert!(plates.iter().all(|t| (0.001..=0.006).contains(t)), "{plates:?}");
+}
+
+/// The bridge file is what the program identified from the documents that lie in `studies`: any that changed since has
+/// another hash than its provenance says, and `scripts/identify` must run again.
+#[test]
+fn the_bridge_was_identified_from_the_documents_that_are_here() {
+    let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies");
+    let hash = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex().to_string();
+    let of_file = |place: &str| hash(&read(&studies.join(place)).expect("a document"));
+    let of_reference = |study: &str| {
+        let reference = Reference::open(&studies.join(study)).expect("a reference");
+        hash(&serde_json::to_value(&reference.spec).expect("a value"))
+    };
+    let mut expected = vec![
+        ("start".to_owned(), of_file("identification/start.json")),
+        ("parameters".to_owned(), of_file("identification/parameters.json")),
+    ];
+    for study in ["table1", "fig09_static"] {
+        expected.push(("reference".to_owned(), of_reference(study)));
+        expected.push(("study".to_owned(), of_file(&format!("{study}/study.json"))));
+    }
+    let provenance = design("fu2005").provenance.expect("a provenance");
+    let found = provenance.documents.into_iter().map(|d| (d.role, d.blake3));
+    assert_eq!(found.collect::<Vec<_>>(), expected);
 }
 
 /// 1 %: the bridge was fitted to this mass, which public sources give to three digits; 5 % is asked for.

@@ -108,8 +108,11 @@ fn junit(compared: &Comparison) -> Result<String> {
     Ok(report.to_string()?)
 }
 
-/// Says which checks hold that were expected to fail.
+/// Says what has changed since the results, and which checks hold that were expected to fail.
 pub fn tell_changes(compared: &Comparison) {
+    for note in &compared.notes {
+        words::note(&format!("changed: {note}"));
+    }
     for line in compared.lines.iter().filter(|line| line.verdict == Verdict::NowHolds) {
         words::note(&format!(
             "changed: '{}' was expected to fail and holds now ({})",

@@ -1,6 +1,6 @@
 //! References that are refused: status 2, one message with file, key path, found and allowed, and nothing written.
 
-use crate::stage::{Stage, is_refused, reference};
+use crate::stage::{Stage, is_refused, reference, stderr};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -484,4 +484,23 @@ fn files_and_folders_that_are_not_what_they_should_be() {
     stage.json("reference.json", &document);
     is_refused(&compare("r", "reference.json"), &["gone.json: found no readable file"]);
     assert_eq!(stage.pontoon(&["compare", "r"]).status.code(), Some(2));
+}
+
+/// Results that the study or its bridge has outlived are told apart from fresh ones.
+#[test]
+fn results_of_an_earlier_state_of_the_study_are_told() {
+    let mut stage = Stage::new();
+    stage.write();
+    stage.ran("r");
+    let mut made = reference(&json!([{ "id": "a", "bound": { "of": of(), "at_least": 0 } }]));
+    made["study"] = "study.json".into();
+    stage.json("reference.json", &made);
+    let told = |stage: &Stage| stderr(&stage.pontoon(&["compare", "r", "--with", "reference.json"]));
+    assert_eq!(told(&stage), "");
+    stage.bridge["hydrostatic_stiffness_pa_m"] = json!(7000);
+    stage.write();
+    assert_eq!(
+        told(&stage),
+        "changed: the bridge has changed since these results: run it again\n"
+    );
 }

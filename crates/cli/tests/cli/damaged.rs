@@ -139,8 +139,11 @@ fn every_digit_of_the_documents_that_verdicts_stand_on_is_kept() {
 fn tables_of_another_run_are_not_taken_for_this_one() {
     let mut stage = stage();
     let good = good(&stage);
+    let own = stage.study.clone();
     stage.study["design"][0]["grid"]["speed_m_s"] = json!(9);
     stage.ran("other");
+    stage.study = own;
+    stage.write();
     for file in FILES {
         let path = stage.path("r").join(file);
         let own = fs::read(&path).unwrap();

@@ -163,6 +163,8 @@ pub struct Comparison {
     pub with: String,
     /// Where its numbers come from.
     pub source: String,
+    /// What else is to be said of the results as a whole.
+    pub notes: Vec<String>,
     /// The checks in the order of the reference.
     pub lines: Vec<Line>,
 }

@@ -16,8 +16,10 @@ pub use line::{Case, Comparison, Line, Verdict};
 pub use old::against_old;
 pub use tolerances::Tolerances;
 
+use crate::document::canonical_text;
 use crate::reference::Reference;
 use crate::refusal::Refusal;
+use crate::spec::Study;
 use crate::tables::Results;
 
 /// Makes every check of a reference on results.
@@ -25,7 +27,12 @@ use crate::tables::Results;
 /// # Errors
 /// [`Refusal`] where the reference belongs to another study, or names a column, word or job that the results do not have.
 pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
-    if let Some(name) = reference.study_name()?.filter(|name| *name != results.name) {
+    let study = reference.study().map(|path| Study::open(&path)).transpose()?;
+    if let Some(name) = study
+        .as_ref()
+        .map(|s| &s.spec.name)
+        .filter(|name| **name != results.name)
+    {
         let found = format!("results of the study '{}'", results.name);
         let allowed = format!("results of '{name}', to which the reference belongs");
         return Err(Refusal::new(&results.place, "", found, allowed));
@@ -38,6 +45,20 @@ pub fn against_reference(results: &Results, reference: &Reference) -> Result<Com
         results: results.name.clone(),
         with: reference.spec.name.clone(),
         source: reference.spec.source.clone(),
+        notes: study.map(|study| changes(results, &study)).unwrap_or_default(),
         lines,
     })
+}
+
+/// What of a study has changed since its results.
+fn changes(results: &Results, study: &Study) -> Vec<String> {
+    let now = [("study", &study.document), ("bridge", &study.bridge.document)];
+    let then = [&results.study, &results.bridge];
+    let differ = now
+        .iter()
+        .zip(then)
+        .filter(|((_, now), then)| canonical_text(now) != canonical_text(then));
+    differ
+        .map(|((what, _), _)| format!("the {what} has changed since these results: run it again"))
+        .collect()
 }

@@ -53,6 +53,7 @@ pub fn against_old(new: &Results, old: &Results, tolerances: &Tolerances) -> Res
         results: new.name.clone(),
         with: format!("{} in {}", old.name, old.place.display()),
         source: "older results".to_owned(),
+        notes: Vec::new(),
         lines,
     })
 }
