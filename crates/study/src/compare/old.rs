@@ -213,7 +213,9 @@ fn columns(
             let found = new_row.map(|row| now.number(column, row));
             worst.take(old_row, then.number(column, old_row), found, tolerance);
         }
-        lines.push(worst.line(id, tolerance, place));
+        if worst.compared > 0 {
+            lines.push(worst.line(id, tolerance, place));
+        }
     }
     lines
 }
@@ -283,9 +285,8 @@ impl Worst {
             .at
             .map_or((None, None, None), |(row, old, new)| (Some(row), old, new));
         let holds = self.margin.is_none_or(|margin| margin >= 0.0);
-        let reason = match (old, new, self.compared, self.lost) {
-            (_, _, 0, _) => Some("empty in all rows".to_owned()),
-            (_, _, _, lost @ 1..) => Some(format!("{lost} of the rows are no longer there")),
+        let reason = match (old, new, self.lost) {
+            (_, _, lost @ 1..) => Some(format!("{lost} of the rows are no longer there")),
             (Some(_), None, ..) => Some("nothing where there was a number".to_owned()),
             (None, Some(_), ..) => Some("a number where there was nothing".to_owned()),
             _ => None,

@@ -1,6 +1,7 @@
 //! A reference opened: its file read, its checks made sure to be checks.
 //!
-//! Knows files, and the study that a reference belongs to. Does not know results: what they do not have is found when they are compared.
+//! Knows files, and the study that a reference belongs to. Does not know results: what they do not have is found when
+//! they are compared.
 
 use super::spec::{
     BoundCheck, CheckKind, CheckSpec, CurveCheck, HistoryQuantity, HistoryReduction, ModeCheck, Quantity,
