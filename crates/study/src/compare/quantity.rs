@@ -7,11 +7,14 @@ use super::history::{History, Moments, moments_of};
 use crate::reference::{Filter, HistoryQuantity, Quantity, Reduction, SelectQuantity};
 use crate::tables::{Results, Table, TableName};
 use std::cell::{OnceCell, RefCell};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
 
 /// Evaluates quantities of one reference on results.
 pub(super) struct Evaluator<'a> {
     pub(super) results: &'a Results,
+    /// Rows of each job in each table that was looked at, jobs in the order of their own table.
+    of_jobs: RefCell<BTreeMap<TableName, Rc<Vec<Vec<usize>>>>>,
     /// Rows of each history, by job, quantity and position.
     histories: OnceCell<HashMap<(u64, String, u64), Vec<usize>>>,
     /// What is to be said of the quantities evaluated since the last look.
@@ -22,6 +25,7 @@ impl<'a> Evaluator<'a> {
     pub(super) fn new(results: &'a Results) -> Self {
         Self {
             results,
+            of_jobs: RefCell::default(),
             histories: OnceCell::new(),
             notes: RefCell::default(),
         }
@@ -121,32 +125,44 @@ impl<'a> Evaluator<'a> {
             return Ok((whole, failed));
         }
         let own: Vec<_> = filter.0.iter().filter(|(c, _)| table.has(c)).collect();
-        let meant: BTreeSet<usize> = whole.into_iter().collect();
-        let job_row = |row| {
-            let job = table.number("job", row)?;
-            self.results.row_of_job(job as u64).filter(|job| meant.contains(job))
+        let means = |row: &usize| {
+            let mut cells = own
+                .iter()
+                .map(|(column, allowed)| allowed.allows(&table.cell(column, *row)));
+            cells.all(|meant| meant)
         };
-        let mut without = meant.clone();
-        let mut rows = Vec::new();
-        for row in 0..table.rows() {
-            let means = || {
-                own.iter()
-                    .all(|(column, allowed)| allowed.allows(&table.cell(column, row)))
-            };
-            if let Some(job) = job_row(row)
-                && means()
-            {
-                without.remove(&job);
-                rows.push(row);
-            }
+        let of_jobs = self.rows_of_jobs(name, table);
+        let (mut rows, mut without) = (Vec::new(), 0);
+        for &job in &whole {
+            let before = rows.len();
+            rows.extend(of_jobs[job].iter().copied().filter(means));
+            without += usize::from(rows.len() == before);
         }
         if rows.is_empty() {
             return Err(format!("no row of {} matches", name.word()));
         }
-        if !without.is_empty() {
-            self.note(format!("{} of {} jobs have no such row", without.len(), meant.len()));
+        if without > 0 {
+            self.note(format!("{without} of {} jobs have no such row", whole.len()));
         }
         Ok((rows, failed))
+    }
+
+    /// The rows of each job in a table.
+    fn rows_of_jobs(&self, name: TableName, table: &Table) -> Rc<Vec<Vec<usize>>> {
+        let mut indices = self.of_jobs.borrow_mut();
+        let index = indices.entry(name).or_insert_with(|| {
+            let mut rows = vec![Vec::new(); self.results.jobs().rows()];
+            for row in 0..table.rows() {
+                let job = table
+                    .number("job", row)
+                    .and_then(|job| self.results.row_of_job(job as u64));
+                if let Some(job) = job {
+                    rows[job].push(row);
+                }
+            }
+            Rc::new(rows)
+        });
+        Rc::clone(index)
     }
 
     /// The rows of the table of jobs that a filter means and that did not fail, at least one; and how many failed.
