@@ -27,7 +27,8 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     if let Some(reference) = &reference {
-        check_reference(reference, &study)?;
+        // before anything runs
+        reference.study_of(&study.spec.name, &study.file)?;
     }
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let out = arguments
@@ -62,18 +63,6 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     } else {
         Ending::Short
     })
-}
-
-/// Refuses a reference of another study, before anything runs.
-fn check_reference(reference: &Reference, study: &Study) -> Result<(), Refusal> {
-    match reference.study_name()?.filter(|name| *name != study.spec.name) {
-        Some(name) => {
-            let allowed = format!("the study '{}', whose results are held", study.spec.name);
-            let found = format!("the study '{name}'");
-            Err(Refusal::new(&reference.file, "study", found, allowed))
-        }
-        None => Ok(()),
-    }
 }
 
 fn failures(outcome: &Outcome) {

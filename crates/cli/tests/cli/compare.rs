@@ -228,7 +228,7 @@ fn a_run_refuses_the_reference_of_another_study_before_it_runs() {
     let words = ["run", "study.json", "--out", "r", "--with", "reference.json"];
     is_refused(
         &stage.pontoon(&words),
-        &["reference.json: study: ", "'other'", "'smoke'"],
+        &["study.json: ", "to which reference.json belongs", "'other'", "'smoke'"],
     );
     document["checks"][0]["value"]["expected"] = "x".into();
     stage.json("reference.json", &document);

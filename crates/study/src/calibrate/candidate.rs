@@ -12,8 +12,14 @@ use serde_json::{Value, json};
 /// Quantities of a bridge that are no number of its file.
 pub(super) const QUANTITIES: [&str; 2] = ["structural_mass_kg", "total_mass_kg_m"];
 
-/// The number of the file that follows each.
-pub(super) const FOLLOWS: [&str; 2] = ["module.material.density_kg_m3", "added_mass_kg_m"];
+/// Quantities with the numbers of the file that follow them, Todd's formula giving way to the added mass.
+pub(super) const FOLLOWS: [(&str, &str); 5] = [
+    ("structural_mass_kg", "module.material.density_kg_m3"),
+    ("total_mass_kg_m", "added_mass_kg_m"),
+    ("total_mass_kg_m", "todd.water_density_kg_m3"),
+    ("total_mass_kg_m", "todd.section_coefficient"),
+    ("total_mass_kg_m", "todd.three_dimensional_correction"),
+];
 
 /// A bridge at a point of the parameters.
 #[derive(Debug, Clone)]

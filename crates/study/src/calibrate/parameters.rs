@@ -77,9 +77,8 @@ impl ParametersSpec {
             .keys()
             .chain(self.parameters.iter().filter(|p| p.sets.is_empty()).map(|p| &p.name))
         {
-            if let Some((_, follows)) = QUANTITIES.iter().zip(FOLLOWS).find(|(quantity, _)| *quantity == name) {
-                taken.push((follows, name));
-            }
+            let own = FOLLOWS.iter().filter(|(quantity, _)| quantity == name);
+            taken.extend(own.map(|(_, follows)| (*follows, name.as_str())));
         }
         for (i, parameter) in self.parameters.iter().enumerate() {
             let own = parameter.sets.is_empty().then_some(&parameter.name);

@@ -27,16 +27,7 @@ use crate::tables::Results;
 /// # Errors
 /// [`Refusal`] where the reference belongs to another study, or names a column, word or job that the results do not have.
 pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
-    let study = reference.study().map(|path| Study::open(&path)).transpose()?;
-    if let Some(name) = study
-        .as_ref()
-        .map(|s| &s.spec.name)
-        .filter(|name| **name != results.name)
-    {
-        let found = format!("results of the study '{}'", results.name);
-        let allowed = format!("results of '{name}', to which the reference belongs");
-        return Err(Refusal::new(&results.place, "", found, allowed));
-    }
+    let study = reference.study_of(&results.name, &results.place)?;
     let judge = Judge::new(results, reference);
     let lines = (0..reference.spec.checks.len())
         .map(|i| judge.line(i))

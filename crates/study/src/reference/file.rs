@@ -44,13 +44,30 @@ impl Reference {
         self.spec.study.as_ref().map(|study| folder.join(study))
     }
 
-    /// The name of the study it belongs to; none where it holds any results.
+    /// The study it belongs to, which has to be the one of a name; none where it holds any results. `place` is where that
+    /// name stands.
     ///
     /// # Errors
-    /// [`Refusal`] where that study cannot be opened.
-    pub fn study_name(&self) -> Result<Option<String>, Refusal> {
-        let study = self.study().map(|path| Study::open(&path)).transpose()?;
-        Ok(study.map(|study| study.spec.name))
+    /// [`Refusal`] where the study is another, or cannot be opened.
+    pub fn study_of(&self, name: &str, place: &Path) -> Result<Option<Study>, Refusal> {
+        let Some(path) = self.study() else {
+            return Ok(None);
+        };
+        let study = Study::open(&path)?;
+        if study.spec.name == name {
+            return Ok(Some(study));
+        }
+        let allowed = format!(
+            "results of '{}', to which {} belongs",
+            study.spec.name,
+            self.file.display()
+        );
+        Err(Refusal::new(
+            place,
+            "",
+            format!("results of the study '{name}'"),
+            allowed,
+        ))
     }
 
     fn check(&self) -> Result<(), Refusal> {

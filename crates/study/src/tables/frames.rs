@@ -3,6 +3,7 @@
 //! Knows the names of columns. Does not know files.
 
 use super::columns::Columns;
+use super::table::TableName;
 use crate::plan::Job;
 use crate::run::{ConnectorRow, JobRecord, PositionRow};
 use crate::spec::{Kind, Study};
@@ -39,8 +40,27 @@ pub(super) fn axis_names(study: &Study) -> Vec<String> {
         .collect()
 }
 
+/// A table that a study leaves, or nothing where it does not leave that one.
+type Frame = Option<PolarsResult<DataFrame>>;
+
+/// Every table by its name, in the order of their names, with what a study leaves of it.
+pub(super) fn all(study: &Study, of: &[Job], records: &[JobRecord]) -> [(TableName, Frame); 5] {
+    let (record, kind) = (&study.spec.record, study.spec.analysis.kind);
+    let loaded = kind != Kind::Modes;
+    TableName::ALL.map(|name| {
+        let frame = match name {
+            TableName::Jobs => Some(jobs(study, of, records)),
+            TableName::Positions => (record.positions && loaded).then(|| positions(kind, records)),
+            TableName::Connectors => (record.connectors && loaded).then(|| connectors(records)),
+            TableName::Histories => (record.histories.asked() && loaded).then(|| histories(records)),
+            TableName::Modes => (!loaded).then(|| modes(records)),
+        };
+        (name, frame)
+    })
+}
+
 /// One row a job.
-pub(super) fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
     let s = || records.iter().map(|r| &r.summary);
     let mut c = Columns::default();
     c.count("job", records.iter().map(|r| Some(r.job)));
@@ -97,7 +117,7 @@ pub(super) fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Polars
 }
 
 /// One row a position of each job.
-pub(super) fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataFrame> {
     let rows: Vec<(usize, &PositionRow)> = records
         .iter()
         .flat_map(|r| r.positions.iter().map(move |row| (r.job, row)))
@@ -123,7 +143,7 @@ pub(super) fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataF
 }
 
 /// One row a joint's sum and one a connector of each job.
-pub(super) fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
     let rows: Vec<(usize, &ConnectorRow)> = records
         .iter()
         .flat_map(|r| r.connectors.iter().map(move |row| (r.job, row)))
@@ -141,7 +161,7 @@ pub(super) fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
 }
 
 /// One row a mode of each job.
-pub(super) fn modes(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn modes(records: &[JobRecord]) -> PolarsResult<DataFrame> {
     let rows = || records.iter().flat_map(|r| r.modes.iter().map(move |row| (r.job, row)));
     Columns::default()
         .count("job", rows().map(|(job, _)| Some(job)))
@@ -156,7 +176,7 @@ pub(super) fn modes(records: &[JobRecord]) -> PolarsResult<DataFrame> {
 }
 
 /// One row a time of each history of each job.
-pub(super) fn histories(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn histories(records: &[JobRecord]) -> PolarsResult<DataFrame> {
     let series = || {
         records
             .iter()

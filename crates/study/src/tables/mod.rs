@@ -1,7 +1,8 @@
 //! Records to files and back to tables: Parquet, summary, manifest.
 //!
-//! Knows columns, provenance, how a file is replaced whole and how a folder proves to be whole. Does not know how a record came about. The only room
-//! that knows the table library. Tables hold nothing that changes from run to run; the manifest does.
+//! Knows columns, provenance, how a file is replaced whole and how a folder proves to be whole. Does not know how a record
+//! came about. The only room that knows the table library. Tables hold nothing that changes from run to run; the manifest
+//! does.
 
 mod columns;
 mod folder;
@@ -20,7 +21,7 @@ pub use table::{Kind, Table, TableName};
 
 use crate::plan::Job;
 use crate::run::Outcome;
-use crate::spec::{Kind as StudyKind, Study};
+use crate::spec::Study;
 
 /// Writes all tables of a run into its folder, the manifest with their hashes last.
 ///
@@ -35,35 +36,17 @@ pub fn write(
 ) -> Result<SummaryTable, FolderError> {
     let provenance = parquet::provenance(study, jobs);
     let records = &outcome.records;
-    let record = &study.spec.record;
     folder.remove(manifest::FILE)?;
-    let kind = study.spec.analysis.kind;
-    let modes = kind == StudyKind::Modes;
-    let tables = [
-        ("jobs.parquet", Some(frames::jobs(study, jobs, records))),
-        (
-            "positions.parquet",
-            (record.positions && !modes).then(|| frames::positions(kind, records)),
-        ),
-        (
-            "connectors.parquet",
-            (record.connectors && !modes).then(|| frames::connectors(records)),
-        ),
-        (
-            "histories.parquet",
-            (record.histories.asked() && !modes).then(|| frames::histories(records)),
-        ),
-        ("modes.parquet", modes.then(|| frames::modes(records))),
-    ];
-    for (name, frame) in tables {
+    for (name, frame) in frames::all(study, jobs, records) {
+        let file = name.file();
         match frame {
             Some(frame) => {
-                parquet::write(folder, name, frame, &provenance)?;
-                let path = folder.path().join(name);
+                parquet::write(folder, &file, frame, &provenance)?;
+                let path = folder.path().join(&file);
                 let hash = results::hash_of(&path).map_err(|cause| FolderError { path, cause })?;
-                manifest.tables.insert(name.to_owned(), hash);
+                manifest.tables.insert(file, hash);
             }
-            None => folder.remove(name)?,
+            None => folder.remove(&file)?,
         }
     }
     let summary = SummaryTable::new(study, jobs, records);

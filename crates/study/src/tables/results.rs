@@ -9,10 +9,10 @@ use super::table::{Table, TableName};
 use crate::plan::Job;
 use crate::refusal::Refusal;
 use crate::run::JobRecord;
-use crate::spec::{Kind, Study, text_and_hash};
-use polars::prelude::{ParquetReader, PolarsResult, SerReader};
+use crate::spec::{Study, text_and_hash};
+use polars::prelude::{ParquetReader, SerReader};
 use serde_json::Value;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
@@ -109,7 +109,7 @@ impl Results {
         if let Some(column) = ["job", "status", "reason"].into_iter().find(|column| !jobs.has(column)) {
             return Err(damaged(&jobs_file, &format!("no column {column}")));
         }
-        let mut numbers = std::collections::BTreeSet::new();
+        let mut numbers = BTreeSet::new();
         let whole = |row| {
             jobs.number("job", row)
                 .filter(|n| *n >= 0.0 && n.fract() == 0.0)
@@ -139,24 +139,14 @@ impl Results {
     /// # Errors
     /// The table library's words.
     pub fn of_run(study: &Study, jobs: &[Job], records: &[JobRecord], place: &Path) -> Result<Self, String> {
-        let kind = study.spec.analysis.kind;
-        let table = |frame: PolarsResult<_>| frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string());
-        let job_table = table(frames::jobs(study, jobs, records))?;
         let mut tables = BTreeMap::new();
-        let record = &study.spec.record;
-        if kind == Kind::Modes {
-            tables.insert(TableName::Modes, table(frames::modes(records))?);
-        } else {
-            if record.positions {
-                tables.insert(TableName::Positions, table(frames::positions(kind, records))?);
-            }
-            if record.connectors {
-                tables.insert(TableName::Connectors, table(frames::connectors(records))?);
-            }
-            if record.histories.asked() {
-                tables.insert(TableName::Histories, table(frames::histories(records))?);
+        for (name, frame) in frames::all(study, jobs, records) {
+            if let Some(frame) = frame {
+                let table = frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string())?;
+                tables.insert(name, table);
             }
         }
+        let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
         let documents = (study.document.clone(), study.bridge.document.clone());
         Ok(Self::new(&study.spec.name, place, documents, job_table, tables))
     }
