@@ -31,13 +31,7 @@ impl Flexibility {
     pub fn new(a: &SymmetricMatrix, bridge: &Bridge) -> Result<Self, FemError> {
         let factor = Factor::new(a)?;
         let track = Track::new(bridge);
-        let mut connectors = Mat::<f64>::zeros(a.order(), bridge.connectors.len());
-        for (j, connector) in bridge.connectors.iter().enumerate() {
-            for &(i, v) in &connector.row.0 {
-                connectors[(i, j)] = v;
-            }
-        }
-        factor.solve_columns(connectors.as_mut());
+        let connectors = responses(&factor, bridge.connectors.iter().map(|c| &c.row));
         let nc = connectors.ncols();
         let among = DMatrix::from_fn(nc, nc, |i, j| {
             // always from the later column, so that the matrix is symmetric to the last bit
@@ -139,6 +133,21 @@ impl Flexibility {
             .collect()
     }
 
+    /// `[B; rows] A^-1 E`: what each connector and below them each observed row sees of a unit force on each column of the
+    /// track, (connectors + rows) x columns. By Maxwell-Betti from `A^-1 rows^T`, so that no column is solved for.
+    pub fn influence(&self, rows: &[SparseRow]) -> DMatrix<f64> {
+        let observed = responses(&self.factor, rows.iter());
+        let nc = self.connectors.ncols();
+        DMatrix::from_fn(nc + rows.len(), self.track.columns(), |i, column| {
+            let (seen, j) = if i < nc {
+                (&self.connectors, i)
+            } else {
+                (&observed, i - nc)
+            };
+            seen[(self.track.dof(column), j)]
+        })
+    }
+
     /// `row . A^-1 track_row^T`: what an observed row sees of a track row.
     pub fn observe_track(&self, row: &SparseRow, track_row: &SparseRow) -> f64 {
         let column = |c: usize, w: f64| {
@@ -147,6 +156,18 @@ impl Flexibility {
         };
         track_row.0.iter().map(|&(c, w)| column(c, w)).sum()
     }
+}
+
+/// `A^-1 rows^T`.
+fn responses<'a>(factor: &Factor, rows: impl ExactSizeIterator<Item = &'a SparseRow>) -> Mat<f64> {
+    let mut columns = Mat::<f64>::zeros(factor.order(), rows.len());
+    for (j, row) in rows.enumerate() {
+        for &(i, v) in &row.0 {
+            columns[(i, j)] = v;
+        }
+    }
+    factor.solve_columns(columns.as_mut());
+    columns
 }
 
 fn add_column(columns: MatRef<'_, f64>, j: usize, force: f64, u: &mut [f64]) {

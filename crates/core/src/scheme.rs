@@ -82,3 +82,12 @@ impl Scheme {
         (1.0 - self.alpha_f) * new + self.alpha_f * old
     }
 }
+
+/// Rayleigh coefficients of `C = a K + b M`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rayleigh {
+    /// Stiffness-proportional part [s].
+    pub a: f64,
+    /// Mass-proportional part [1/s].
+    pub b: f64,
+}

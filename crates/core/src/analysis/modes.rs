@@ -5,6 +5,7 @@
 use super::AnalysisError;
 use crate::bridge::Bridge;
 use crate::fem::{EigenPairs, SymmetricMatrix, lowest_modes};
+pub use crate::scheme::Rayleigh;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -24,15 +25,6 @@ pub struct Mode {
     pub horizontal_share: f64,
     /// Share in the sections' motion along the bridge.
     pub axial_share: f64,
-}
-
-/// Rayleigh coefficients of `C = a K + b M`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rayleigh {
-    /// Stiffness-proportional part [s].
-    pub a: f64,
-    /// Mass-proportional part [1/s].
-    pub b: f64,
 }
 
 /// Shift of the eigenproblem [1/s^2]: the square of 0.1 Hz, below the 0.3 Hz at which bridges heave.

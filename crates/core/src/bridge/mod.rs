@@ -18,7 +18,7 @@ pub use load::{Load, Rider};
 pub use prepared::PreparedModule;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 use thiserror::Error;
-pub use track::Track;
+pub use track::{Along, Track};
 
 /// Which matrices a module contributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

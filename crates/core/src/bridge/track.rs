@@ -49,6 +49,11 @@ impl Track {
         self.modules * self.lines_x.len()
     }
 
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.dofs.len()
+    }
+
     /// Dof of the bridge behind a column.
     #[inline]
     pub fn dof(&self, column: usize) -> usize {
@@ -66,23 +71,61 @@ impl Track {
     }
 
     fn interpolate(&self, x_m: f64, y_m: f64, along: impl Fn(f64, f64) -> (f64, f64)) -> Option<SparseRow> {
-        if !(0.0..=self.length_m()).contains(&x_m) {
-            return None;
-        }
-        let module = ((x_m / self.module_length_m) as usize).min(self.modules - 1);
-        let (ix, s, length) = cell(&self.lines_x, x_m - module as f64 * self.module_length_m);
-        let (iy, t, _) = cell(&self.lines_y, y_m);
-        let (a, b) = along(s, length);
+        let place = self.along(x_m)?;
+        let (a, b) = along(place.part, place.length_m);
         let mut entries = Vec::with_capacity(4);
-        for (line, across) in [(iy, 1.0 - t), (iy + 1, t)] {
+        for (line, across) in self.across(y_m) {
             // a wheel on a line needs that line alone
             if across != 0.0 {
-                let first = line * self.stations() + module * self.lines_x.len() + ix;
+                let first = line * self.stations() + place.station;
                 entries.extend([(first, a * across), (first + 1, b * across)]);
             }
         }
         Some(SparseRow(entries))
     }
+
+    /// The interval between two stations that holds `x_m`; none off the bridge.
+    #[inline]
+    pub fn along(&self, x_m: f64) -> Option<Along> {
+        if !(0.0..=self.length_m()).contains(&x_m) {
+            return None;
+        }
+        let module = ((x_m / self.module_length_m) as usize).min(self.modules - 1);
+        let (ix, part, length_m) = cell(&self.lines_x, x_m - module as f64 * self.module_length_m);
+        Some(Along {
+            station: module * self.lines_x.len() + ix,
+            part,
+            length_m,
+        })
+    }
+
+    /// The two lines beside `y_m` with their shares.
+    pub fn across(&self, y_m: f64) -> [(usize, f64); 2] {
+        let (iy, t, _) = cell(&self.lines_y, y_m);
+        [(iy, 1.0 - t), (iy + 1, t)]
+    }
+
+    /// Shortest distance between stations of a module [m].
+    pub fn shortest_m(&self) -> f64 {
+        let lengths = self.lines_x.windows(2).map(|w| w[1] - w[0]);
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Length of a module [m].
+    pub fn module_length_m(&self) -> f64 {
+        self.module_length_m
+    }
+}
+
+/// A place between a station and the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Along {
+    /// The station on the left.
+    pub station: usize,
+    /// Where between it and the next, 0 to 1.
+    pub part: f64,
+    /// Their distance [m].
+    pub length_m: f64,
 }
 
 /// The interval of `lines` that holds `at`, the place in it from 0 to 1, and its length; the outermost interval outside.

@@ -50,6 +50,28 @@ pub struct Record {
     pub joints: Vec<usize>,
 }
 
+impl Record {
+    /// Whether none is asked for.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty() && self.joints.is_empty()
+    }
+
+    /// The histories, still without values: positions, then joints.
+    pub fn histories(&self) -> Vec<History> {
+        let of = |quantity: Quantity, list: &[usize]| -> Vec<History> {
+            let empty = |&position: &usize| History {
+                quantity,
+                position,
+                values: Vec::new(),
+            };
+            list.iter().map(empty).collect()
+        };
+        let mut histories = of(Quantity::Deflection, &self.positions);
+        histories.extend(of(Quantity::Force, &self.joints));
+        histories
+    }
+}
+
 /// The response to one crossing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrossingResponse {

@@ -44,17 +44,7 @@ impl<'a> Observer<'a> {
                 connectors: per_joint(&design.connectors.y_m),
             })
             .collect();
-        let of = |quantity: Quantity, list: &[usize]| -> Vec<History> {
-            list.iter()
-                .map(|&position| History {
-                    quantity,
-                    position,
-                    values: Vec::new(),
-                })
-                .collect()
-        };
-        let mut histories = of(Quantity::Deflection, &record.positions);
-        histories.extend(of(Quantity::Force, &record.joints));
+        let histories = record.histories();
         Self {
             bridge,
             positions,

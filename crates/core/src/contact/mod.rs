@@ -3,9 +3,11 @@
 //! Knows a small piecewise-linear system. The active set decides the tangent; a state changes only between Newton
 //! solutions, never inside one. Does not know time.
 
+mod warm;
+
 use crate::connector::{Law, State};
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeSet;
+pub use warm::WarmContact;
 
 /// The small system: with `N' = weight N(e)` and the scaled rider forces q',
 ///
@@ -62,23 +64,12 @@ impl ContactProblem<'_> {
             State::Both => vec![State::Both; first.len()],
             _ => first.to_vec(),
         };
-        let mut seen = BTreeSet::new();
-        let mut iterations = 0;
-        loop {
-            iterations += 1;
-            let not_settled = |connector| NotSettled { connector, iterations };
-            let solution = self.linear(law, &states).ok_or(not_settled(0))?;
-            let asked: Vec<State> = solution.elongations.iter().map(|&e| law.state(e)).collect();
-            match states.iter().zip(&asked).position(|(is, wants)| is != wants) {
-                None => return Ok(ContactSolution { iterations, ..solution }),
-                Some(connector) => {
-                    if iterations >= limit || !seen.insert(asked.clone()) {
-                        return Err(not_settled(connector));
-                    }
-                }
-            }
-            states = asked;
-        }
+        let (solution, iterations) = settle(&mut states, &mut Vec::new(), limit, |states, asked| {
+            let solution = self.linear(law, states)?;
+            ask(law, &solution.elongations, asked);
+            Some(solution)
+        })?;
+        Ok(ContactSolution { iterations, ..solution })
     }
 
     /// One Newton solution: the linear system of an active set.
@@ -129,5 +120,41 @@ impl ContactProblem<'_> {
             riders,
             iterations: 0,
         })
+    }
+}
+
+/// Newton on the active set, from `states` on: `solve` solves the linear system of an active set and writes the states that
+/// its elongations ask for. Gives the solution that asks for no other states and the number of solutions; `seen` is memory.
+fn settle<S>(
+    states: &mut [State],
+    seen: &mut Vec<State>,
+    limit: usize,
+    mut solve: impl FnMut(&[State], &mut [State]) -> Option<S>,
+) -> Result<(S, usize), NotSettled> {
+    seen.clear();
+    let mut iterations = 0;
+    loop {
+        iterations += 1;
+        let not_settled = |connector| NotSettled { connector, iterations };
+        let before = seen.len();
+        seen.resize(before + states.len(), State::Open);
+        let (before, asked) = seen.split_at_mut(before);
+        let solution = solve(states, asked).ok_or(not_settled(0))?;
+        match states.iter().zip(&*asked).position(|(is, wants)| is != wants) {
+            None => return Ok((solution, iterations)),
+            Some(connector) => {
+                if iterations >= limit || before.chunks(states.len()).any(|earlier| earlier == asked) {
+                    return Err(not_settled(connector));
+                }
+            }
+        }
+        states.copy_from_slice(asked);
+    }
+}
+
+/// The state that each elongation asks for.
+fn ask(law: &Law, elongations: &[f64], asked: &mut [State]) {
+    for (asked, &e) in asked.iter_mut().zip(elongations) {
+        *asked = law.state(e);
     }
 }

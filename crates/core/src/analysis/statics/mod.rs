@@ -2,6 +2,8 @@
 //!
 //! Knows one vehicle standing still on one bridge, on any model. Does not know motion.
 
+mod creeping;
+
 use super::AnalysisError;
 use crate::bridge::{Bridge, Load};
 use crate::connector::{Connection, Law, State};
@@ -10,8 +12,9 @@ use crate::fem::SparseRow;
 use crate::flexibility::Flexibility;
 use crate::response::{Equilibrium, JointForces, StaticResponse};
 use crate::vehicle::Vehicle;
+pub use creeping::CreepingLoad;
 use nalgebra::{DMatrix, DVector};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// One static case.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,13 +29,23 @@ pub struct StaticCase {
     pub load_x_m: f64,
 }
 
+impl StaticCase {
+    fn law(&self) -> Law {
+        Law {
+            k: self.connector_stiffness_n_m,
+            connection: self.connection,
+        }
+    }
+}
+
 /// A bridge made ready for static cases. Shared read-only between jobs and threads.
 #[derive(Debug)]
 pub struct StaticSolver {
     bridge: Arc<Bridge>,
     flexibility: Flexibility,
-    /// What each position sees of unit forces at the connectors.
-    positions: Vec<Vec<f64>>,
+    /// What each connector and below them each position sees of a unit force on each column of the track, made when a
+    /// creeping load first needs it.
+    influence: OnceLock<DMatrix<f64>>,
 }
 
 /// Newton solutions allowed before the load is halved.
@@ -47,16 +60,10 @@ impl StaticSolver {
     /// # Errors
     /// [`AnalysisError::Factor`] where K is singular: the supports leave a motion that nothing restores.
     pub fn new(bridge: &Arc<Bridge>) -> Result<Self, AnalysisError> {
-        let flexibility = Flexibility::new(&bridge.k, bridge)?;
-        let positions = bridge
-            .positions
-            .iter()
-            .map(|row| flexibility.observe_connectors(row))
-            .collect();
         Ok(Self {
             bridge: Arc::clone(bridge),
-            flexibility,
-            positions,
+            flexibility: Flexibility::new(&bridge.k, bridge)?,
+            influence: OnceLock::new(),
         })
     }
 
@@ -66,7 +73,10 @@ impl StaticSolver {
     /// [`AnalysisError::StaticNotConverged`].
     pub fn solve(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
         let load = self.load(vehicle, case, case.load_x_m);
-        let contact = self.contact(case, &load, case.load_x_m)?;
+        let e_free: Vec<f64> = (0..self.bridge.connectors.len())
+            .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
+            .collect();
+        let contact = brought_on(self.flexibility.among_connectors(), &case.law(), &e_free, case.load_x_m)?;
         let bridge = &self.bridge;
         let mut u = vec![0.0; bridge.dofs()];
         self.flexibility
@@ -120,77 +130,24 @@ impl StaticSolver {
     }
 
     /// Largest static deflection of each position over all places of the load along the bridge [m]: places a quarter of
-    /// an element apart (`load_x_m` of the case is not used).
+    /// an element apart (`load_x_m` of the case is not used). For many cases of one vehicle see [`Self::creeping`].
     ///
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
     pub fn creeping_peaks_m(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<Vec<f64>, AnalysisError> {
-        let design = self.bridge.design();
-        let places = design.modules * design.module.mesh.elements_along * 4;
-        let mut peaks = vec![0.0_f64; self.positions.len()];
-        for place in 0..=places {
-            let x = design.length_m() * place as f64 / places as f64;
-            let load = self.load(vehicle, case, x);
-            let contact = self.contact(case, &load, x)?;
-            for (peak, (row, seen)) in peaks.iter_mut().zip(self.bridge.positions.iter().zip(&self.positions)) {
-                let from_connectors: f64 = contact.forces.iter().zip(seen).map(|(n, s)| n * s).sum();
-                *peak = peak.max(self.flexibility.observe_track(row, &load.weight) + from_connectors);
-            }
-        }
-        Ok(peaks)
+        self.creeping(vehicle).peaks_m(case)
+    }
+
+    /// A vehicle made ready to creep over the bridge under any connection and weight.
+    pub fn creeping(&self, vehicle: &Vehicle) -> CreepingLoad {
+        let positions = &self.bridge.positions;
+        let influence = self.influence.get_or_init(|| self.flexibility.influence(positions));
+        CreepingLoad::new(&self.bridge, &self.flexibility, influence, vehicle)
     }
 
     fn load(&self, vehicle: &Vehicle, case: &StaticCase, centre_x_m: f64) -> Load {
         let front_x_m = centre_x_m - vehicle.centre_ahead_m();
         Load::new(self.flexibility.track(), vehicle, case.load_n, front_x_m)
-    }
-
-    /// The contact under a load; where Newton does not settle from open connectors, the load is brought on in parts.
-    fn contact(&self, case: &StaticCase, load: &Load, x: f64) -> Result<ContactSolution, AnalysisError> {
-        let law = Law {
-            k: case.connector_stiffness_n_m,
-            connection: case.connection,
-        };
-        let nc = self.bridge.connectors.len();
-        let e_full: Vec<f64> = (0..nc)
-            .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
-            .collect();
-        let mut problem = ContactProblem {
-            e_free: e_full.clone(),
-            connectors: self.flexibility.among_connectors(),
-            weight: 1.0,
-            connectors_riders: DMatrix::zeros(nc, 0),
-            riders_connectors: DMatrix::zeros(0, nc),
-            riders: DMatrix::zeros(0, 0),
-            riders_free: DVector::zeros(0),
-        };
-        let mut states = vec![State::Open; nc];
-        let (mut reached, mut part, mut halvings, mut iterations) = (0.0_f64, 1.0_f64, 0, 0);
-        loop {
-            let target = (reached + part).min(1.0);
-            problem.e_free = e_full.iter().map(|e| target * e).collect();
-            match problem.solve(&law, &states, NEWTON_LIMIT) {
-                Ok(solution) => {
-                    iterations += solution.iterations;
-                    if target >= 1.0 {
-                        return Ok(ContactSolution { iterations, ..solution });
-                    }
-                    states = solution.states;
-                    reached = target;
-                }
-                Err(NotSettled { iterations: spent, .. }) => {
-                    iterations += spent;
-                    halvings += 1;
-                    part *= 0.5;
-                    if halvings > HALVINGS {
-                        return Err(AnalysisError::StaticNotConverged {
-                            iterations,
-                            load_x_m: x,
-                        });
-                    }
-                }
-            }
-        }
     }
 
     /// Between the first zero crossings left and right of the load, interpolated between nodes.
@@ -244,4 +201,48 @@ fn add_force(to: &mut [f64; 3], force: f64, x: f64, y: f64) {
     to[0] += force;
     to[1] += y * force;
     to[2] -= x * force;
+}
+
+/// The contact of connectors whose elongations without forces are `e_full`; where Newton does not settle from open
+/// connectors, the load is brought on in parts.
+fn brought_on(
+    among: &DMatrix<f64>,
+    law: &Law,
+    e_full: &[f64],
+    load_x_m: f64,
+) -> Result<ContactSolution, AnalysisError> {
+    let nc = e_full.len();
+    let mut problem = ContactProblem {
+        e_free: e_full.to_vec(),
+        connectors: among,
+        weight: 1.0,
+        connectors_riders: DMatrix::zeros(nc, 0),
+        riders_connectors: DMatrix::zeros(0, nc),
+        riders: DMatrix::zeros(0, 0),
+        riders_free: DVector::zeros(0),
+    };
+    let mut states = vec![State::Open; nc];
+    let (mut reached, mut part, mut halvings, mut iterations) = (0.0_f64, 1.0_f64, 0, 0);
+    loop {
+        let target = (reached + part).min(1.0);
+        problem.e_free = e_full.iter().map(|e| target * e).collect();
+        match problem.solve(law, &states, NEWTON_LIMIT) {
+            Ok(solution) => {
+                iterations += solution.iterations;
+                if target >= 1.0 {
+                    return Ok(ContactSolution { iterations, ..solution });
+                }
+                states = solution.states;
+                reached = target;
+            }
+            Err(NotSettled { iterations: spent, .. }) => {
+                iterations += spent;
+                halvings += 1;
+                part *= 0.5;
+                if halvings > HALVINGS {
+                    return Err(AnalysisError::StaticNotConverged { iterations, load_x_m });
+                }
+            }
+        }
+    }
 }
