@@ -25,10 +25,10 @@ const JOBS: &str = "job status reason connection gap_tension_m gap_compression_m
     min_contact_force_n steps newton_iterations contact_switches energy_residual numerical_dissipation";
 
 #[test]
-fn one_and_two_threads_write_the_same_bytes() {
+fn any_number_of_threads_writes_the_same_bytes() {
     let stage = small();
     stage.write();
-    for threads in ["1", "2"] {
+    for threads in ["1", "2", "3"] {
         let output = stage.pontoon(&["run", "study.json", "--out", threads, "--threads", threads]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert_eq!(stage.manifest(threads)["threads"].to_string(), threads);
@@ -41,7 +41,7 @@ fn one_and_two_threads_write_the_same_bytes() {
         "summary.csv",
     ] {
         let bytes = |threads: &str| fs::read(stage.path(threads).join(name)).unwrap();
-        assert!(bytes("1") == bytes("2"), "{name} differs");
+        assert!(bytes("1") == bytes("2") && bytes("1") == bytes("3"), "{name} differs");
     }
 }
 
@@ -243,4 +243,25 @@ fn results_that_cannot_be_written_end_with_status_3() {
     let output = stage.pontoon(&["run", "study.json", "--out", "bridge.json/r"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     assert!(stderr(&output).contains("bridge.json/r"), "{}", stderr(&output));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_run_and_leaves_the_results_before_it() {
+    let stage = small();
+    stage.ran("r");
+    let before = fs::read(stage.path("r/manifest.json")).unwrap();
+    std::os::unix::fs::symlink("/dev/full", stage.path("r/.connectors.parquet.partial")).unwrap();
+    let output = stage.pontoon(&["run", "study.json", "--out", "r", "--quiet"]);
+    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(3), ""));
+    let told = stderr(&output);
+    assert!(
+        told.starts_with("pontoon: results not written: r/connectors.parquet: ") && told.contains("No space left"),
+        "{told}"
+    );
+    assert_eq!(fs::read(stage.path("r/manifest.json")).unwrap(), before);
+    let left = fs::read_dir(stage.path("r")).unwrap().map(|e| e.unwrap().file_name());
+    assert!(left.into_iter().all(|name| !name.to_string_lossy().contains("partial")));
+    let jobs = stage.table("r/jobs.parquet");
+    assert_eq!(jobs.height(), 6);
 }

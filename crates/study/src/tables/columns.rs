@@ -6,6 +6,43 @@ use crate::document::canonical_text;
 use polars::prelude::{Column, DataFrame, NamedFrom, Series};
 use serde_json::Value;
 
+/// The type of an axis's column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AxisType {
+    /// Whole numbers.
+    Counts,
+    /// Numbers.
+    Numbers,
+    /// Words.
+    Words,
+    /// Yes and no.
+    Flags,
+    /// JSON texts of whatever the values are.
+    Texts,
+}
+
+impl AxisType {
+    /// The type of an axis of these values: whole numbers where all its values are of such a type, numbers where all are
+    /// numbers, words where all are words, yes and no where all are, else each value's JSON text. Nulls are of any type.
+    pub(super) fn of(values: impl Iterator<Item = Value>) -> Self {
+        let (mut any, mut counts, mut numbers, mut words, mut flags) = (false, true, true, true, true);
+        for value in values.filter(|value| !value.is_null()) {
+            any = true;
+            counts &= value.is_u64();
+            numbers &= value.is_number();
+            words &= value.is_string();
+            flags &= value.is_boolean();
+        }
+        match () {
+            () if any && counts => Self::Counts,
+            () if numbers => Self::Numbers,
+            () if words => Self::Words,
+            () if flags => Self::Flags,
+            () => Self::Texts,
+        }
+    }
+}
+
 /// The columns of a table under way.
 #[derive(Debug, Default)]
 pub(super) struct Columns(Vec<Column>);
@@ -37,27 +74,19 @@ impl Columns {
         self.push(Series::new(name.into(), values.collect::<Vec<_>>()))
     }
 
-    /// A column of an axis: whole numbers where all its values are of such a type, numbers where all are numbers, words
-    /// where all are words, yes and no where all are, else each value's JSON text.
-    pub(super) fn axis(&mut self, name: &str, values: &[Value]) -> &mut Self {
-        let all = |is: fn(&Value) -> bool| values.iter().all(|v| v.is_null() || is(v));
-        if !all(Value::is_null) && all(Value::is_u64) {
-            self.count(
-                name,
-                values.iter().map(|v| v.as_u64().and_then(|v| usize::try_from(v).ok())),
-            )
-        } else if all(Value::is_number) {
-            self.number(name, values.iter().map(Value::as_f64))
-        } else if all(Value::is_string) {
-            self.word(name, values.iter().map(Value::as_str))
-        } else if all(Value::is_boolean) {
-            self.flag(name, values.iter().map(Value::as_bool))
-        } else {
-            let texts: Vec<Option<String>> = values
-                .iter()
-                .map(|v| (!v.is_null()).then(|| canonical_text(v)))
-                .collect();
-            self.word(name, texts.iter().map(Option::as_deref))
+    /// A column of an axis of a type that all `values` are of.
+    pub(super) fn axis(&mut self, name: &str, of: AxisType, values: &[Value]) -> &mut Self {
+        let count = |v: &Value| v.as_u64().and_then(|v| usize::try_from(v).ok());
+        match of {
+            AxisType::Counts => self.count(name, values.iter().map(count)),
+            AxisType::Numbers => self.number(name, values.iter().map(Value::as_f64)),
+            AxisType::Words => self.word(name, values.iter().map(Value::as_str)),
+            AxisType::Flags => self.flag(name, values.iter().map(Value::as_bool)),
+            AxisType::Texts => {
+                let text = |v: &Value| (!v.is_null()).then(|| canonical_text(v));
+                let texts: Vec<Option<String>> = values.iter().map(text).collect();
+                self.word(name, texts.iter().map(Option::as_deref))
+            }
         }
     }
 
@@ -83,8 +112,11 @@ mod tests {
             (vec![json!(true)], DataType::Boolean),
             (vec![json!([1.0, 2.5]), json!(3)], DataType::String),
         ] {
-            let frame = Columns::default().axis("a", &values).frame().unwrap();
-            assert_eq!(frame.column("a").unwrap().dtype(), &expected, "{values:?}");
+            let of = AxisType::of(values.iter().cloned());
+            for part in [&values[..], &values[..1], &[]] {
+                let frame = Columns::default().axis("a", of, part).frame().unwrap();
+                assert_eq!(frame.column("a").unwrap().dtype(), &expected, "{part:?}");
+            }
         }
     }
 }

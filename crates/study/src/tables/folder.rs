@@ -56,31 +56,105 @@ impl Folder {
     /// # Errors
     /// [`FolderError`]; the file of that name is then as it was.
     pub fn write(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), FolderError> {
-        let (partial, path) = (self.partial(name), self.path.join(name));
-        let written = File::create(&partial).and_then(|mut file| {
-            content(&mut file)?;
-            file.sync_all()?;
-            fs::rename(&partial, &path)?;
-            File::open(&self.path)?.sync_all()
-        });
-        written.map_err(|cause| {
-            // The partial file is of no use to anybody; that it stays where removing fails too changes nothing.
-            let _ = fs::remove_file(&partial);
-            FolderError { path, cause }
-        })
+        let mut partial = self.begin(name)?;
+        content(&mut partial.file).map_err(|cause| partial.error(cause))?;
+        partial.place()
     }
 
-    /// Removes a file that an earlier run left and this one does not write.
+    /// Begins a file under a temporary name.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub(super) fn begin(&self, name: &str) -> Result<Partial, FolderError> {
+        let (partial, path) = (self.partial(name), self.path.join(name));
+        match File::create(&partial) {
+            Ok(file) => Ok(Partial {
+                file,
+                partial,
+                path,
+                placed: false,
+            }),
+            Err(cause) => Err(FolderError { path, cause }),
+        }
+    }
+
+    /// Removes a file that an earlier run left, whole or begun, and this one does not write.
     ///
     /// # Errors
     /// [`FolderError`].
     pub fn remove(&self, name: &str) -> Result<(), FolderError> {
-        let path = self.path.join(name);
-        match fs::remove_file(&path) {
-            Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(FolderError { path, cause }),
-            _ => Ok(()),
+        for path in [self.partial(name), self.path.join(name)] {
+            match fs::remove_file(&path) {
+                Err(cause) if cause.kind() != io::ErrorKind::NotFound => return Err(FolderError { path, cause }),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A file under its temporary name. One that is dropped before it was placed is removed.
+#[derive(Debug)]
+pub(super) struct Partial {
+    file: File,
+    partial: PathBuf,
+    path: PathBuf,
+    placed: bool,
+}
+
+impl Partial {
+    /// The file, to be written.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub(super) fn file(&self) -> Result<File, FolderError> {
+        self.file.try_clone().map_err(|cause| self.error(cause))
+    }
+
+    /// The error of this file.
+    pub(super) fn error(&self, cause: io::Error) -> FolderError {
+        let path = self.path.clone();
+        FolderError { path, cause }
+    }
+
+    /// Syncs what was written, so that placing it can hardly fail any more, and leaves its blake3 hash.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub(super) fn sync(&self) -> Result<String, FolderError> {
+        let synced = self.file.sync_all().and_then(|()| hash_of(&self.partial));
+        synced.map_err(|cause| self.error(cause))
+    }
+
+    /// Syncs the file and renames it into place.
+    ///
+    /// # Errors
+    /// [`FolderError`]; the file of that name is then as it was.
+    pub(super) fn place(mut self) -> Result<(), FolderError> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let placed = self.file.sync_all().and_then(|()| {
+            fs::rename(&self.partial, &self.path)?;
+            self.placed = true;
+            File::open(folder)?.sync_all()
+        });
+        placed.map_err(|cause| self.error(cause))
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        if !self.placed {
+            // It is of no use to anybody; that it stays where removing fails too changes nothing.
+            let _ = fs::remove_file(&self.partial);
         }
     }
+}
+
+/// The blake3 hash of a file's bytes.
+pub(super) fn hash_of(path: &Path) -> io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    io::copy(&mut File::open(path)?, &mut hasher)?;
+    Ok(hasher.finalize().to_hex().to_string())
 }
 
 #[cfg(test)]

@@ -2,11 +2,11 @@
 //!
 //! Knows the names of columns. Does not know files.
 
-use super::columns::Columns;
+use super::columns::{AxisType, Columns};
 use super::table::TableName;
 use crate::plan::Job;
 use crate::run::{ConnectorRow, JobRecord, PositionRow};
-use crate::spec::{Kind, Study};
+use crate::spec::{AnalysisSpec, Kind, Study, TimeStepSpec};
 use polars::prelude::{DataFrame, PolarsResult};
 use serde_json::Value;
 
@@ -40,27 +40,72 @@ pub(super) fn axis_names(study: &Study) -> Vec<String> {
         .collect()
 }
 
-/// A table that a study leaves, or nothing where it does not leave that one.
-type Frame = Option<PolarsResult<DataFrame>>;
+/// Which tables a study leaves and which columns each has, whatever part of its rows is at hand.
+#[derive(Debug)]
+pub(super) struct Layout {
+    kind: Kind,
+    axes: Vec<(String, AxisType)>,
+    tables: Vec<TableName>,
+    /// Whether any job's time step was to be found.
+    auto: bool,
+    /// Whether any job may be solved again.
+    verify: bool,
+}
 
-/// Every table by its name, in the order of their names, with what a study leaves of it.
-pub(super) fn all(study: &Study, of: &[Job], records: &[JobRecord]) -> [(TableName, Frame); 5] {
-    let (record, kind) = (&study.spec.record, study.spec.analysis.kind);
-    let loaded = kind != Kind::Modes;
-    TableName::ALL.map(|name| {
-        let frame = match name {
-            TableName::Jobs => Some(jobs(study, of, records)),
-            TableName::Positions => (record.positions && loaded).then(|| positions(kind, records)),
-            TableName::Connectors => (record.connectors && loaded).then(|| connectors(records)),
-            TableName::Histories => (record.histories.asked() && loaded).then(|| histories(records)),
-            TableName::Modes => (!loaded).then(|| modes(records)),
+impl Layout {
+    /// The layout of a study with all its jobs, whose axes make the types of columns.
+    pub(super) fn new(study: &Study, jobs: &[Job]) -> Self {
+        let (record, kind) = (&study.spec.record, study.spec.analysis.kind);
+        let axis = |name: String| {
+            let of = match name.as_str() {
+                "load_position" => AxisType::Counts,
+                name => AxisType::of(jobs.iter().map(|job| job.typed_column(name))),
+            };
+            (name, of)
         };
-        (name, frame)
-    })
+        let loaded = kind != Kind::Modes;
+        let left = |name: &TableName| match name {
+            TableName::Jobs => true,
+            TableName::Positions => record.positions && loaded,
+            TableName::Connectors => record.connectors && loaded,
+            TableName::Histories => record.histories.asked() && loaded,
+            TableName::Modes => !loaded,
+        };
+        Self {
+            kind,
+            axes: axis_names(study).into_iter().map(axis).collect(),
+            tables: TableName::ALL.into_iter().filter(left).collect(),
+            auto: any(jobs, |analysis| {
+                matches!(analysis.time_step_s, Some(TimeStepSpec::Auto(_)))
+            }),
+            verify: any(jobs, |analysis| analysis.verify.is_some()),
+        }
+    }
+
+    /// The tables that the study leaves, in the order of their names.
+    pub(super) fn tables(&self) -> impl Iterator<Item = TableName> {
+        self.tables.iter().copied()
+    }
+
+    /// The rows of some jobs in a table, in the order of jobs; no job makes the table without rows.
+    pub(super) fn frame(&self, name: TableName, of: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
+        match name {
+            TableName::Jobs => jobs(self, of, records),
+            TableName::Positions => positions(self.kind, records),
+            TableName::Connectors => connectors(records),
+            TableName::Histories => histories(records),
+            TableName::Modes => modes(records),
+        }
+    }
+}
+
+/// Whether any job's analysis is such.
+fn any(jobs: &[Job], is: impl Fn(&AnalysisSpec) -> bool) -> bool {
+    jobs.iter().any(|job| is(&job.analysis.spec))
 }
 
 /// One row a job.
-fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn jobs(layout: &Layout, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
     let s = || records.iter().map(|r| &r.summary);
     let mut c = Columns::default();
     c.count("job", records.iter().map(|r| Some(r.job)));
@@ -71,21 +116,11 @@ fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<Data
             .map(|r| Some(if r.reason.is_none() { "ok" } else { "failed" })),
     );
     c.word("reason", records.iter().map(|r| r.reason.as_deref()));
-    for name in axis_names(study) {
-        let values: Vec<Value> = jobs.iter().map(|job| job.typed_column(&name)).collect();
-        match name.as_str() {
-            "load_position" => {
-                c.count(
-                    &name,
-                    values.iter().map(|v| v.as_u64().and_then(|v| usize::try_from(v).ok())),
-                );
-            }
-            _ => {
-                c.axis(&name, &values);
-            }
-        }
+    for (name, of) in &layout.axes {
+        let values: Vec<Value> = jobs.iter().map(|job| job.typed_column(name)).collect();
+        c.axis(name, *of, &values);
     }
-    if study.spec.analysis.kind == Kind::Modes {
+    if layout.kind == Kind::Modes {
         return c
             .number("structural_mass_kg", s().map(|s| s.structural_mass_kg))
             .frame();
@@ -107,13 +142,22 @@ fn jobs(study: &Study, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<Data
         .number("influential_length_m", s().map(|s| s.influential_length_m))
         .flag("bottom_emerged", s().map(|s| s.bottom_emerged))
         .flag("deck_submerged", s().map(|s| s.deck_submerged))
-        .number("min_contact_force_n", s().map(|s| s.min_contact_force_n))
-        .count("steps", s().map(|s| s.steps))
+        .number("min_contact_force_n", s().map(|s| s.min_contact_force_n));
+    if layout.auto {
+        c.number("time_step_s", s().map(|s| s.time_step_s));
+    }
+    c.count("steps", s().map(|s| s.steps))
         .count("newton_iterations", s().map(|s| s.newton_iterations))
         .count("contact_switches", s().map(|s| s.contact_switches))
         .number("energy_residual", s().map(|s| s.energy_residual))
-        .number("numerical_dissipation", s().map(|s| s.numerical_dissipation))
-        .frame()
+        .number("numerical_dissipation", s().map(|s| s.numerical_dissipation));
+    if layout.verify {
+        c.number("verify_deflection", s().map(|s| s.verify_deflection))
+            .number("verify_compression", s().map(|s| s.verify_compression))
+            .number("verify_tension", s().map(|s| s.verify_tension))
+            .flag("verify_held", s().map(|s| s.verify_held));
+    }
+    c.frame()
 }
 
 /// One row a position of each job.

@@ -4,7 +4,7 @@
 
 use crate::plan::Job;
 use crate::refusal::Refusal;
-use crate::run::{BridgeReport, Outcome};
+use crate::run::{BridgeReport, OperatorCounts, Outcome, Verification};
 use crate::spec::{ModelSpec, Study};
 use serde::Serialize;
 use serde_json::Value;
@@ -78,8 +78,14 @@ pub struct Manifest {
     pub distinct_modules: usize,
     /// Condensations that ran.
     pub condensations: usize,
+    /// Where operators came from.
+    pub operators: OperatorCounts,
     /// What was prepared of each bridge and model.
     pub bridges: Vec<BridgeReport>,
+    /// Jobs solved again by the reference solver, and how far the operator is off; null where none was.
+    pub verification: Option<Verification>,
+    /// Instructions that crossings by the operator ran on.
+    pub instruction_path: &'static str,
     /// Name of the machine.
     pub host: String,
     /// Threads used.
@@ -90,7 +96,7 @@ pub struct Manifest {
     pub finished: String,
     /// Wall time of what jobs share: finite elements, condensation, assembly, factors, static peaks [s].
     pub offline_s: f64,
-    /// Wall time of the jobs [s].
+    /// Wall time of the jobs, the writing of their rows included [s].
     pub jobs_s: f64,
     /// The blake3 hash of each table's file, filled in as the tables are written.
     pub tables: BTreeMap<String, String>,
@@ -110,7 +116,7 @@ impl Manifest {
             bridge: study.bridge.document.clone(),
             bridge_blake3: study.bridge_text_and_hash().1,
             jobs: jobs.len(),
-            failed: outcome.failed(),
+            failed: outcome.failures.count,
             merged: study.points() - jobs.len(),
             distinct_bridges: jobs.iter().map(|job| job.bridge.id).collect::<BTreeSet<_>>().len(),
             distinct_modules: condensed
@@ -118,7 +124,10 @@ impl Manifest {
                 .collect::<BTreeSet<_>>()
                 .len(),
             condensations: outcome.condensations,
+            operators: outcome.operators,
             bridges: outcome.bridges.clone(),
+            verification: Some(outcome.verification).filter(|v| v.jobs > 0),
+            instruction_path: crate::run::instruction_path(),
             host: host(),
             threads: outcome.threads,
             started: started.text(),

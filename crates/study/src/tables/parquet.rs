@@ -1,12 +1,16 @@
-//! Parquet files with their provenance.
+//! Parquet files with their provenance, written row group by row group.
 //!
-//! Knows what a file says of where it comes from. Does not know its columns.
+//! Knows what a file says of where it comes from and how it grows. Does not know its columns.
 
-use super::folder::{Folder, FolderError};
+use super::folder::{Folder, FolderError, Partial};
 use crate::plan::Job;
 use crate::spec::Study;
-use polars::prelude::{DataFrame, KeyValueMetadata, ParquetWriter, PolarsResult};
-use std::io;
+use polars::prelude::{BatchedWriter, DataFrame, KeyValueMetadata, ParquetWriter, PolarsResult};
+use std::fs::File;
+use std::io::{self, BufWriter};
+
+/// Most rows of a row group, the table library's own number: what a reader takes at a time.
+const ROW_GROUP: usize = 1 << 18;
 
 /// What every table of a study carries: nothing of it changes from run to run.
 pub(super) fn provenance(study: &Study, jobs: &[Job]) -> KeyValueMetadata {
@@ -21,6 +25,7 @@ pub(super) fn provenance(study: &Study, jobs: &[Job]) -> KeyValueMetadata {
     }
     let pairs = [
         ("pontoon.version", crate::VERSION.to_owned()),
+        ("pontoon.instruction_path", crate::run::instruction_path().to_owned()),
         ("pontoon.study", study_text),
         ("pontoon.study_blake3", study_hash),
         ("pontoon.bridge", bridge_text),
@@ -30,20 +35,48 @@ pub(super) fn provenance(study: &Study, jobs: &[Job]) -> KeyValueMetadata {
     KeyValueMetadata::from_static(pairs.map(|(key, value)| (key.to_owned(), value)).to_vec())
 }
 
-/// Writes a table.
-pub(super) fn write(
-    folder: &Folder,
-    name: &str,
-    frame: PolarsResult<DataFrame>,
-    provenance: &KeyValueMetadata,
-) -> Result<(), FolderError> {
-    folder.write(name, |file| {
-        let mut frame = frame.map_err(io::Error::other)?;
-        ParquetWriter::new(file)
+/// A table under way: rows are appended, a part after the other, and nothing of them stays in memory.
+pub(super) struct TableFile {
+    partial: Partial,
+    writer: BatchedWriter<BufWriter<File>>,
+}
+
+impl TableFile {
+    /// Begins a table of the columns of `empty`.
+    pub(super) fn begin(
+        folder: &Folder,
+        name: &str,
+        empty: PolarsResult<DataFrame>,
+        provenance: &KeyValueMetadata,
+    ) -> Result<Self, FolderError> {
+        let partial = folder.begin(name)?;
+        let writer = ParquetWriter::new(BufWriter::new(partial.file()?))
             .set_parallel(false)
-            .with_key_value_metadata(Some(provenance.clone()))
-            .finish(&mut frame)
-            .map(|_| ())
-            .map_err(io::Error::other)
-    })
+            .with_key_value_metadata(Some(provenance.clone()));
+        let writer = empty.and_then(|empty| writer.batched(empty.schema()));
+        match writer {
+            Ok(writer) => Ok(Self { partial, writer }),
+            Err(cause) => Err(partial.error(io::Error::other(cause))),
+        }
+    }
+
+    /// Appends rows as row groups of their own; no rows make none.
+    pub(super) fn append(&mut self, rows: PolarsResult<DataFrame>) -> Result<(), FolderError> {
+        let appended = rows.and_then(|rows| {
+            let starts = (0..rows.height()).step_by(ROW_GROUP);
+            starts.into_iter().try_for_each(|start| {
+                let group = rows.slice(i64::try_from(start).unwrap_or(i64::MAX), ROW_GROUP);
+                self.writer.write_batch(&group)
+            })
+        });
+        appended.map_err(|cause| self.partial.error(io::Error::other(cause)))
+    }
+
+    /// Ends the table, still under its temporary name, and leaves it with its hash.
+    pub(super) fn end(self) -> Result<(Partial, String), FolderError> {
+        let ended = self.writer.finish();
+        ended.map_err(|cause| self.partial.error(io::Error::other(cause)))?;
+        let hash = self.partial.sync()?;
+        Ok((self.partial, hash))
+    }
 }

@@ -3,7 +3,8 @@
 //! Knows how a folder proves that it holds one whole run: its manifest names each table's hash. Does not know what is
 //! read of it.
 
-use super::frames;
+use super::folder::hash_of;
+use super::frames::{FIRST_OUTCOMES, Layout};
 use super::manifest;
 use super::table::{Table, TableName};
 use crate::plan::Job;
@@ -139,12 +140,12 @@ impl Results {
     /// # Errors
     /// The table library's words.
     pub fn of_run(study: &Study, jobs: &[Job], records: &[JobRecord], place: &Path) -> Result<Self, String> {
+        let layout = Layout::new(study, jobs);
         let mut tables = BTreeMap::new();
-        for (name, frame) in frames::all(study, jobs, records) {
-            if let Some(frame) = frame {
-                let table = frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string())?;
-                tables.insert(name, table);
-            }
+        for name in layout.tables() {
+            let frame = layout.frame(name, jobs, records);
+            let table = frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string())?;
+            tables.insert(name, table);
         }
         let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
         let documents = (study.document.clone(), study.bridge.document.clone());
@@ -193,17 +194,10 @@ impl Results {
     pub fn axes(&self) -> Vec<String> {
         let names = self.jobs.names().skip_while(|name| *name != "reason").skip(1);
         names
-            .take_while(|name| !frames::FIRST_OUTCOMES.contains(name))
+            .take_while(|name| !FIRST_OUTCOMES.contains(name))
             .map(str::to_owned)
             .collect()
     }
-}
-
-/// The blake3 hash of a file's bytes.
-pub(super) fn hash_of(path: &Path) -> std::io::Result<String> {
-    let mut hasher = blake3::Hasher::new();
-    std::io::copy(&mut File::open(path)?, &mut hasher)?;
-    Ok(hasher.finalize().to_hex().to_string())
 }
 
 /// Reads a Parquet file; that the library panics over it is an error like any other.

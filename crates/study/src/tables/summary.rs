@@ -1,26 +1,37 @@
 //! The summary: peaks against speed, a row a speed for each combination of the other axes; of a study of modes a row a mode.
 //!
-//! Knows the order of rows and how a cell is written. Does not know terminals.
+//! Knows the order of rows and how a cell is written. Keeps of a job what its row holds beside the axes, which the job has.
+//! Does not know terminals.
 
 use super::frames::axis_names;
-use crate::modes::ModeRow;
 use crate::plan::Job;
 use crate::run::JobRecord;
 use crate::spec::{Kind, Study};
-use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashMap;
+use std::io::{self, BufWriter, Write};
 
 /// A cell: a number, a word, or nothing.
 pub type Cell = Value;
 
-/// The summary of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SummaryTable {
-    /// Names of the columns.
-    pub columns: Vec<String>,
-    /// The rows.
-    pub rows: Vec<Vec<Cell>>,
+/// The summary of a study. Its rows are made as they are asked for: a million of them are no matter.
+#[derive(Debug, Clone)]
+pub struct SummaryTable<'a> {
+    columns: Vec<String>,
+    axes: Vec<String>,
+    jobs: &'a [Job],
+    outcomes: Outcomes,
+    /// Places in `outcomes`, in the order of rows.
+    order: Vec<usize>,
+}
+
+/// What the rows hold beside the axes, in the order of jobs.
+#[derive(Debug, Clone)]
+enum Outcomes {
+    /// The peaks of each job.
+    Peaks(Vec<[Option<f64>; 4]>),
+    /// Of each mode its job, number, frequency [Hz] and shape.
+    Modes(Vec<(usize, usize, f64, String)>),
 }
 
 const PEAKS: [&str; 4] = [
@@ -29,71 +40,152 @@ const PEAKS: [&str; 4] = [
     "peak_compression_n",
     "peak_tension_n",
 ];
+const MODES: [&str; 3] = ["number", "frequency_hz", "shape"];
+/// The axis that rows follow within a combination of the others.
+const AGAINST: &str = "speed_m_s";
 
-impl SummaryTable {
-    /// The summary of a run: combinations of the other axes in the order of their first job, speeds increasing. A job
-    /// that failed has empty peaks.
-    pub fn new(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Self {
-        if study.spec.analysis.kind == Kind::Modes {
-            return Self::of_modes(study, jobs, records);
-        }
-        let (against, others): (Vec<String>, Vec<String>) =
-            axis_names(study).into_iter().partition(|name| name == "speed_m_s");
-        let mut groups: HashMap<String, usize> = HashMap::new();
-        let mut rows: Vec<(usize, f64, Vec<Cell>)> = Vec::new();
-        for (job, record) in jobs.iter().zip(records) {
-            let mut cells: Vec<Cell> = others.iter().map(|name| job.column(name)).collect();
-            let next = groups.len();
-            let group = *groups.entry(Value::from(cells.clone()).to_string()).or_insert(next);
-            let speed: Vec<Value> = against.iter().map(|name| job.column(name)).collect();
-            let at = speed.first().and_then(Value::as_f64).unwrap_or_default();
-            cells.extend(speed);
-            let s = &record.summary;
-            let peaks = [
-                s.peak_deflection_m,
-                s.peak_uplift_m,
-                s.peak_compression_n,
-                s.peak_tension_n,
-            ];
-            cells.extend(peaks.map(Value::from));
-            rows.push((group, at, cells));
-        }
-        rows.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let columns = others
-            .into_iter()
-            .chain(against)
-            .chain(PEAKS.map(str::to_owned))
-            .collect();
+/// The summary under way.
+#[derive(Debug)]
+pub(super) struct Lines<'a> {
+    axes: Vec<String>,
+    jobs: &'a [Job],
+    outcomes: Outcomes,
+    taken: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// Nothing yet of a study with all its jobs.
+    pub(super) fn new(study: &Study, jobs: &'a [Job]) -> Self {
         Self {
-            columns,
-            rows: rows.into_iter().map(|(_, _, cells)| cells).collect(),
+            axes: axis_names(study),
+            jobs,
+            outcomes: match study.spec.analysis.kind {
+                Kind::Modes => Outcomes::Modes(Vec::new()),
+                Kind::Crossing | Kind::Static => Outcomes::Peaks(Vec::with_capacity(jobs.len())),
+            },
+            taken: 0,
         }
     }
 
-    /// The summary of a study of modes: the axes, then number, frequency and shape of each mode.
-    fn of_modes(study: &Study, jobs: &[Job], records: &[JobRecord]) -> Self {
-        let axes = axis_names(study);
-        let row = |job: &Job, mode: &ModeRow| -> Vec<Cell> {
-            let of_mode = [mode.number.into(), mode.frequency_hz.into(), mode.shape.clone().into()];
-            axes.iter().map(|name| job.column(name)).chain(of_mode).collect()
+    /// Takes what it needs of the records of the next jobs.
+    pub(super) fn append(&mut self, records: &[JobRecord]) {
+        match &mut self.outcomes {
+            Outcomes::Peaks(peaks) => peaks.extend(records.iter().map(|record| {
+                let s = &record.summary;
+                [
+                    s.peak_deflection_m,
+                    s.peak_uplift_m,
+                    s.peak_compression_n,
+                    s.peak_tension_n,
+                ]
+            })),
+            Outcomes::Modes(modes) => {
+                for (job, record) in (self.taken..).zip(records) {
+                    let of_job = record.modes.iter();
+                    modes.extend(of_job.map(|m| (job, m.number, m.frequency_hz, m.shape.clone())));
+                }
+            }
+        }
+        self.taken += records.len();
+    }
+
+    /// The summary of a run: combinations of the other axes in the order of their first job, speeds increasing; modes as
+    /// they are. A job that failed has empty peaks.
+    pub(super) fn summary(self) -> SummaryTable<'a> {
+        let (axes, order, more) = match &self.outcomes {
+            Outcomes::Peaks(peaks) => {
+                let (against, others): (Vec<String>, Vec<String>) =
+                    self.axes.into_iter().partition(|name| name == AGAINST);
+                let order = against_speed(&self.jobs[..peaks.len()], &others, &against);
+                ([others, against].concat(), order, &PEAKS[..])
+            }
+            Outcomes::Modes(modes) => (self.axes, (0..modes.len()).collect(), &MODES[..]),
         };
-        let all = jobs.iter().zip(records);
-        let rows = all.flat_map(|(job, record)| record.modes.iter().map(|mode| row(job, mode)).collect::<Vec<_>>());
-        Self {
-            rows: rows.collect(),
-            columns: [axes, ["number", "frequency_hz", "shape"].map(str::to_owned).to_vec()].concat(),
+        let more = more.iter().map(|name| (*name).to_owned());
+        SummaryTable {
+            columns: axes.iter().cloned().chain(more).collect(),
+            axes,
+            jobs: self.jobs,
+            outcomes: self.outcomes,
+            order,
         }
+    }
+}
+
+/// Places of jobs: combinations of `others` in the order of their first job, `against` increasing.
+fn against_speed(jobs: &[Job], others: &[String], against: &[String]) -> Vec<usize> {
+    // a hash stands for the combination, which may be long and of which there may be as many as jobs
+    let mut groups: HashMap<blake3::Hash, usize> = HashMap::new();
+    let mut keys: Vec<(usize, f64)> = Vec::with_capacity(jobs.len());
+    for job in jobs {
+        let of_group: Vec<Cell> = others.iter().map(|name| job.column(name)).collect();
+        let next = groups.len();
+        let text = Value::from(of_group).to_string();
+        let group = *groups.entry(blake3::hash(text.as_bytes())).or_insert(next);
+        let speed = against.first().and_then(|name| job.column(name).as_f64());
+        keys.push((group, speed.unwrap_or_default()));
+    }
+    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (keys[a], keys[b]);
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    order
+}
+
+impl SummaryTable<'_> {
+    /// Names of the columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
     }
 
-    /// The table as CSV.
-    pub fn csv(&self) -> String {
-        let line = |cells: &mut dyn Iterator<Item = String>| cells.collect::<Vec<_>>().join(",") + "\n";
-        let mut text = line(&mut self.columns.iter().map(|name| quoted(name)));
-        for row in &self.rows {
-            text += &line(&mut row.iter().map(cell));
-        }
-        text
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.order.len()
     }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<Cell>> {
+        self.order.iter().map(|&place| self.row(place))
+    }
+
+    fn row(&self, place: usize) -> Vec<Cell> {
+        let (job, outcomes) = match &self.outcomes {
+            Outcomes::Peaks(peaks) => (place, peaks[place].map(Value::from).to_vec()),
+            Outcomes::Modes(modes) => {
+                let (job, number, frequency_hz, shape) = &modes[place];
+                (
+                    *job,
+                    vec![(*number).into(), (*frequency_hz).into(), shape.as_str().into()],
+                )
+            }
+        };
+        let axes = self.axes.iter().map(|name| self.jobs[job].column(name));
+        axes.chain(outcomes).collect()
+    }
+
+    /// Writes the table as CSV.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_csv(&self, to: impl Write) -> io::Result<()> {
+        let mut to = BufWriter::new(to);
+        write_line(&mut to, self.columns.iter().map(|name| quoted(name)))?;
+        for row in self.rows() {
+            write_line(&mut to, row.iter().map(cell))?;
+        }
+        to.flush()
+    }
+}
+
+fn write_line(to: &mut impl Write, cells: impl Iterator<Item = String>) -> io::Result<()> {
+    let cells: Vec<String> = cells.collect();
+    writeln!(to, "{}", cells.join(","))
 }
 
 fn cell(value: &Cell) -> String {
@@ -119,20 +211,16 @@ mod tests {
 
     #[test]
     fn csv_leaves_nulls_empty_and_quotes_lists() {
-        let table = SummaryTable {
-            columns: vec![
-                "connection".to_owned(),
-                "vehicle.track_y_m".to_owned(),
-                "peak_deflection_m".to_owned(),
-            ],
-            rows: vec![
-                vec![json!("linear"), json!([-1.4, 1.4]), json!(0.25)],
-                vec![json!("linear"), json!([1]), json!(null)],
-            ],
-        };
+        let mut text = Vec::new();
+        for row in [
+            [json!("linear"), json!([-1.4, 1.4]), json!(0.25)],
+            [json!("linear"), json!([1]), json!(null)],
+        ] {
+            write_line(&mut text, row.iter().map(cell)).unwrap();
+        }
         assert_eq!(
-            table.csv(),
-            "connection,vehicle.track_y_m,peak_deflection_m\nlinear,\"[-1.4,1.4]\",0.25\nlinear,[1],\n"
+            String::from_utf8(text).unwrap(),
+            "linear,\"[-1.4,1.4]\",0.25\nlinear,[1],\n"
         );
     }
 }

@@ -1,0 +1,60 @@
+//! Where a study is cut into batches.
+//!
+//! Knows how many rows a job leaves. Does not know threads: the cuts depend on the study and its jobs alone, as the row
+//! groups of the tables follow them.
+
+use crate::plan::{Job, Task};
+use crate::spec::Study;
+
+/// What a batch holds at most; a single job is a batch of its own however many rows it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Batch {
+    /// Jobs.
+    pub most_jobs: usize,
+    /// Rows of all tables.
+    pub most_rows: usize,
+}
+
+impl Default for Batch {
+    /// 4096 jobs: thousands of jobs for each thread, so that the end of a batch, where threads wait for the last job, is
+    /// no part of the time to speak of, and row groups long enough for readers, at 6 kB a job some 25 MB of records.
+    /// 2^18 rows, the table library's own row group, bound the memory where jobs leave histories.
+    fn default() -> Self {
+        Self {
+            most_jobs: 4096,
+            most_rows: 1 << 18,
+        }
+    }
+}
+
+/// Cuts jobs into batches in their order.
+pub(super) fn cut<'a>(study: &'a Study, jobs: &'a [Job], batch: Batch) -> impl Iterator<Item = &'a [Job]> {
+    let mut rest = jobs;
+    std::iter::from_fn(move || {
+        let mut sum = 0_usize;
+        let fits = |job: &&Job| {
+            sum = sum.saturating_add(rows(study, job));
+            sum <= batch.most_rows
+        };
+        let fitting = rest.iter().take(batch.most_jobs).take_while(fits).count();
+        let (taken, left) = rest.split_at(fitting.max(1).min(rest.len()));
+        rest = left;
+        (!taken.is_empty()).then_some(taken)
+    })
+}
+
+/// Rows that a job leaves, those that bisected steps add to its histories apart.
+fn rows(study: &Study, job: &Job) -> usize {
+    let (record, design) = (&study.spec.record, &job.bridge.design);
+    if job.task == Task::Modes {
+        return 1 + job.analysis.spec.count.unwrap_or_default();
+    }
+    let positions = if record.positions { design.positions() } else { 0 };
+    let of_joint = if record.connectors {
+        1 + design.connectors.y_m.len()
+    } else {
+        0
+    };
+    let series = record.histories.positions.len() + record.histories.joints.len();
+    1 + positions + of_joint * design.modules.saturating_sub(1) + series * job.steps()
+}
