@@ -4,6 +4,7 @@
 //! must answer is the same [`Crossing`] with the same [`CrossingResponse`].
 
 mod observe;
+mod operated;
 mod step;
 
 use super::AnalysisError;
@@ -16,6 +17,7 @@ use crate::response::{CrossingResponse, Record};
 use crate::scheme::Scheme;
 use crate::vehicle::Vehicle;
 use observe::Observer;
+pub use operated::{OperatorSolver, REFINEMENTS};
 use std::sync::{Arc, OnceLock};
 use step::{Instant, Stepper};
 

@@ -1,0 +1,375 @@
+//! Crossings through the bridge operator: many at once, one a SIMD lane.
+//!
+//! Knows when a crossing begins, is halved and ends, and what a lane leaves behind. Does not know the step's arithmetic.
+
+use super::{Crossing, CrossingSettings, span};
+use crate::analysis::AnalysisError;
+use crate::bridge::{Bridge, BridgeDesign};
+use crate::connector::Law;
+use crate::operator::{BridgeOperator, Lanes, Level, Passage, Ride, Unsettled, Wheels};
+use crate::response::{CrossingResponse, History, PositionPeaks, Quantity, Record};
+use crate::vehicle::Vehicle;
+use std::sync::{Arc, OnceLock};
+
+/// A bridge operator made ready for crossings at one time step and its halves. Shared read-only between threads.
+#[derive(Debug)]
+pub struct OperatorSolver {
+    design: BridgeDesign,
+    operator: Arc<BridgeOperator>,
+    settings: CrossingSettings,
+    levels: Vec<OnceLock<Level>>,
+}
+
+/// Vehicles that are kept ready at once.
+const VEHICLES_KEPT: usize = 8;
+
+/// How often a whole crossing may be asked for at half the time step.
+pub const REFINEMENTS: usize = 6;
+
+/// A vehicle on the deck, with its small flexibilities at each step length asked for.
+#[derive(Debug)]
+struct Mount {
+    vehicle: Vehicle,
+    wheels: Arc<Wheels>,
+    rides: Vec<Option<Arc<Ride>>>,
+}
+
+/// Crossings under way.
+struct Crew<'a> {
+    solver: &'a OperatorSolver,
+    mounts: Vec<Mount>,
+    lanes: Lanes,
+    /// One lane by itself, for steps that are halved.
+    solo: Option<Lanes>,
+    /// How often the time step is halved from the beginning.
+    refinement: usize,
+}
+
+/// One crossing under way.
+struct Under<'a> {
+    index: usize,
+    vehicle: &'a Vehicle,
+    record: &'a Record,
+    step: usize,
+    before: usize,
+    steps: usize,
+    time_s: Vec<f64>,
+    histories: Vec<History>,
+}
+
+impl OperatorSolver {
+    /// A solver on the operator of `bridge`.
+    pub fn new(bridge: &Bridge, operator: &Arc<BridgeOperator>, settings: &CrossingSettings) -> Self {
+        Self {
+            design: bridge.design().clone(),
+            operator: Arc::clone(operator),
+            settings: *settings,
+            levels: (0..=settings.bisection_limit + REFINEMENTS)
+                .map(|_| OnceLock::new())
+                .collect(),
+        }
+    }
+
+    /// The operator.
+    pub fn operator(&self) -> &BridgeOperator {
+        &self.operator
+    }
+
+    /// Solves one crossing.
+    ///
+    /// # Errors
+    /// As [`CrossingSolver::solve`](super::CrossingSolver::solve).
+    pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
+        let none = || Err(AnalysisError::NotFinite { time_s: 0.0 });
+        self.solve_all(&[(vehicle, crossing)], 0).pop().unwrap_or_else(none)
+    }
+
+    /// Solves crossings side by side, each as if it were alone, at the time step halved `refinement` times (at most
+    /// [`REFINEMENTS`]); answers in their order. Verified by `tests/tests/operator_lanes.rs`.
+    ///
+    /// # Errors
+    /// Of each as [`CrossingSolver::solve`](super::CrossingSolver::solve).
+    pub fn solve_all(
+        &self,
+        crossings: &[(&Vehicle, &Crossing)],
+        refinement: usize,
+    ) -> Vec<Result<CrossingResponse, AnalysisError>> {
+        let most_nodes = crossings
+            .iter()
+            .map(|(vehicle, _)| Wheels::most_nodes_of(&self.operator, vehicle));
+        let mut crew = Crew {
+            solver: self,
+            mounts: Vec::new(),
+            lanes: Lanes::new(
+                &self.operator,
+                most_nodes.max().unwrap_or(0),
+                self.settings.newton_limit,
+            ),
+            solo: None,
+            refinement: refinement.min(REFINEMENTS),
+        };
+        crew.run(crossings)
+    }
+
+    /// The time step after some halvings [s].
+    pub fn time_step_s(&self, halvings: usize) -> f64 {
+        self.settings.time_step_s / (1_u64 << halvings) as f64
+    }
+
+    fn level(&self, halvings: usize) -> &Level {
+        self.levels[halvings].get_or_init(|| {
+            let CrossingSettings {
+                spectral_radius,
+                rayleigh,
+                ..
+            } = self.settings;
+            Level::new(&self.operator, self.time_step_s(halvings), spectral_radius, rayleigh)
+        })
+    }
+}
+
+impl Crew<'_> {
+    fn run(&mut self, crossings: &[(&Vehicle, &Crossing)]) -> Vec<Result<CrossingResponse, AnalysisError>> {
+        let mut answers: Vec<Option<Result<CrossingResponse, AnalysisError>>> = vec![None; crossings.len()];
+        let mut under: Vec<Option<Under<'_>>> = (0..self.lanes.width()).map(|_| None).collect();
+        let mut next = 0;
+        loop {
+            for (lane, of) in under.iter_mut().enumerate() {
+                if of.is_none() && next < crossings.len() {
+                    *of = Some(self.begin(lane, next, crossings[next]));
+                    next += 1;
+                }
+            }
+            if under.iter().all(Option::is_none) {
+                let lost = || Err(AnalysisError::NotFinite { time_s: 0.0 });
+                return answers.into_iter().map(|answer| answer.unwrap_or_else(lost)).collect();
+            }
+            for (lane, of) in under.iter_mut().enumerate() {
+                if let Some(of) = of {
+                    of.step += 1;
+                    self.lanes.place(lane, self.time_s(of));
+                }
+            }
+            let level = self.solver.level(self.refinement);
+            self.lanes
+                .step(&self.solver.operator, level, self.solver.settings.newton_limit);
+            for (lane, slot) in under.iter_mut().enumerate() {
+                let Some(of) = slot else {
+                    continue;
+                };
+                if let Some(ending) = self.after_step(lane, of) {
+                    answers[of.index] = Some(ending);
+                    self.lanes.end(lane);
+                    *slot = None;
+                }
+            }
+        }
+    }
+
+    fn time_s(&self, of: &Under<'_>) -> f64 {
+        self.time_after(of.step, of)
+    }
+
+    fn time_after(&self, steps: usize, of: &Under<'_>) -> f64 {
+        (steps as f64 - of.before as f64) * self.solver.time_step_s(self.refinement)
+    }
+
+    fn begin<'c>(&mut self, lane: usize, index: usize, (vehicle, crossing): (&'c Vehicle, &'c Crossing)) -> Under<'c> {
+        let mount = self.mount(vehicle);
+        let passage = Passage {
+            wheels: Arc::clone(&self.mounts[mount].wheels),
+            ride: self.ride(mount, self.refinement),
+            law: Law {
+                k: crossing.connector_stiffness_n_m,
+                connection: crossing.connection,
+            },
+            load_n: crossing.load_n,
+            speed_m_s: crossing.speed_m_s,
+        };
+        let h = self.solver.time_step_s(self.refinement);
+        let (before, after) = span(
+            self.solver.design.length_m(),
+            vehicle,
+            h,
+            crossing.speed_m_s,
+            crossing.tail_s,
+        );
+        let start_s = -(before as f64) * h;
+        self.lanes.begin(&self.solver.operator, lane, passage, start_s);
+        let mut of = Under {
+            index,
+            vehicle,
+            record: &crossing.record,
+            step: 0,
+            before,
+            steps: before + after,
+            time_s: Vec::new(),
+            histories: crossing.record.histories(),
+        };
+        of.note(start_s, |_, _| 0.0);
+        of
+    }
+
+    /// The place of a vehicle among those kept ready.
+    fn mount(&mut self, vehicle: &Vehicle) -> usize {
+        if let Some(known) = self.mounts.iter().position(|m| m.vehicle == *vehicle) {
+            return known;
+        }
+        let mount = Mount {
+            vehicle: vehicle.clone(),
+            wheels: Arc::new(Wheels::new(&self.solver.operator, vehicle)),
+            rides: Vec::new(),
+        };
+        // lanes hold what they need, so that any other may go
+        if self.mounts.len() == VEHICLES_KEPT {
+            self.mounts.remove(0);
+        }
+        self.mounts.push(mount);
+        self.mounts.len() - 1
+    }
+
+    fn ride(&mut self, mount: usize, halvings: usize) -> Arc<Ride> {
+        let (operator, level) = (&*self.solver.operator, self.solver.level(halvings));
+        let mount = &mut self.mounts[mount];
+        if mount.rides.len() <= halvings {
+            mount.rides.resize(halvings + 1, None);
+        }
+        let ride = mount.rides[halvings].get_or_insert_with(|| Arc::new(Ride::new(operator, level, &mount.wheels)));
+        Arc::clone(ride)
+    }
+
+    /// What is to be done with a lane after its step: halve it where it did not settle, record, finish.
+    fn after_step(&mut self, lane: usize, of: &mut Under<'_>) -> Option<Result<CrossingResponse, AnalysisError>> {
+        let time_s = self.time_s(of);
+        if let Some(stuck) = self.lanes.unsettled(lane) {
+            let mount = self.mount(of.vehicle);
+            let span_s = [self.time_after(of.step - 1, of), time_s];
+            if let Err(error) = self.halve(lane, mount, stuck, span_s) {
+                return Some(Err(error));
+            }
+            if let Some(solo) = &self.solo {
+                of.note(time_s, |quantity, place| read(solo, 0, quantity, place));
+            }
+        } else {
+            let lanes = &self.lanes;
+            of.note(time_s, |quantity, place| read(lanes, lane, quantity, place));
+        }
+        if !self.lanes.is_finite(lane) {
+            return Some(Err(AnalysisError::NotFinite { time_s }));
+        }
+        (of.step == of.steps).then(|| Ok(self.response(lane, of)))
+    }
+
+    /// Does a lane's step again in halves, by itself.
+    fn halve(
+        &mut self,
+        lane: usize,
+        mount: usize,
+        stuck: Unsettled,
+        [from_s, to_s]: [f64; 2],
+    ) -> Result<(), AnalysisError> {
+        let Some(passage) = self.lanes.passage(lane).cloned() else {
+            return Ok(());
+        };
+        let saved = self.lanes.save(lane);
+        let (operator, limit) = (&self.solver.operator, self.solver.settings.newton_limit);
+        let most = passage.wheels.most_nodes();
+        let fits = |solo: &Lanes| solo.most_nodes() >= most;
+        let mut solo = self
+            .solo
+            .take()
+            .filter(fits)
+            .unwrap_or_else(|| Lanes::new(operator, most, limit));
+        solo.resume(0, passage, &saved);
+        let done = self.parts(&mut solo, mount, stuck, from_s, to_s, 0);
+        self.lanes.restore(lane, &solo.save(0));
+        self.solo = Some(solo);
+        done
+    }
+
+    /// The two halves of a step that did not settle after `halvings` halvings.
+    fn parts(
+        &mut self,
+        solo: &mut Lanes,
+        mount: usize,
+        stuck: Unsettled,
+        from_s: f64,
+        to_s: f64,
+        halvings: usize,
+    ) -> Result<(), AnalysisError> {
+        if halvings == self.solver.settings.bisection_limit {
+            let y_m = &self.solver.design.connectors.y_m;
+            return Err(AnalysisError::NotConverged {
+                time_s: to_s,
+                connector: stuck.connector + 1,
+                joint: stuck.connector / y_m.len() + 2,
+                y_m: y_m[stuck.connector % y_m.len()],
+                bisections: halvings,
+            });
+        }
+        let statistics = solo.statistics(0);
+        statistics.bisections += 1;
+        statistics.newton_iterations += stuck.iterations;
+        let level = self.refinement + halvings + 1;
+        let ride = self.ride(mount, level);
+        let middle_s = from_s + 0.5 * (to_s - from_s);
+        for (from_s, to_s) in [(from_s, middle_s), (middle_s, to_s)] {
+            solo.take_ride(0, Arc::clone(&ride));
+            solo.place(0, to_s);
+            solo.step(
+                &self.solver.operator,
+                self.solver.level(level),
+                self.solver.settings.newton_limit,
+            );
+            if let Some(stuck) = solo.unsettled(0) {
+                self.parts(solo, mount, stuck, from_s, to_s, halvings + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn response(&mut self, lane: usize, of: &mut Under<'_>) -> CrossingResponse {
+        let (peaks, design) = (self.lanes.peaks(lane), &self.solver.design);
+        let positions = (1..)
+            .zip(&peaks.positions)
+            .map(|(position, [deflection, uplift])| PositionPeaks {
+                position,
+                x_m: design.position_x_m(position),
+                deflection: *deflection,
+                uplift: *uplift,
+            });
+        CrossingResponse {
+            positions: positions.collect(),
+            joints: peaks.joints(&design.connectors.y_m),
+            peak_edge_deflection_m: peaks.edge_m,
+            peak_roll_rad: peaks.roll_rad,
+            min_contact_force_n: peaks.min_contact_force_n,
+            bottom_emerged: design.draft_m.map(|draft| peaks.bottom_m > draft),
+            deck_submerged: design.freeboard_m.map(|board| peaks.corner_m > board),
+            statistics: *self.lanes.statistics(lane),
+            energy: peaks.energy,
+            history_time_s: std::mem::take(&mut of.time_s),
+            histories: std::mem::take(&mut of.histories),
+        }
+    }
+}
+
+fn read(lanes: &Lanes, lane: usize, quantity: Quantity, place: usize) -> f64 {
+    match quantity {
+        Quantity::Deflection => lanes.deflection_m(lane, place),
+        Quantity::Force => lanes.joint_force_n(lane, place),
+    }
+}
+
+impl Under<'_> {
+    /// Records the histories asked for.
+    fn note(&mut self, time_s: f64, read: impl Fn(Quantity, usize) -> f64) {
+        if self.record.is_empty() {
+            return;
+        }
+        self.time_s.push(time_s);
+        for history in &mut self.histories {
+            history.values.push(read(history.quantity, history.position));
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! The operator of a bridge: modes and residual flexibilities, built once.
+//!
+//! Knows the bridge's matrices and rows. Does not know step lengths, vehicles or connector laws.
+
+use super::cutoff::{Cutoff, Judge};
+use crate::bridge::{Bridge, Track};
+use crate::fem::{Factor, FemError, SparseRow, SymmetricMatrix, lowest_modes};
+use faer::Mat;
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+/// Shift of eigenproblem and flexibilities [1/s^2], the square of 0.1 Hz: a bridge that nothing holds along has an operator
+/// as well. It changes residual flexibilities by less than `SHIFT / omega^2` of themselves, 1e-4 at 10 Hz.
+const SHIFT: f64 = 0.4;
+
+/// Modes computed at first; doubled until enough.
+const FIRST_MODES: usize = 64;
+
+/// Why a bridge has no operator.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum OperatorError {
+    /// The bridge's matrices could not be factorised.
+    #[error(transparent)]
+    Factor(#[from] FemError),
+}
+
+/// Numbers of rows and columns that all parts share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Sizes {
+    /// Modes m.
+    pub modes: usize,
+    /// Connectors.
+    pub connectors: usize,
+    /// Observed rows that are followed through every step.
+    pub observed: usize,
+    /// Stations of the deck's edges inside modules, of each module.
+    pub inside: usize,
+    /// Modules.
+    pub modules: usize,
+}
+
+impl Sizes {
+    /// Columns of a deck row: modes, connectors, observed rows, edges inside modules.
+    pub(super) fn reach(&self) -> usize {
+        self.followed() + self.inside * self.modules
+    }
+
+    /// Of these the ones that are followed through every step.
+    pub(super) fn followed(&self) -> usize {
+        self.modes + self.connectors + self.observed
+    }
+}
+
+/// Where the observed rows stand among each other: positions, deck corners, bottom corners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Observed {
+    pub positions: usize,
+    pub corners: usize,
+    pub bottom_corners: usize,
+}
+
+/// Modes of the connector-free bridge up to a cut-off and the residual flexibilities among connectors, deck and observed
+/// rows. Independent of gaps, connector stiffness, damping, speed, load and vehicle; shared read-only.
+///
+/// `R_ab = a K^-1 b^T - sum of (a phi)(b phi) / omega^2`.
+#[derive(Debug, Clone)]
+pub struct BridgeOperator {
+    pub(super) sizes: Sizes,
+    pub(super) rows: Observed,
+    pub(super) cutoff: Cutoff,
+    /// omega^2 of each mode.
+    pub(super) omega2: Vec<f64>,
+    /// `B Phi`, connectors x modes.
+    pub(super) b: DMatrix<f64>,
+    /// `R_BB`, symmetric to the last bit.
+    pub(super) r_bb: DMatrix<f64>,
+    /// `V Phi`, observed x modes.
+    pub(super) v: DMatrix<f64>,
+    /// `R_VB`, observed x connectors.
+    pub(super) r_vb: DMatrix<f64>,
+    /// Edges inside modules, measured from the straight line between the module's corners: x modes, x connectors.
+    pub(super) inside: DMatrix<f64>,
+    /// See `inside`.
+    pub(super) r_inside_b: DMatrix<f64>,
+    /// For each module the largest `sqrt(sum of phi^2 / omega^2)`, `sqrt(R)` and reach from the deck of these rows.
+    pub(super) inside_bounds: Vec<[f64; 3]>,
+    /// Place of each station inside a module, 0 to 1.
+    pub(super) places: Vec<f64>,
+    /// For each track column its reach: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
+    pub(super) deck: Vec<f64>,
+    /// Residual flexibility of the deck's nodes among each other, for each track column every line at the stations not
+    /// farther than [`BridgeOperator::near`]; farther ones are left out.
+    pub(super) r_deck: Vec<f64>,
+    /// Stations of a module.
+    pub(super) near: usize,
+    pub(super) track: Track,
+    pub(super) breadth_m: f64,
+}
+
+impl BridgeOperator {
+    /// Builds the operator; modes are added until the residual's dynamic part is within `tolerance` (see [`Cutoff`]), every
+    /// mode there is where it is 0. Verified by `tests/tests/operator.rs` and `tests/tests/operator_accuracy.rs`.
+    ///
+    /// # Errors
+    /// [`OperatorError::Factor`].
+    pub fn new(bridge: &Bridge, tolerance: f64) -> Result<Self, OperatorError> {
+        let factor = Factor::new(&shifted(bridge)?)?;
+        let track = Track::new(bridge);
+        let mut count = FIRST_MODES.min(bridge.dofs());
+        let judged = judged_rows(bridge, &track);
+        let solved = columns(&factor, &judged);
+        let judge_of = |row: usize, column: &[f64]| judged[row].dot(column);
+        let flexibility = (0..judged.len()).map(|i| judge_of(i, column(&solved, i))).collect();
+        let dynamic = (0..judged.len())
+            .map(|i| bridge.m.form(column(&solved, i), column(&solved, i)))
+            .collect();
+        let mut judge = Judge {
+            flexibility,
+            dynamic,
+            shapes: Mat::zeros(0, 0),
+        };
+        loop {
+            let pairs = lowest_modes(&bridge.k, &bridge.m, count, SHIFT)?;
+            judge.shapes = Mat::from_fn(judged.len(), pairs.lambda.len(), |i, k| {
+                dot(&judged[i], &pairs.shapes, k)
+            });
+            match judge.fewest(&pairs, SHIFT, tolerance) {
+                Ok(cutoff) => return Ok(Self::of(bridge, track, &factor, &pairs.lambda, &pairs.shapes, cutoff)),
+                // every mode there is: nothing is left out but rounding
+                Err(cutoff) if count >= bridge.dofs() => {
+                    return Ok(Self::of(bridge, track, &factor, &pairs.lambda, &pairs.shapes, cutoff));
+                }
+                Err(_) => count = (2 * count).min(bridge.dofs()),
+            }
+        }
+    }
+
+    /// The operator with the modes that a cut-off keeps.
+    fn of(bridge: &Bridge, track: Track, factor: &Factor, lambda: &[f64], shapes: &Mat<f64>, cutoff: Cutoff) -> Self {
+        let m = cutoff.modes;
+        let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
+        let design = bridge.design();
+        let mut observed = bridge.positions.clone();
+        observed.extend(bridge.deck_corners.iter().cloned());
+        let bottom: &[SparseRow] = if design.draft_m.is_some() {
+            &bridge.bottom_corners
+        } else {
+            &[]
+        };
+        observed.extend(bottom.iter().cloned());
+        let (places, inside) = inside(bridge);
+        let rows = Observed {
+            positions: bridge.positions.len(),
+            corners: bridge.deck_corners.len(),
+            bottom_corners: bottom.len(),
+        };
+        let sizes = Sizes {
+            modes: m,
+            connectors: connectors.len(),
+            observed: observed.len(),
+            inside: inside.len() / design.modules,
+            modules: design.modules,
+        };
+        let modal = |rows: &[SparseRow]| DMatrix::from_fn(rows.len(), m, |i, k| dot(&rows[i], shapes, k));
+        let (b, v, d) = (modal(&connectors), modal(&observed), modal(&inside));
+        let all: Vec<SparseRow> = [&connectors, &observed, &inside]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .collect();
+        let solved = columns(factor, &all);
+        let modal_of = |i: usize, k: usize| match (i.checked_sub(b.nrows()), i.checked_sub(b.nrows() + v.nrows())) {
+            (None, _) => b[(i, k)],
+            (Some(i), None) => v[(i, k)],
+            (_, Some(i)) => d[(i, k)],
+        };
+        // R between a row with its modal values and one of `all`
+        let residual = |row: &SparseRow, own: &dyn Fn(usize) -> f64, other: usize| {
+            let whole = row.dot(column(&solved, other));
+            let of_modes: f64 = (0..m).map(|k| own(k) * modal_of(other, k) / (lambda[k] + SHIFT)).sum();
+            whole - of_modes
+        };
+        let among = |i: usize, j: usize| residual(&all[i], &|k| modal_of(i, k), j);
+        let (nc, nv) = (sizes.connectors, sizes.observed);
+        let deck: Vec<f64> = (0..track.lines() * track.stations())
+            .flat_map(|c| {
+                let row = SparseRow(vec![(track.dof(c), 1.0)]);
+                let phi: Vec<f64> = (0..m).map(|k| shapes[(track.dof(c), k)]).collect();
+                let r: Vec<f64> = (0..all.len()).map(|j| residual(&row, &|k| phi[k], j)).collect();
+                [phi, r].concat()
+            })
+            .collect();
+        let near = track.stations() / design.modules;
+        let r_deck = residual_of_deck(factor, &track, shapes, &lambda[..m], near);
+        let inside_bounds = (0..design.modules)
+            .map(|j| {
+                let own = j * sizes.inside..(j + 1) * sizes.inside;
+                let modal = |i: usize| (0..m).map(|k| d[(i, k)].powi(2) / lambda[k].max(1.0)).sum::<f64>();
+                let reach = deck
+                    .chunks_exact(sizes.reach())
+                    .flat_map(|r| &r[sizes.followed()..][own.clone()]);
+                [
+                    own.clone().map(modal).fold(0.0, f64::max).sqrt(),
+                    own.clone()
+                        .map(|i| among(nc + nv + i, nc + nv + i))
+                        .fold(0.0, f64::max)
+                        .sqrt(),
+                    reach.fold(0.0, |most, r| r.abs().max(most)),
+                ]
+            })
+            .collect();
+        Self {
+            sizes,
+            rows,
+            cutoff,
+            omega2: lambda[..m].to_vec(),
+            r_bb: DMatrix::from_fn(nc, nc, |i, j| among(i.min(j), i.max(j))),
+            r_vb: DMatrix::from_fn(nv, nc, |i, j| among(nc + i, j)),
+            r_inside_b: DMatrix::from_fn(inside.len(), nc, |i, j| among(nc + nv + i, j)),
+            inside_bounds,
+            r_deck,
+            near,
+            breadth_m: design.module.breadth_m,
+            b,
+            v,
+            inside: d,
+            places,
+            deck,
+            track,
+        }
+    }
+
+    /// What was left out.
+    pub fn cutoff(&self) -> Cutoff {
+        self.cutoff
+    }
+
+    /// R of two track columns.
+    pub(super) fn residual(&self, column: usize, other: usize) -> f64 {
+        let (lines, stations) = (self.track.lines(), self.track.stations());
+        let (s, t) = (column % stations, other % stations);
+        if s.abs_diff(t) > self.near {
+            return 0.0;
+        }
+        self.r_deck[(column * lines + other / stations) * (2 * self.near + 1) + t + self.near - s]
+    }
+
+    /// The reach of a track column: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
+    pub(super) fn reach(&self, column: usize) -> &[f64] {
+        let width = self.sizes.reach();
+        &self.deck[column * width..][..width]
+    }
+}
+
+/// R among the deck's nodes: for each column `lines * (2 near + 1)` numbers.
+fn residual_of_deck(factor: &Factor, track: &Track, shapes: &Mat<f64>, lambda: &[f64], near: usize) -> Vec<f64> {
+    let (lines, stations, width) = (track.lines(), track.stations(), 2 * near + 1);
+    let mut all = vec![0.0; lines * stations * lines * width];
+    // rows of phi / sqrt(lambda + SHIFT), side by side
+    let scaled: Vec<Vec<f64>> = (0..lines * stations)
+        .map(|c| {
+            (0..lambda.len())
+                .map(|k| shapes[(track.dof(c), k)] / (lambda[k] + SHIFT).sqrt())
+                .collect()
+        })
+        .collect();
+    for line in 0..lines {
+        let rows: Vec<SparseRow> = (0..stations)
+            .map(|s| SparseRow(vec![(track.dof(line * stations + s), 1.0)]))
+            .collect();
+        let solved = columns(factor, &rows);
+        for s in 0..stations {
+            let (own, whole) = (line * stations + s, column(&solved, s));
+            for other_line in 0..lines {
+                for t in s.saturating_sub(near)..(s + near + 1).min(stations) {
+                    let other = other_line * stations + t;
+                    let modal: f64 = scaled[own].iter().zip(&scaled[other]).map(|(a, b)| a * b).sum();
+                    all[(own * lines + other_line) * width + t + near - s] = whole[track.dof(other)] - modal;
+                }
+            }
+        }
+    }
+    all
+}
+
+/// `K + SHIFT M`.
+fn shifted(bridge: &Bridge) -> Result<SymmetricMatrix, FemError> {
+    SymmetricMatrix::combine(&[(1.0, &bridge.k), (SHIFT, &bridge.m)])
+}
+
+/// Connectors, and the deck's nodes at every other station on edges and centre.
+fn judged_rows(bridge: &Bridge, track: &Track) -> Vec<SparseRow> {
+    let mut rows: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
+    let (lines, stations) = (track.lines(), track.stations());
+    for line in [0, lines / 2, lines - 1] {
+        let of_line = (0..stations).step_by(2).map(|s| track.dof(line * stations + s));
+        rows.extend(of_line.map(|dof| SparseRow(vec![(dof, 1.0)])));
+    }
+    rows
+}
+
+/// Stations of the deck's edges inside modules, module after module, right and left edge in turn, each measured from the
+/// straight line between its module's corners; and their places in a module.
+fn inside(bridge: &Bridge) -> (Vec<f64>, Vec<SparseRow>) {
+    let design = bridge.design();
+    let along = bridge.sections.len() / design.modules;
+    let l = design.module.length_m;
+    let places: Vec<f64> = bridge.sections[..along].iter().map(|(x, _)| x / l).collect();
+    let mut rows = Vec::new();
+    for j in 0..design.modules {
+        for (ix, place) in places.iter().enumerate().take(along - 1).skip(1) {
+            for side in 0..2 {
+                let edge = |ix: usize| &bridge.edges[2 * (j * along + ix) + side];
+                let straight = [(place - 1.0, edge(0)), (-place, edge(along - 1)), (1.0, edge(ix))];
+                rows.push(SparseRow::combine(&straight));
+            }
+        }
+    }
+    (places[1..along - 1].to_vec(), rows)
+}
+
+/// `A^-1 r^T` of each row.
+fn columns(factor: &Factor, rows: &[SparseRow]) -> Mat<f64> {
+    let mut columns = Mat::<f64>::zeros(factor.order(), rows.len());
+    for (j, row) in rows.iter().enumerate() {
+        for &(i, v) in &row.0 {
+            columns[(i, j)] += v;
+        }
+    }
+    factor.solve_columns(columns.as_mut());
+    columns
+}
+
+fn column(columns: &Mat<f64>, j: usize) -> &[f64] {
+    columns.col(j).try_as_col_major().map_or(&[], |c| c.as_slice())
+}
+
+fn dot(row: &SparseRow, shapes: &Mat<f64>, k: usize) -> f64 {
+    row.0.iter().map(|&(i, v)| v * shapes[(i, k)]).sum()
+}

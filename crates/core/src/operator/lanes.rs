@@ -1,0 +1,454 @@
+//! Crossings side by side: the motion of each, one a SIMD lane.
+//!
+//! Knows the state that a crossing carries from step to step, and how a lane is begun, saved and taken elsewhere. Does not
+//! know the step's arithmetic or when a crossing ends.
+
+use super::basis::{BridgeOperator, Sizes};
+use super::panel::InstructionPath;
+use super::riders::{Beside, Free, Riders};
+use super::settle::{Small, Unsettled};
+use super::watch::Watch;
+use super::wheels::{Ride, Wheels};
+use crate::connector::{Law, State};
+use crate::response::Statistics;
+use std::sync::Arc;
+
+/// One crossing as its lane knows it.
+#[derive(Debug, Clone)]
+pub struct Passage {
+    /// The vehicle on the deck.
+    pub wheels: Arc<Wheels>,
+    /// Its small flexibilities at the step length.
+    pub ride: Arc<Ride>,
+    /// The connectors' law.
+    pub law: Law,
+    /// Weight of the vehicle [N].
+    pub load_n: f64,
+    /// Speed [m/s].
+    pub speed_m_s: f64,
+}
+
+/// What a lane has beside its numbers.
+#[derive(Debug)]
+pub(super) struct Lane {
+    pub passage: Option<Passage>,
+    /// Place of the vehicle's front at the end of the step under way [m], and the time then [s].
+    pub front_x_m: f64,
+    pub time_s: f64,
+    pub small: Small,
+    pub riders: Riders,
+    /// Weight on each axle that is on the bridge [N], and whether all its points are.
+    pub axles: Vec<(f64, bool)>,
+    pub inertia: Vec<f64>,
+    /// Downward forces on stations: line, station, force; lines of the weights, then of the masses.
+    pub weights: Vec<(usize, usize, f64)>,
+    pub masses: Vec<(usize, usize, f64)>,
+    /// Steps since the vehicle left, up to two: by then all traces of its load are zero.
+    pub unloaded: u8,
+    pub statistics: Statistics,
+    pub unsettled: Option<Unsettled>,
+}
+
+/// Numbers that a lane carries from step to step: for each row one a lane, side by side.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Motion {
+    /// Modes: `q, q', q''`, the modal forces of the connectors.
+    pub q: Vec<f64>,
+    pub v: Vec<f64>,
+    pub a: Vec<f64>,
+    pub contact: Vec<f64>,
+    /// Downward weights and inertia forces as modes, connectors and observed rows see them.
+    pub weights: Vec<f64>,
+    pub inertia: Vec<f64>,
+    /// Connector forces as what the modes leave out has followed them, `s, s', s''`, and `R_BB` times these.
+    pub s: [Vec<f64>; 3],
+    pub sigma: [Vec<f64>; 3],
+    /// Displacements of connectors and observed rows by deck loads, beside the modes, and their derivatives.
+    pub r: [Vec<f64>; 3],
+    /// Connectors: force N, `R_BB N`, elongation.
+    pub n: Vec<f64>,
+    pub rn: Vec<f64>,
+    pub e: Vec<f64>,
+    /// Energies at the end of the step [J]: kinetic, strain, connectors.
+    pub kinetic: Vec<f64>,
+    pub strain: Vec<f64>,
+    pub springs: Vec<f64>,
+}
+
+impl Motion {
+    fn new(sizes: &Sizes, lanes: usize) -> Self {
+        let of = |rows: usize| vec![0.0; rows * lanes];
+        let (m, nc, nv) = (sizes.modes, sizes.connectors, sizes.observed);
+        Self {
+            q: of(m),
+            v: of(m),
+            a: of(m),
+            contact: of(m),
+            weights: of(sizes.followed()),
+            inertia: of(sizes.followed()),
+            s: [(); 3].map(|()| of(nc)),
+            sigma: [(); 3].map(|()| of(nc)),
+            r: [(); 3].map(|()| of(nc + nv)),
+            n: of(nc),
+            rn: of(nc),
+            e: of(nc),
+            kinetic: of(1),
+            strain: of(1),
+            springs: of(1),
+        }
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let Self {
+            q,
+            v,
+            a,
+            contact,
+            weights,
+            inertia,
+            s,
+            sigma,
+            r,
+            n,
+            rn,
+            e,
+            kinetic,
+            strain,
+            springs,
+        } = self;
+        [q, v, a, contact, weights, inertia, n, rn, e, kinetic, strain, springs]
+            .into_iter()
+            .chain(s)
+            .chain(sigma)
+            .chain(r)
+    }
+}
+
+/// Numbers of the step under way.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    pub weights: Vec<f64>,
+    pub inertia: Vec<f64>,
+    pub contact: Vec<f64>,
+    pub d: Vec<f64>,
+    pub ds: Vec<f64>,
+    pub dsigma: Vec<f64>,
+    pub dr: Vec<f64>,
+    pub n: Vec<f64>,
+    pub rn: Vec<f64>,
+    pub e: Vec<f64>,
+    /// Free motion of the modes.
+    pub free: [Vec<f64>; 3],
+    /// `[q; s]`, observed rows.
+    pub x: Vec<f64>,
+    pub w: Vec<f64>,
+    pub inside: Vec<f64>,
+    /// `sum of omega^2 q^2`.
+    pub modal_strain: Vec<f64>,
+    /// One lane's reach.
+    pub reach: Vec<f64>,
+    pub lane_free: Free,
+    /// One lane's connector forces.
+    pub lane_n: Vec<f64>,
+    pub active: Vec<usize>,
+}
+
+/// Crossings side by side on one operator.
+#[derive(Debug)]
+pub struct Lanes {
+    pub(super) width: usize,
+    most_nodes: usize,
+    /// `1 / (2 k)` of the connectors at work.
+    pub(super) half_compliance: Vec<f64>,
+    pub(super) motion: Motion,
+    pub(super) watch: Watch,
+    pub(super) lanes: Vec<Lane>,
+    pub(super) scratch: Scratch,
+}
+
+/// A lane's numbers by themselves.
+#[derive(Debug, Clone)]
+pub struct Saved {
+    numbers: Vec<f64>,
+    states: Vec<State>,
+    beside: Vec<Beside>,
+    masses: Vec<(usize, usize, f64)>,
+    statistics: Statistics,
+}
+
+impl Lanes {
+    /// As many lanes as this machine's vectors have, with room for vehicles of `most_nodes` nodes.
+    pub fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
+        let width = InstructionPath::of_this_machine().lanes;
+        let sizes = &operator.sizes;
+        let of = |rows: usize| vec![0.0; rows * width];
+        let (m, nc, nv) = (sizes.modes, sizes.connectors, sizes.observed);
+        let lane = || Lane {
+            passage: None,
+            front_x_m: 0.0,
+            time_s: 0.0,
+            small: Small::new(nc, most_nodes, newton_limit),
+            riders: Riders::new(nc, most_nodes),
+            axles: Vec::new(),
+            inertia: Vec::new(),
+            weights: Vec::with_capacity(most_nodes),
+            masses: Vec::with_capacity(most_nodes),
+            unloaded: 0,
+            statistics: Statistics::default(),
+            unsettled: None,
+        };
+        Self {
+            width,
+            most_nodes,
+            half_compliance: of(1),
+            motion: Motion::new(sizes, width),
+            watch: Watch::new(operator, width),
+            lanes: (0..width).map(|_| lane()).collect(),
+            scratch: Scratch {
+                weights: of(sizes.followed()),
+                inertia: of(sizes.followed()),
+                contact: of(m),
+                d: of(m),
+                ds: of(nc),
+                dsigma: of(nc),
+                dr: of(nc + nv),
+                n: of(nc),
+                rn: of(nc),
+                e: of(nc),
+                free: [(); 3].map(|()| of(m)),
+                x: of(m + nc),
+                w: of(nv),
+                inside: of(sizes.inside),
+                modal_strain: of(1),
+                reach: vec![0.0; sizes.followed()],
+                lane_free: Free {
+                    q: vec![0.0; m],
+                    v: vec![0.0; m],
+                    a: vec![0.0; m],
+                },
+                lane_n: vec![0.0; nc],
+                active: Vec::with_capacity(nc),
+            },
+        }
+    }
+
+    /// Number of lanes.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Lanes that are free.
+    pub fn is_free(&self, lane: usize) -> bool {
+        self.lanes[lane].passage.is_none()
+    }
+
+    /// Begins a crossing at rest, the front of the vehicle where it is one step before the first one.
+    pub fn begin(&mut self, operator: &BridgeOperator, lane: usize, passage: Passage, time_s: f64) {
+        self.rest(lane);
+        self.watch.begin(lane);
+        let of = &mut self.lanes[lane];
+        of.small.forget();
+        of.small.states.fill(passage.law.state(0.0));
+        of.statistics = Statistics::default();
+        of.unloaded = 0;
+        of.riders.put_beside(&[]);
+        of.masses.clear();
+        of.axles = vec![(0.0, true); passage.wheels.vehicle.axles];
+        of.inertia = vec![0.0; passage.wheels.vehicle.axles];
+        self.half_compliance[lane] = half_compliance(&passage.law);
+        of.passage = Some(passage);
+        self.place(lane, time_s);
+        self.weigh(operator, lane);
+        let weights = &mut self.motion.weights;
+        for (numbers, now) in weights
+            .chunks_exact_mut(self.width)
+            .zip(self.scratch.weights.chunks_exact(self.width))
+        {
+            numbers[lane] = now[lane];
+        }
+    }
+
+    /// Says where a lane's vehicle is at the end of the coming step.
+    pub fn place(&mut self, lane: usize, time_s: f64) {
+        let of = &mut self.lanes[lane];
+        of.time_s = time_s;
+        of.front_x_m = of.passage.as_ref().map_or(0.0, |p| p.speed_m_s * time_s);
+    }
+
+    /// Frees a lane, which then rests.
+    pub fn end(&mut self, lane: usize) {
+        self.rest(lane);
+        let of = &mut self.lanes[lane];
+        of.passage = None;
+        of.weights.clear();
+        of.masses.clear();
+    }
+
+    /// Zeros in a lane.
+    fn rest(&mut self, lane: usize) {
+        let now = &mut self.scratch;
+        let step = [&mut now.weights, &mut now.inertia, &mut now.n, &mut now.e];
+        for numbers in self.motion.all().chain(self.watch.all()).chain(step) {
+            numbers.iter_mut().skip(lane).step_by(self.width).for_each(|x| *x = 0.0);
+        }
+    }
+
+    /// Whether a lane's last step found no equilibrium; it then stands where it stood before.
+    pub fn unsettled(&self, lane: usize) -> Option<Unsettled> {
+        self.lanes[lane].unsettled
+    }
+
+    /// Whether a lane's energies are finite.
+    pub fn is_finite(&self, lane: usize) -> bool {
+        self.motion.kinetic[lane].is_finite() && self.motion.strain[lane].is_finite()
+    }
+
+    /// What the solver did in a lane.
+    pub fn statistics(&mut self, lane: usize) -> &mut Statistics {
+        &mut self.lanes[lane].statistics
+    }
+
+    /// A lane's numbers.
+    pub fn save(&mut self, lane: usize) -> Saved {
+        let width = self.width;
+        let numbers = self.motion.all().chain(self.watch.all());
+        Saved {
+            numbers: numbers
+                .flat_map(|x| x.iter().skip(lane).step_by(width).copied())
+                .collect(),
+            states: self.lanes[lane].small.states.clone(),
+            beside: self.lanes[lane].riders.beside().to_vec(),
+            masses: self.lanes[lane].masses.clone(),
+            statistics: self.lanes[lane].statistics,
+        }
+    }
+
+    /// Puts numbers back into a lane, or into another of the same operator.
+    pub fn restore(&mut self, lane: usize, saved: &Saved) {
+        let width = self.width;
+        let places = self.motion.all().chain(self.watch.all());
+        let places = places.flat_map(|x| x.iter_mut().skip(lane).step_by(width));
+        places.zip(&saved.numbers).for_each(|(x, saved)| *x = *saved);
+        let of = &mut self.lanes[lane];
+        of.small.forget();
+        of.small.states.copy_from_slice(&saved.states);
+        of.statistics = saved.statistics;
+        of.riders.put_beside(&saved.beside);
+        of.masses.clone_from(&saved.masses);
+        // the load's traces in the step under way are written anew
+        of.unloaded = 0;
+    }
+
+    /// Takes up a crossing that was saved elsewhere, with the small flexibilities of its step length.
+    pub fn resume(&mut self, lane: usize, passage: Passage, saved: &Saved) {
+        // a crossing without riding masses writes no inertia forces, so that none may be left of the one before
+        self.rest(lane);
+        let of = &mut self.lanes[lane];
+        of.axles = vec![(0.0, true); passage.wheels.vehicle.axles];
+        of.inertia = vec![0.0; passage.wheels.vehicle.axles];
+        self.half_compliance[lane] = half_compliance(&passage.law);
+        of.passage = Some(passage);
+        self.restore(lane, saved);
+    }
+
+    /// Changes to another step length.
+    pub fn take_ride(&mut self, lane: usize, ride: Arc<Ride>) {
+        let of = &mut self.lanes[lane];
+        of.small.forget();
+        if let Some(passage) = &mut of.passage {
+            passage.ride = ride;
+        }
+    }
+
+    /// Nodes of the largest vehicle that has room.
+    pub fn most_nodes(&self) -> usize {
+        self.most_nodes
+    }
+
+    /// The passage of a lane.
+    pub fn passage(&self, lane: usize) -> Option<&Passage> {
+        self.lanes[lane].passage.as_ref()
+    }
+
+    /// Downward weights on the deck at the vehicle's place, as modes, connectors and observed rows see them.
+    #[inline(always)]
+    pub(super) fn weigh(&mut self, operator: &BridgeOperator, lane: usize) {
+        let width = self.width;
+        let Lane {
+            passage: Some(passage),
+            axles,
+            weights,
+            unloaded,
+            front_x_m,
+            ..
+        } = &mut self.lanes[lane]
+        else {
+            return;
+        };
+        let wheels = &*passage.wheels;
+        axles.fill((0.0, true));
+        weights.clear();
+        for (line, of) in wheels.weights.iter().enumerate() {
+            let own = weights.len();
+            for &(ahead_m, share, axle) in &of.points {
+                let Some(place) = operator.track.along(*front_x_m + ahead_m) else {
+                    axles[axle].1 = false;
+                    continue;
+                };
+                let w = passage.load_n * share;
+                axles[axle].0 += w * of.lines.len() as f64;
+                for (station, part) in [(place.station, 1.0 - place.part), (place.station + 1, place.part)] {
+                    match weights[own..].iter_mut().rev().find(|(_, s, _)| *s == station) {
+                        Some((_, _, sum)) => *sum += w * part,
+                        None => weights.push((line, station, w * part)),
+                    }
+                }
+            }
+        }
+        if weights.is_empty() {
+            if *unloaded < 2 {
+                *unloaded += 1;
+                for numbers in [&mut self.scratch.weights, &mut self.scratch.inertia] {
+                    numbers.iter_mut().skip(lane).step_by(width).for_each(|x| *x = 0.0);
+                }
+            }
+            return;
+        }
+        *unloaded = 0;
+        spread(&wheels.weights, wheels.width, weights, &mut self.scratch.reach);
+        scatter(&self.scratch.reach, &mut self.scratch.weights, lane, width);
+    }
+}
+
+fn half_compliance(law: &Law) -> f64 {
+    let at_work = match law.state(0.0) {
+        State::Both => State::Both,
+        _ => State::Tension,
+    };
+    0.5 / law.line(at_work).k
+}
+
+/// `reach := sum of forces times the reach of their stations`.
+#[inline(always)]
+pub(super) fn spread(
+    lines: &[super::wheels::WheelLine],
+    width: usize,
+    forces: &[(usize, usize, f64)],
+    reach: &mut [f64],
+) {
+    reach.fill(0.0);
+    for &(line, station, force) in forces {
+        let of = &lines[line].reach(station, width)[..reach.len()];
+        for (sum, x) in reach.iter_mut().zip(of) {
+            *sum = force.mul_add(*x, *sum);
+        }
+    }
+}
+
+/// Writes a lane's numbers between those of the others.
+#[inline(always)]
+pub(super) fn scatter(numbers: &[f64], to: &mut [f64], lane: usize, width: usize) {
+    for (to, x) in to.chunks_exact_mut(width).zip(numbers) {
+        to[lane] = *x;
+    }
+}

@@ -1,0 +1,113 @@
+//! What one step length makes of an operator.
+//!
+//! Knows the scheme, damping, and the small flexibilities of a step. Does not know gaps, speeds or loads.
+
+use super::basis::BridgeOperator;
+use super::panel::Panel;
+use crate::scheme::{Rayleigh, Scheme};
+use nalgebra::DMatrix;
+
+/// Constants of a step, one a mode where they are lists. With `d = q_1 - q_0`, a mode steps by
+///
+/// `d = on_q q_0 + on_v v_0 + on_a a_0 + c f`, `c = 1 / ((1 - alpha_m) c_a + (1 - alpha_f) (c_v (a omega^2 + b) + omega^2))`,
+///
+/// f the forces in the balance at alpha; what the modes leave out by the same rule without mass, stiffness 1 and damping a:
+/// `ds = rho (f - s_0 - on_s1 s'_0 - on_s2 s''_0)`.
+#[derive(Debug)]
+pub struct Level {
+    pub(super) scheme: Scheme,
+    pub(super) rayleigh: Rayleigh,
+    pub(super) c: Vec<f64>,
+    pub(super) on_q: Vec<f64>,
+    pub(super) on_v: Vec<f64>,
+    pub(super) on_a: Vec<f64>,
+    pub(super) rho: f64,
+    pub(super) on_s1: f64,
+    pub(super) on_s2: f64,
+    /// Flexibility among connectors that the modes give to a step, `B Phi c Phi^T B^T`, without what they leave out.
+    pub(super) modal: DMatrix<f64>,
+    /// With it: `modal + rho R_BB`.
+    pub(super) among: DMatrix<f64>,
+    /// Products with lanes.
+    pub(super) panels: Panels,
+}
+
+/// The operator's matrices, laid out for lanes.
+#[derive(Debug)]
+pub(super) struct Panels {
+    /// `B Phi`.
+    pub b: Panel,
+    /// Its transpose.
+    pub b_t: Panel,
+    /// `R_BB`.
+    pub r_bb: Panel,
+    /// `[V Phi, -R_VB]`.
+    pub v: Panel,
+    /// The same of the edges inside each module.
+    pub inside: Vec<Panel>,
+}
+
+impl Level {
+    /// The constants of steps of length `time_step_s` with a spectral radius and damping.
+    pub fn new(operator: &BridgeOperator, time_step_s: f64, spectral_radius: f64, rayleigh: Rayleigh) -> Self {
+        let s = Scheme::new(time_step_s, spectral_radius);
+        let Rayleigh { a, b } = rayleigh;
+        let (c_m, c_c, c_k) = s.effective();
+        // the balance at alpha without d: velocity y_v = at_v v + at_a a, acceleration with the weights of M
+        let (at_v, at_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
+        let m_v = (1.0 - s.alpha_m) * s.a_v + b * at_v;
+        let m_a = (1.0 - s.alpha_m) * s.a_a + s.alpha_m + b * at_a;
+        let c: Vec<f64> = operator
+            .omega2
+            .iter()
+            .map(|w2| 1.0 / (c_m + c_c * (a * w2 + b) + c_k * w2))
+            .collect();
+        let each = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            c.iter().zip(&operator.omega2).map(|(c, w2)| -c * of(*w2)).collect()
+        };
+        let rho = 1.0 / (c_k + c_c * a);
+        let nc = operator.sizes.connectors;
+        let b_phi = &operator.b;
+        let modal = DMatrix::from_fn(nc, nc, |i, j| {
+            let terms = c.iter().enumerate().map(|(k, c)| c * (b_phi[(i, k)] * b_phi[(j, k)]));
+            terms.sum()
+        });
+        Self {
+            scheme: s,
+            rayleigh,
+            on_q: each(&|w2| w2),
+            on_v: each(&|w2| a * w2 * at_v + m_v),
+            on_a: each(&|w2| a * w2 * at_a + m_a),
+            rho,
+            on_s1: a * at_v,
+            on_s2: a * at_a,
+            among: &modal + rho * &operator.r_bb,
+            modal,
+            c,
+            panels: Panels::new(operator),
+        }
+    }
+}
+
+impl Panels {
+    fn new(o: &BridgeOperator) -> Self {
+        let (m, nc) = (o.sizes.modes, o.sizes.connectors);
+        let with_residual = |phi: &DMatrix<f64>, r: &DMatrix<f64>, from: usize, rows: usize| {
+            Panel::new(rows, m + nc, |i, k| {
+                if k < m {
+                    phi[(from + i, k)]
+                } else {
+                    -r[(from + i, k - m)]
+                }
+            })
+        };
+        let of_module = |j: usize| with_residual(&o.inside, &o.r_inside_b, j * o.sizes.inside, o.sizes.inside);
+        Self {
+            b: Panel::new(nc, m, |i, k| o.b[(i, k)]),
+            b_t: Panel::new(m, nc, |k, i| o.b[(i, k)]),
+            r_bb: Panel::new(nc, nc, |i, j| o.r_bb[(i, j)]),
+            v: with_residual(&o.v, &o.r_vb, 0, o.sizes.observed),
+            inside: (0..o.sizes.modules).map(of_module).collect(),
+        }
+    }
+}

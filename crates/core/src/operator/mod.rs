@@ -1,0 +1,32 @@
+//! The bridge operator: what never changes between the crossings of one bridge, taken out of the loop.
+//!
+//! Knows the modes of the connector-free bridge, the flexibility that they leave out, and how many crossings step through
+//! them side by side, one a SIMD lane. Does not know when a crossing begins or ends, nor what it reports.
+//!
+//! `u = Phi q + K^-1 (what the modes leave out)`: the modes obey `q'' + (a omega^2 + b) q' + omega^2 q = Phi^T f`, the
+//! rest answers without mass, `K (u + a u') = f`, which leaves residual flexibilities R between connectors B, deck L and
+//! observed rows V. [`BridgeOperator`] holds them, [`Level`] what one step length makes of them, [`Wheels`] what a
+//! vehicle sees of the deck, [`Lanes`] the motion.
+
+mod basis;
+mod cutoff;
+mod lanes;
+mod level;
+mod panel;
+mod parts;
+mod riders;
+mod settle;
+mod step;
+mod vector;
+mod watch;
+mod wheels;
+
+pub use basis::{BridgeOperator, OperatorError};
+pub use cutoff::Cutoff;
+pub use lanes::{Lanes, Passage, Saved};
+pub use level::Level;
+pub use panel::InstructionPath;
+pub use parts::{OperatorParts, SOURCES};
+pub use settle::Unsettled;
+pub use watch::LanePeaks;
+pub use wheels::{Ride, Wheels};

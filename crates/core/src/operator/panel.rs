@@ -1,0 +1,109 @@
+//! Dense matrices laid out for lanes: each entry is met by a vector of lanes, eight rows at a time.
+//!
+//! Knows rows, columns and vectors of lanes. Does not know what the numbers mean.
+
+use super::vector::Ops;
+use pulp::{Arch, Simd, WithSimd};
+
+/// Rows that are summed side by side.
+const ROWS: usize = 8;
+
+/// A matrix in blocks of eight rows, each block column by column.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Panel {
+    rows: usize,
+    columns: usize,
+    data: Vec<f64>,
+}
+
+impl Panel {
+    /// The matrix with entries `of(row, column)`.
+    pub(super) fn new(rows: usize, columns: usize, of: impl Fn(usize, usize) -> f64) -> Self {
+        let blocks = rows.div_ceil(ROWS);
+        let mut data = vec![0.0; blocks * columns * ROWS];
+        for row in 0..rows {
+            for column in 0..columns {
+                data[((row / ROWS) * columns + column) * ROWS + row % ROWS] = of(row, column);
+            }
+        }
+        Self { rows, columns, data }
+    }
+
+    /// `y := A x`.
+    #[inline(always)]
+    pub(super) fn multiply<S: Simd>(&self, o: Ops<S>, x: &[S::f64s], y: &mut [S::f64s]) {
+        let x = &x[..self.columns];
+        let blocks = self.data.chunks_exact(ROWS * self.columns.max(1));
+        for (block, y) in blocks.zip(y[..self.rows].chunks_mut(ROWS)) {
+            let mut sum = [o.splat(0.0); ROWS];
+            for (a, &x) in block.as_chunks::<ROWS>().0.iter().zip(x) {
+                for row in 0..ROWS {
+                    sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
+                }
+            }
+            y.copy_from_slice(&sum[..y.len()]);
+        }
+    }
+
+    /// `y := A x` over the listed columns, in the list's order.
+    #[inline(always)]
+    pub(super) fn multiply_listed<S: Simd>(&self, o: Ops<S>, list: &[usize], x: &[S::f64s], y: &mut [S::f64s]) {
+        let blocks = self.data.chunks_exact(ROWS * self.columns.max(1));
+        for (block, y) in blocks.zip(y[..self.rows].chunks_mut(ROWS)) {
+            let mut sum = [o.splat(0.0); ROWS];
+            let block = block.as_chunks::<ROWS>().0;
+            for &column in list {
+                let (a, x) = (&block[column], x[column]);
+                for row in 0..ROWS {
+                    sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
+                }
+            }
+            y.copy_from_slice(&sum[..y.len()]);
+        }
+    }
+}
+
+/// Numbers as vectors of lanes.
+#[inline(always)]
+pub(super) fn lanes<S: Simd>(numbers: &[f64]) -> &[S::f64s] {
+    S::as_simd_f64s(numbers).0
+}
+
+/// Numbers as vectors of lanes, to be written.
+#[inline(always)]
+pub(super) fn lanes_mut<S: Simd>(numbers: &mut [f64]) -> &mut [S::f64s] {
+    S::as_mut_simd_f64s(numbers).0
+}
+
+/// The instructions that this machine's lanes run on. Every operation on lanes is one that IEEE 754 rounds correctly,
+/// fused multiply-add included, so that all paths give the same bits; a path without the instruction is slow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InstructionPath {
+    /// Its name.
+    pub name: &'static str,
+    /// Crossings side by side.
+    pub lanes: usize,
+}
+
+impl InstructionPath {
+    /// The path that will be taken.
+    pub fn of_this_machine() -> Self {
+        struct Ask;
+        impl WithSimd for Ask {
+            type Output = InstructionPath;
+            fn with_simd<S: Simd>(self, _: S) -> InstructionPath {
+                let name = match (cfg!(target_arch = "x86_64"), S::F64_LANES) {
+                    (true, 4) => "x86-64 avx2 fma",
+                    (true, 8) => "x86-64 avx512",
+                    (_, 2) => "128 bit",
+                    _ => "scalar",
+                };
+                InstructionPath {
+                    name,
+                    lanes: S::F64_LANES,
+                }
+            }
+        }
+        Arch::new().dispatch(Ask)
+    }
+}

@@ -1,0 +1,588 @@
+//! The masses that ride along in one lane: where they are, what they see of each other and of the connectors.
+//!
+//! Knows one vehicle's place at one instant, laid out once so that a step allocates nothing. Does not know the scheme but
+//! for its factors.
+
+use super::level::Level;
+use super::wheels::{Ride, WheelLine, Wheels};
+use crate::bridge::Track;
+use crate::scheme::Scheme;
+use crate::vehicle::{GRAVITY_M_S2, Inertia};
+
+/// A node of the deck under the vehicle: line of [`Wheels`] and station.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Node {
+    line: usize,
+    station: usize,
+}
+
+/// A mass and its rows on nodes.
+#[derive(Debug, Clone, Copy)]
+struct Rider {
+    mass_kg: f64,
+    axle: usize,
+    /// Entries of its row r.
+    force: (usize, usize),
+    /// Entries of its rows r_x and r_xx, where convective.
+    slopes: (usize, usize),
+}
+
+/// A point of a patch between a node and the next.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    node: usize,
+    part: f64,
+    mass_kg: f64,
+    axle: usize,
+}
+
+/// Free motion of the modes at the end of a step: `q, v, a` as they would be without connector and rider forces.
+#[derive(Debug, Default)]
+pub(super) struct Free {
+    pub q: Vec<f64>,
+    pub v: Vec<f64>,
+    pub a: Vec<f64>,
+}
+
+/// A node's motion by what the modes leave out: it follows the forces on the deck nearby and of the connectors as
+/// `x + a x' = R f`, in the same steps as the rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beside {
+    node: Node,
+    /// `x, x', x''`.
+    x: [f64; 3],
+    /// `R f` of weights, inertia and connectors at the last step, downward forces and pulling connectors positive.
+    weights: f64,
+    inertia: f64,
+    contact: f64,
+    /// Of the weights at the step under way; the change of x without new inertia and connector forces.
+    weights_now: f64,
+    free: f64,
+}
+
+/// The masses of one lane at one instant.
+///
+/// Point masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
+/// as many masses D as stations, on rows of two entries, stand for any number of points exactly.
+#[derive(Debug)]
+pub(super) struct Riders {
+    connectors: usize,
+    nodes: Vec<Node>,
+    list: Vec<Rider>,
+    points: Vec<Point>,
+    force: Vec<(usize, f64)>,
+    slopes: Vec<(usize, f64, f64)>,
+    /// Tridiagonal mass matrix of a line: diagonal and the entry to the next station.
+    line: Vec<(f64, f64)>,
+    /// Free motion of each node: acceleration, velocity, displacement.
+    dots: Vec<[f64; 3]>,
+    /// What a node sees of a unit force of each rider.
+    seen: Vec<f64>,
+    matrix: Vec<f64>,
+    connectors_of: Vec<f64>,
+    connectors_on: Vec<f64>,
+    free: Vec<f64>,
+    /// Nodes' motion beside the modes, near the vehicle; and room for the next list.
+    beside: Vec<Beside>,
+    next: Vec<Beside>,
+    /// Scaled force on each node.
+    on_nodes: Vec<f64>,
+}
+
+impl Riders {
+    /// Room for vehicles of at most `nodes` nodes.
+    pub(super) fn new(connectors: usize, nodes: usize) -> Self {
+        Self {
+            connectors,
+            nodes: Vec::with_capacity(nodes),
+            list: Vec::with_capacity(nodes),
+            points: Vec::new(),
+            force: Vec::new(),
+            slopes: Vec::new(),
+            line: Vec::new(),
+            dots: Vec::with_capacity(nodes),
+            seen: vec![0.0; nodes * nodes],
+            matrix: vec![0.0; nodes * nodes],
+            connectors_of: vec![0.0; nodes * connectors],
+            connectors_on: vec![0.0; nodes * connectors],
+            free: vec![0.0; nodes],
+            beside: Vec::with_capacity(2 * nodes),
+            next: Vec::with_capacity(2 * nodes),
+            on_nodes: vec![0.0; nodes],
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether what a rider sees of another is what that one sees of it.
+    pub(super) fn symmetric(&self) -> bool {
+        self.slopes.is_empty()
+    }
+
+    pub(super) fn row(&self, i: usize) -> &[f64] {
+        &self.matrix[i * self.list.len()..][..self.list.len()]
+    }
+
+    pub(super) fn of_connectors(&self, i: usize) -> &[f64] {
+        &self.connectors_of[i * self.connectors..][..self.connectors]
+    }
+
+    pub(super) fn on_connectors(&self, i: usize) -> &[f64] {
+        &self.connectors_on[i * self.connectors..][..self.connectors]
+    }
+
+    pub(super) fn free(&self) -> &[f64] {
+        &self.free[..self.list.len()]
+    }
+
+    /// Puts the vehicle's masses where they are: nodes, riders and their rows.
+    #[inline(always)]
+    pub(super) fn place(&mut self, wheels: &Wheels, track: &Track, load_n: f64, front_x_m: f64) {
+        self.nodes.clear();
+        self.list.clear();
+        self.points.clear();
+        self.force.clear();
+        self.slopes.clear();
+        match wheels.vehicle.inertia {
+            Inertia::None => {}
+            Inertia::Local => {
+                for (line, of) in wheels.masses.iter().enumerate() {
+                    self.place_line(line, of, track, load_n, front_x_m);
+                }
+            }
+            Inertia::Convective => self.place_patches(wheels, track, load_n, front_x_m),
+        }
+    }
+
+    /// `u''` of the deck under each point: the line's mass matrix and its factors.
+    #[inline(always)]
+    fn place_line(&mut self, line: usize, of: &WheelLine, track: &Track, load_n: f64, front_x_m: f64) {
+        self.line.clear();
+        let base = self.nodes.len();
+        let mut first = 0;
+        for &(ahead_m, share, axle) in &of.points {
+            let Some(place) = track.along(front_x_m + ahead_m) else {
+                continue;
+            };
+            if self.line.is_empty() {
+                first = place.station;
+            }
+            let (at, s, mass_kg) = (place.station - first, place.part, share * load_n / GRAVITY_M_S2);
+            while self.line.len() < at + 2 {
+                self.line.push((0.0, 0.0));
+            }
+            self.line[at].0 += mass_kg * (1.0 - s) * (1.0 - s);
+            self.line[at].1 += mass_kg * s * (1.0 - s);
+            self.line[at + 1].0 += mass_kg * s * s;
+            self.points.push(Point {
+                node: base + at,
+                part: s,
+                mass_kg,
+                axle,
+            });
+        }
+        for at in 0..self.line.len() {
+            self.nodes.push(Node {
+                line,
+                station: first + at,
+            });
+            let (whole, next) = self.line[at];
+            let mut taken = 0.0;
+            if at > 0 {
+                let (before, coupling) = self.line[at - 1];
+                taken = if before > 0.0 {
+                    coupling * coupling / before
+                } else {
+                    0.0
+                };
+            }
+            let left = whole - taken;
+            // fewer points than stations: what is left is rounding
+            let mass_kg = if left > 1e-12 * whole { left } else { 0.0 };
+            self.line[at].0 = mass_kg;
+            if mass_kg > 0.0 {
+                let from = self.force.len();
+                self.force.push((base + at, 1.0));
+                if next != 0.0 {
+                    self.force.push((base + at + 1, next / mass_kg));
+                }
+                self.list.push(Rider {
+                    mass_kg,
+                    axle: 0,
+                    force: (from, self.force.len()),
+                    slopes: (0, 0),
+                });
+            }
+        }
+    }
+
+    /// The patches' means, measured by `r u'' + 2 V r_x u' + V^2 r_xx u`; the derivatives are differences of the row and of
+    /// its slope between the ends of the patch.
+    #[inline(always)]
+    fn place_patches(&mut self, wheels: &Wheels, track: &Track, load_n: f64, front_x_m: f64) {
+        for (patch, lines) in wheels.vehicle.patches.iter().zip(&wheels.point_lines) {
+            let points = || patch.points.iter().zip(lines);
+            let on = |ahead_m: f64| track.along(front_x_m + ahead_m);
+            let share: f64 = points()
+                .filter(|(p, _)| on(p.ahead_m).is_some())
+                .map(|(p, _)| p.share)
+                .sum();
+            if share <= 0.0 {
+                continue;
+            }
+            let forces = self.force.len();
+            for (p, &line) in points() {
+                if let Some(place) = on(p.ahead_m) {
+                    let w = p.share / share;
+                    for (station, part) in [(place.station, 1.0 - place.part), (place.station + 1, place.part)] {
+                        if part != 0.0 {
+                            let node = self.node(Node { line, station });
+                            add(&mut self.force, forces, node, w * part);
+                        }
+                    }
+                }
+            }
+            let slopes = self.slopes.len();
+            let centre = front_x_m + patch.ahead_m;
+            let [left, right] = [-0.5, 0.5].map(|end| (centre + end * patch.length_m).clamp(0.0, track.length_m()));
+            let across = || {
+                (0..lines.len())
+                    .filter(|&i| !lines[..i].contains(&lines[i]))
+                    .map(|i| lines[i])
+            };
+            let per = 1.0 / ((right - left) * across().count() as f64);
+            for line in across() {
+                for (x, sign) in [(right, per), (left, -per)] {
+                    if let Some(place) = track.along(x) {
+                        let slope = sign / place.length_m;
+                        for (station, r, r_x) in [
+                            (place.station, sign * (1.0 - place.part), -slope),
+                            (place.station + 1, sign * place.part, slope),
+                        ] {
+                            let node = self.node(Node { line, station });
+                            self.slopes.push((node, r, r_x));
+                        }
+                    }
+                }
+            }
+            self.list.push(Rider {
+                mass_kg: load_n * share / GRAVITY_M_S2,
+                axle: patch.axle,
+                force: (forces, self.force.len()),
+                slopes: (slopes, self.slopes.len()),
+            });
+        }
+    }
+
+    /// The number of a node, which is added where it is new.
+    #[inline(always)]
+    fn node(&mut self, node: Node) -> usize {
+        self.nodes.iter().position(|n| *n == node).unwrap_or_else(|| {
+            self.nodes.push(node);
+            self.nodes.len() - 1
+        })
+    }
+
+    /// The riders' part of the small system, from the free motion at the step's end. Measured in displacement:
+    /// `q' / ((1 - alpha_m) m c_a) = r u'' / c_a + (2 V / c_a) r_x u' + (V^2 / c_a) r_xx u` with `q' = (1 - alpha_m) q`.
+    #[inline(always)]
+    pub(super) fn couple(
+        &mut self,
+        wheels: &Wheels,
+        ride: &Ride,
+        level: &Level,
+        modes: usize,
+        speed_m_s: f64,
+        free: &Free,
+    ) {
+        let (nr, nc) = (self.list.len(), self.connectors);
+        if nr == 0 {
+            return;
+        }
+        let s = &level.scheme;
+        let (on_x, on_xx) = (2.0 * speed_m_s / s.c_a, speed_m_s * speed_m_s / s.c_a);
+        let convective = !self.slopes.is_empty();
+        self.dots.clear();
+        let mut at = 0;
+        for node in &self.nodes {
+            let phi = &wheels.masses[node.line].reach(node.station, wheels.width)[..modes];
+            let mut dots = [dot(phi, &free.a), 0.0, 0.0];
+            if convective {
+                dots = [dots[0], dot(phi, &free.v), dot(phi, &free.q)];
+            }
+            // both lists run along the lines in the same order, more or less: look on from where the last one was
+            let many = self.beside.len();
+            for step in 0..many {
+                let beside = &self.beside[(at + step) % many];
+                if beside.node == *node {
+                    let [x, v, a] = newmark(s, beside.free, beside.x);
+                    dots = [dots[0] + a, dots[1] + v, dots[2] + x];
+                    at += step;
+                    break;
+                }
+            }
+            self.dots.push(dots);
+        }
+        for (a, node) in self.nodes.iter().enumerate() {
+            let seen = &mut self.seen[a * nr..][..nr];
+            for (seen, rider) in seen.iter_mut().zip(&self.list) {
+                let row = &self.force[rider.force.0..rider.force.1];
+                let first = self.nodes[row[0].0];
+                // rows lie on few lines, their nodes side by side
+                let (mut line, mut there) = (first.line, ride.row(node.line, node.station, first.line));
+                let mut sum = 0.0;
+                for &(b, w) in row {
+                    let other = self.nodes[b];
+                    if other.line != line {
+                        (line, there) = (other.line, ride.row(node.line, node.station, other.line));
+                    }
+                    sum += w * there[other.station + ride.band - node.station];
+                }
+                *seen = sum;
+            }
+        }
+        self.matrix[..nr * nr].fill(0.0);
+        self.connectors_of[..nr * nc].fill(0.0);
+        self.connectors_on[..nr * nc].fill(0.0);
+        for (i, rider) in self.list.iter().enumerate() {
+            let (matrix, of) = (
+                &mut self.matrix[i * nr..][..nr],
+                &mut self.connectors_of[i * nc..][..nc],
+            );
+            let mut free = 0.0;
+            for &(node, w) in &self.force[rider.force.0..rider.force.1] {
+                let Node { line, station } = self.nodes[node];
+                add_to(matrix, w, &self.seen[node * nr..][..nr]);
+                add_to(of, w, ride.with_connectors(line, station));
+                let there = ride.with_connectors(line, station);
+                add_to(&mut self.connectors_on[i * nc..][..nc], w, there);
+                free += w * self.dots[node][0] / s.c_a;
+            }
+            for &(node, r_x, r_xx) in &self.slopes[rider.slopes.0..rider.slopes.1] {
+                let (w, Node { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
+                add_to(matrix, w, &self.seen[node * nr..][..nr]);
+                add_to(of, w, ride.with_connectors(line, station));
+                free += on_x * r_x * self.dots[node][1] + on_xx * r_xx * self.dots[node][2];
+            }
+            self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * rider.mass_kg * s.c_a);
+            self.free[i] = free;
+        }
+    }
+
+    /// Follows the nodes near the vehicle through the step, as far as it is known: weights now and before, inertia and
+    /// connector forces before. A node that comes near has stood still until then.
+    #[inline(always)]
+    pub(super) fn follow(
+        &mut self,
+        wheels: &Wheels,
+        level: &Level,
+        modes: usize,
+        weights: &[(usize, usize, f64)],
+        masses: &[(usize, usize, f64)],
+        n: &[f64],
+    ) {
+        let s = &level.scheme;
+        self.next.clear();
+        for i in 0..self.nodes.len() {
+            // the node and, at the ends of a run of stations, its neighbour
+            let Node { line, station } = self.nodes[i];
+            for near in [
+                station.saturating_sub(1),
+                station,
+                (station + 1).min(wheels.stations() - 1),
+            ] {
+                let node = Node { line, station: near };
+                let mut listed = false;
+                for b in self.next.iter().rev() {
+                    listed |= b.node == node;
+                }
+                if listed {
+                    continue;
+                }
+                let mut down = 0.0;
+                for &(group, at, force) in weights {
+                    for &line in &wheels.weights[group].lines {
+                        down += force * between(wheels, node, line, at);
+                    }
+                }
+                let mut known = None;
+                for old in &self.beside {
+                    if old.node == node {
+                        known = Some(*old);
+                        break;
+                    }
+                }
+                let mut beside = if let Some(known) = known {
+                    known
+                } else {
+                    let mut beside = Beside {
+                        node,
+                        x: [0.0; 3],
+                        weights: down,
+                        inertia: 0.0,
+                        contact: 0.0,
+                        weights_now: down,
+                        free: 0.0,
+                    };
+                    beside.take(wheels, modes, masses, n);
+                    beside.x[0] = -(down + beside.inertia + beside.contact);
+                    beside
+                };
+                beside.weights_now = down;
+                let force = -(s.at_f(down, beside.weights) + s.alpha_m * beside.inertia + s.alpha_f * beside.contact);
+                let [x, v, a] = beside.x;
+                beside.free = level.rho * (force - x - level.on_s1 * v - level.on_s2 * a);
+                self.next.push(beside);
+            }
+        }
+        std::mem::swap(&mut self.beside, &mut self.next);
+    }
+
+    /// Back to before [`Riders::follow`], for a step that did not settle.
+    pub(super) fn unfollow(&mut self) {
+        std::mem::swap(&mut self.beside, &mut self.next);
+    }
+
+    /// Takes the nodes near the vehicle to the end of the step, inertia and connector forces found.
+    #[inline(always)]
+    pub(super) fn lead(
+        &mut self,
+        wheels: &Wheels,
+        level: &Level,
+        modes: usize,
+        masses: &[(usize, usize, f64)],
+        n: &[f64],
+    ) {
+        let s = &level.scheme;
+        for beside in &mut self.beside {
+            beside.take(wheels, modes, masses, n);
+            let late = (1.0 - s.alpha_m) * beside.inertia + (1.0 - s.alpha_f) * beside.contact;
+            beside.x = newmark(s, beside.free - level.rho * late, beside.x);
+            beside.weights = beside.weights_now;
+        }
+    }
+
+    /// The nodes near the vehicle.
+    pub(super) fn beside(&self) -> &[Beside] {
+        &self.beside
+    }
+
+    /// Puts them back.
+    pub(super) fn put_beside(&mut self, saved: &[Beside]) {
+        self.beside.clear();
+        self.beside.extend_from_slice(saved);
+    }
+
+    /// Force on each node from the riders' forces times `factor`: line, station, force.
+    #[inline(always)]
+    pub(super) fn on_nodes(&mut self, riders: &[f64], factor: f64, forces: &mut Vec<(usize, usize, f64)>) {
+        let nn = self.nodes.len();
+        self.on_nodes[..nn].fill(0.0);
+        for (rider, q) in self.list.iter().zip(riders) {
+            for &(node, w) in &self.force[rider.force.0..rider.force.1] {
+                self.on_nodes[node] += w * q;
+            }
+        }
+        for (node, f) in self.nodes.iter().zip(&self.on_nodes) {
+            forces.push((node.line, node.station, factor * f));
+        }
+    }
+
+    /// Adds each axle's inertia force `m u''` to `axles`, given the scaled forces of riders and connectors.
+    #[inline(always)]
+    pub(super) fn add_inertia(
+        &mut self,
+        ride: &Ride,
+        level: &Level,
+        scaled: &[f64],
+        connectors: &[f64],
+        axles: &mut [f64],
+    ) {
+        let (nr, s) = (self.list.len(), &level.scheme);
+        if !self.slopes.is_empty() {
+            for (rider, q) in self.list.iter().zip(scaled) {
+                axles[rider.axle] += q / (1.0 - s.alpha_m);
+            }
+            return;
+        }
+        for (node, Node { line, station }) in self.nodes.iter().enumerate() {
+            let from_riders = dot(&self.seen[node * nr..][..nr], scaled);
+            let from_connectors = dot(ride.with_connectors(*line, *station), connectors);
+            self.on_nodes[node] = self.dots[node][0] - s.c_a * (from_riders + from_connectors);
+        }
+        for p in &self.points {
+            let (left, right) = (self.on_nodes[p.node], self.on_nodes[p.node + 1]);
+            axles[p.axle] += p.mass_kg * ((1.0 - p.part) * left + p.part * right);
+        }
+    }
+}
+
+impl Beside {
+    /// `R f` of inertia and connectors.
+    #[inline(always)]
+    fn take(&mut self, wheels: &Wheels, modes: usize, masses: &[(usize, usize, f64)], n: &[f64]) {
+        self.inertia = 0.0;
+        for &(line, at, force) in masses {
+            self.inertia += force * between(wheels, self.node, line, at);
+        }
+        let reach = wheels.masses[self.node.line].reach(self.node.station, wheels.width);
+        self.contact = dot(&reach[modes..][..n.len()], n);
+    }
+}
+
+/// R between a node and a station of a line.
+#[inline(always)]
+fn between(wheels: &Wheels, node: Node, line: usize, station: usize) -> f64 {
+    let row = wheels.residual(node.line, node.station, line);
+    row.get((station + wheels.band).wrapping_sub(node.station))
+        .copied()
+        .unwrap_or(0.0)
+}
+
+/// `x, x', x''` at the end of a step in which x changes by d.
+#[inline(always)]
+fn newmark(s: &Scheme, d: f64, [x, v, a]: [f64; 3]) -> [f64; 3] {
+    [
+        x + d,
+        s.c_v * d + s.v_v * v + s.v_a * a,
+        s.c_a * d + s.a_v * v + s.a_a * a,
+    ]
+}
+
+/// Adds to the entry of a row that begins at `from`.
+#[inline(always)]
+fn add(row: &mut Vec<(usize, f64)>, from: usize, node: usize, w: f64) {
+    match row[from..].iter_mut().find(|(n, _)| *n == node) {
+        Some((_, sum)) => *sum += w,
+        None => row.push((node, w)),
+    }
+}
+
+#[inline(always)]
+fn add_to(sum: &mut [f64], w: f64, x: &[f64]) {
+    for (sum, x) in sum.iter_mut().zip(x) {
+        *sum = w.mul_add(*x, *sum);
+    }
+}
+
+/// Dot product in eight running sums, so that the order is one and the same on every path.
+#[inline(always)]
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let (a, b) = (&a[..n], &b[..n]);
+    let mut sums = [0.0; 8];
+    let (a8, a_rest) = a.as_chunks::<8>();
+    let (b8, b_rest) = b.as_chunks::<8>();
+    for (a, b) in a8.iter().zip(b8) {
+        for i in 0..8 {
+            sums[i] = f64::mul_add(a[i], b[i], sums[i]);
+        }
+    }
+    let mut sum = ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
+    for (a, b) in a_rest.iter().zip(b_rest) {
+        sum = a.mul_add(*b, sum);
+    }
+    sum
+}

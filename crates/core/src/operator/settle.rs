@@ -1,0 +1,276 @@
+//! The small piecewise-linear system of one lane's step: connectors that work or not, and masses that ride along.
+//!
+//! Knows numbers laid out once, so that a step allocates nothing. Does not know modes. The same problem as
+//! [`crate::contact`]: the active set decides the tangent, a state changes only between Newton solutions.
+
+use super::riders::Riders;
+use crate::connector::{Law, State};
+use nalgebra::DMatrix;
+
+/// Room for the small system of one lane, kept from step to step.
+#[derive(Debug)]
+pub(super) struct Small {
+    /// Elongations without connector and rider forces, then with them [m].
+    pub e: Vec<f64>,
+    /// State of each connector.
+    pub states: Vec<State>,
+    /// Scaled forces `N' = weight N` of the active connectors, 0 of the others [N].
+    pub forces: Vec<f64>,
+    /// Scaled rider forces q'.
+    pub riders: Vec<f64>,
+    found: Vec<f64>,
+    before: Vec<State>,
+    asked: Vec<State>,
+    /// Active sets met in this step, one after the other.
+    seen: Vec<State>,
+    active: Vec<usize>,
+    /// The factored matrix, `stride` columns a row.
+    matrix: Vec<f64>,
+    lower: Vec<f64>,
+    rhs: Vec<f64>,
+    stride: usize,
+    /// The active set that `matrix` was factored for, without riders.
+    factored: Vec<State>,
+    /// Whether there is such a one, and the stiffness of a truss in it.
+    factored_for: Option<f64>,
+}
+
+/// The active set came back to one it had been before, or the limit was reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unsettled {
+    /// A connector that still wanted to change.
+    pub connector: usize,
+    /// Newton solutions made.
+    pub iterations: usize,
+}
+
+impl Small {
+    pub(super) fn new(connectors: usize, riders: usize, newton_limit: usize) -> Self {
+        let stride = (connectors + riders).next_multiple_of(CHUNK);
+        let open = vec![State::Open; connectors];
+        Self {
+            e: vec![0.0; connectors],
+            states: open.clone(),
+            forces: vec![0.0; connectors],
+            riders: vec![0.0; riders],
+            found: vec![0.0; connectors],
+            before: open.clone(),
+            asked: open.clone(),
+            seen: Vec::with_capacity(connectors * (newton_limit + 1)),
+            active: Vec::with_capacity(connectors),
+            matrix: vec![0.0; stride * stride],
+            lower: vec![0.0; stride * stride],
+            rhs: vec![0.0; stride],
+            stride,
+            factored: open,
+            factored_for: None,
+        }
+    }
+
+    /// Forgets what was factored for another job.
+    pub(super) fn forget(&mut self) {
+        self.factored_for = None;
+    }
+
+    /// Solves from `states`, with `e` the elongations without forces; leaves the new states, elongations, forces and rider
+    /// forces and gives the number of Newton solutions and of states that changed. Where it does not settle, the states are
+    /// as before.
+    #[inline(always)]
+    pub(super) fn solve(
+        &mut self,
+        law: &Law,
+        among: &DMatrix<f64>,
+        weight: f64,
+        riders: &Riders,
+        limit: usize,
+    ) -> Result<(usize, usize), Unsettled> {
+        self.seen.clear();
+        self.before.copy_from_slice(&self.states);
+        let mut iterations = 0;
+        loop {
+            iterations += 1;
+            self.linear(law, among, weight, riders);
+            self.elongations(law, among, weight, riders);
+            let mut wants = None;
+            for (i, &e) in self.found.iter().enumerate() {
+                self.asked[i] = law.state(e);
+                if wants.is_none() && self.asked[i] != self.states[i] {
+                    wants = Some(i);
+                }
+            }
+            let Some(connector) = wants else {
+                self.e.copy_from_slice(&self.found);
+                let switches = self.states.iter().zip(&self.before).filter(|(a, b)| a != b).count();
+                return Ok((iterations, switches));
+            };
+            let met = self
+                .seen
+                .chunks_exact(self.asked.len())
+                .any(|states| *states == *self.asked);
+            if iterations >= limit || met {
+                self.states.copy_from_slice(&self.before);
+                return Err(Unsettled { connector, iterations });
+            }
+            self.seen.extend_from_slice(&self.asked);
+            self.states.copy_from_slice(&self.asked);
+        }
+    }
+
+    /// One Newton solution: riders first, then the active connectors, eliminated in that order. Symmetric and positive
+    /// definite but for the convective terms, so that no pivots are sought. Without riders the matrix depends on the active
+    /// set alone and its factors are kept.
+    #[inline(always)]
+    fn linear(&mut self, law: &Law, among: &DMatrix<f64>, weight: f64, riders: &Riders) {
+        let (nr, stride) = (riders.count(), self.stride);
+        let known = nr == 0 && self.factored_for == Some(law.k) && self.factored == self.states;
+        if !known {
+            self.active.clear();
+            for (i, state) in self.states.iter().enumerate() {
+                if *state != State::Open {
+                    self.active.push(i);
+                }
+            }
+            let n = nr + self.active.len();
+            for i in 0..nr {
+                let row = &mut self.matrix[i * stride..][..n];
+                row[..nr].copy_from_slice(riders.row(i));
+                let of = riders.of_connectors(i);
+                for (entry, &j) in row[nr..].iter_mut().zip(&self.active) {
+                    *entry = of[j];
+                }
+            }
+            for (p, &i) in self.active.iter().enumerate() {
+                let row = &mut self.matrix[(nr + p) * stride..][..n];
+                for (r, entry) in row[..nr].iter_mut().enumerate() {
+                    *entry = riders.on_connectors(r)[i];
+                }
+                // a column is a row, the matrix being symmetric
+                let column = &among.as_slice()[i * self.states.len()..][..self.states.len()];
+                for (entry, &j) in row[nr..].iter_mut().zip(&self.active) {
+                    *entry = column[j];
+                }
+                row[nr + p] += 1.0 / (weight * law.line(self.states[i]).k);
+            }
+            if riders.symmetric() {
+                factor_symmetric(&mut self.matrix, &mut self.lower, stride, n);
+            } else {
+                factor(&mut self.matrix, &mut self.lower, stride, n);
+            }
+            self.factored.copy_from_slice(&self.states);
+            self.factored_for = if nr == 0 { Some(law.k) } else { None };
+        }
+        let n = nr + self.active.len();
+        self.rhs[..nr].copy_from_slice(riders.free());
+        for (p, &i) in self.active.iter().enumerate() {
+            let line = law.line(self.states[i]);
+            self.rhs[nr + p] = self.e[i] - line.n0 / line.k;
+        }
+        substitute(&self.matrix, &self.lower, stride, &mut self.rhs[..n]);
+        self.riders[..nr].copy_from_slice(&self.rhs[..nr]);
+        self.forces.fill(0.0);
+        for (p, &i) in self.active.iter().enumerate() {
+            self.forces[i] = self.rhs[nr + p];
+        }
+    }
+
+    /// Elongations under the forces found. On an active line they follow from the force, without cancellation.
+    #[inline(always)]
+    fn elongations(&mut self, law: &Law, among: &DMatrix<f64>, weight: f64, riders: &Riders) {
+        self.found.copy_from_slice(&self.e);
+        let n = self.states.len();
+        for &j in &self.active {
+            // a column is a row, the matrix being symmetric
+            take(&mut self.found, &among.as_slice()[j * n..][..n], self.forces[j]);
+        }
+        for r in 0..riders.count() {
+            take(&mut self.found, riders.on_connectors(r), self.riders[r]);
+        }
+        for &i in &self.active {
+            let line = law.line(self.states[i]);
+            self.found[i] = (self.forces[i] / weight + line.n0) / line.k;
+        }
+    }
+}
+
+/// `e := e - column * force`.
+#[inline(always)]
+fn take(e: &mut [f64], column: &[f64], force: f64) {
+    for (e, c) in e.iter_mut().zip(column) {
+        *e = (-force).mul_add(*c, *e);
+    }
+}
+
+/// Entries that are computed at once.
+const CHUNK: usize = 4;
+
+/// `A = L U`, L with a unit diagonal: U in place, L by columns in `lower`; rows and columns are `stride` apart, a multiple of
+/// [`CHUNK`]. Row operations run over whole chunks: what they do beside the part that is left is of no account.
+#[inline(always)]
+fn factor(a: &mut [f64], lower: &mut [f64], stride: usize, n: usize) {
+    for p in 0..n {
+        let (above, below) = a.split_at_mut((p + 1) * stride);
+        let chunks = (p + 1) / CHUNK * CHUNK..n.next_multiple_of(CHUNK).max(p + 1);
+        let pivot_row = &above[p * stride..][..stride];
+        let reciprocal = 1.0 / pivot_row[p];
+        let column = &mut lower[p * stride..][..n];
+        let pivots = pivot_row[chunks.clone()].as_chunks::<CHUNK>().0;
+        for (row, ratio_kept) in below.chunks_exact_mut(stride).zip(&mut column[p + 1..]) {
+            let ratio = row[p] * reciprocal;
+            *ratio_kept = ratio;
+            for (entries, pivots) in row[chunks.clone()].as_chunks_mut::<CHUNK>().0.iter_mut().zip(pivots) {
+                for i in 0..CHUNK {
+                    entries[i] = (-ratio).mul_add(pivots[i], entries[i]);
+                }
+            }
+        }
+    }
+}
+
+/// The same of a symmetric matrix: its upper half is enough.
+#[inline(always)]
+fn factor_symmetric(a: &mut [f64], lower: &mut [f64], stride: usize, n: usize) {
+    let end = n.next_multiple_of(CHUNK);
+    for p in 0..n {
+        let (above, below) = a.split_at_mut((p + 1) * stride);
+        let pivot_row = &above[p * stride..][..stride];
+        let reciprocal = 1.0 / pivot_row[p];
+        let column = &mut lower[p * stride..][..stride];
+        for ((row, ratio_kept), i) in below.chunks_exact_mut(stride).zip(&mut column[p + 1..n]).zip(p + 1..) {
+            let ratio = pivot_row[i] * reciprocal;
+            *ratio_kept = ratio;
+            let chunks = i / CHUNK * CHUNK..end;
+            let pivots = pivot_row[chunks.clone()].as_chunks::<CHUNK>().0;
+            for (entries, pivots) in row[chunks].as_chunks_mut::<CHUNK>().0.iter_mut().zip(pivots) {
+                for k in 0..CHUNK {
+                    entries[k] = (-ratio).mul_add(pivots[k], entries[k]);
+                }
+            }
+        }
+    }
+}
+
+/// `x := (L U)^-1 x`.
+#[inline(always)]
+fn substitute(a: &[f64], lower: &[f64], stride: usize, x: &mut [f64]) {
+    let n = x.len();
+    for p in 0..n {
+        let (known, left) = x.split_at_mut(p + 1);
+        take(left, &lower[p * stride + p + 1..][..n - p - 1], known[p]);
+    }
+    for i in (0..n).rev() {
+        let row = &a[i * stride..][..n];
+        let mut sums = [0.0; CHUNK];
+        let (u, u_rest) = row[i + 1..].as_chunks::<CHUNK>();
+        let (x_known, x_rest) = x[i + 1..].as_chunks::<CHUNK>();
+        for (u, x) in u.iter().zip(x_known) {
+            for k in 0..CHUNK {
+                sums[k] = f64::mul_add(u[k], x[k], sums[k]);
+            }
+        }
+        let mut sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        for (u, x) in u_rest.iter().zip(x_rest) {
+            sum = u.mul_add(*x, sum);
+        }
+        x[i] = (x[i] - sum) / row[i];
+    }
+}
