@@ -3,15 +3,23 @@
 //! Knows text. Does not know what it says.
 
 use serde_json::Value;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 
 /// Writes results on standard output. A reader that has left (a closed pipe) wants no more, which is no error.
 ///
 /// # Errors
 /// What the system says of any other failure.
 pub fn result(text: &str) -> io::Result<()> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    results(|out| out.write_all(text.as_bytes()))
+}
+
+/// The same for results that are written piece by piece.
+///
+/// # Errors
+/// As above.
+pub fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         other => other,
     }

@@ -14,6 +14,7 @@ mod compare_input;
 mod compare_kinds;
 mod damaged;
 mod old_results;
+mod operator;
 mod refusals;
 mod results;
 mod stage;

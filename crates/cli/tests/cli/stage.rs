@@ -76,8 +76,15 @@ impl Stage {
 
     /// Runs the program in the folder.
     pub fn pontoon(&self, words: &[&str]) -> Output {
+        // no cache but where a test says so
+        self.pontoon_with(words, Path::new(""))
+    }
+
+    /// The same with a cache in a folder.
+    pub fn pontoon_with(&self, words: &[&str], cache: &Path) -> Output {
         Command::new(env!("CARGO_BIN_EXE_pontoon"))
             .args(words)
+            .env("PONTOON_CACHE_DIR", cache)
             .current_dir(self.dir.path())
             .output()
             .unwrap()

@@ -28,6 +28,8 @@ pub struct BridgeEntry {
     pub hash: String,
     /// Equal for bridges that differ in nothing but gaps (data of a job) and words.
     pub structure_key: Arc<str>,
+    /// Equal for bridges that have one operator: the connectors' stiffness is no part of it either.
+    pub operator_key: Arc<str>,
     /// Equal for bridges whose modules are equal: neither are the connectors' stiffness, the number of modules and the
     /// supports part of a module.
     pub module_key: Arc<str>,
@@ -176,6 +178,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     neutral.connectors.gap_compression_m = 0.0;
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
+    let operator_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.modules = 1;
     neutral.supports = Supports::default();
     neutral.draft_m = None;
@@ -187,6 +190,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
         document,
         hash,
         structure_key,
+        operator_key,
         module_key,
     }
 }

@@ -59,7 +59,7 @@ impl Job {
             (Task::Crossing { speed_m_s }, Some(step), Some(tail)) => CrossingSolver::steps(
                 self.bridge.design.length_m(),
                 &self.vehicle.vehicle,
-                step,
+                step.seconds(),
                 speed_m_s,
                 tail,
             ),

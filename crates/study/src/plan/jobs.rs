@@ -220,6 +220,7 @@ impl Short<'_> {
         let (Some(step), Some(tail)) = (analysis.time_step_s, analysis.tail_s) else {
             return Ok(());
         };
+        let step = step.seconds();
         let key = |path| self.key_or(path);
         let passage = bridge.design.module.length_m / speed_m_s;
         if step > passage {

@@ -11,7 +11,7 @@ pub use job::{Job, Load, Task};
 pub use jobs::Jobs;
 
 use crate::refusal::Refusal;
-use crate::spec::{ModelSpec, Study};
+use crate::spec::{ModelSpec, SolverSpec, Study};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -34,12 +34,14 @@ pub struct Plan {
     pub expected_seconds: f64,
 }
 
-/// Cost of a step of one module [s], from a release build on one core.
-const SECONDS_A_STEP_AND_MODULE: f64 = 1.0e-4;
+/// Cost of a step of one module by the reference solver [s], from a release build on one core.
+const SECONDS_A_STEP_AND_MODULE: f64 = 2.0e-5;
+/// Cost of a step of one module by the operator with all its lanes at work [s].
+const SECONDS_A_STEP_AND_MODULE_OPERATED: f64 = 3.0e-7;
 /// Cost of meshing, condensing and assembling one bridge [s].
 const SECONDS_A_BRIDGE: f64 = 2.0;
 /// Cost of the static cases of one job [s].
-const SECONDS_A_STATIC_JOB: f64 = 0.1;
+const SECONDS_A_STATIC_JOB: f64 = 1.0e-3;
 
 impl Plan {
     /// Checks every job of a study and counts; `threads` is what the expected time reckons with.
@@ -66,8 +68,11 @@ impl Plan {
             if job.analysis.spec.model == ModelSpec::SuperElement {
                 modules.insert(job.bridge.module_key.clone());
             }
-            seconds += SECONDS_A_STATIC_JOB
-                + SECONDS_A_STEP_AND_MODULE * job.steps() as f64 * job.bridge.design.modules as f64;
+            let step = match job.analysis.spec.solver {
+                Some(SolverSpec::Operator) => SECONDS_A_STEP_AND_MODULE_OPERATED,
+                _ => SECONDS_A_STEP_AND_MODULE,
+            };
+            seconds += SECONDS_A_STATIC_JOB + step * job.steps() as f64 * job.bridge.design.modules as f64;
         }
         plan.distinct_bridges = bridges.len();
         plan.condensations = modules.len();

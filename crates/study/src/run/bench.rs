@@ -2,16 +2,21 @@
 //!
 //! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
 
+use super::batch::by_operator;
+use super::cache::{Cache, Found};
 use super::guard::guarded;
 use super::progress::Progress;
+use super::verify;
 use crate::plan::{Job, Task};
-use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
+use crate::spec::TimeStepSpec;
+use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
+use pontoon_core::operator::BridgeOperator;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -21,6 +26,9 @@ type ModuleKey = (Model, Arc<str>);
 type BridgeKey = (Model, Arc<str>);
 type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
 type CrossingKey = (DampingKey, [u64; 2], [Option<usize>; 2]);
+type OperatorKey = (BridgeKey, u64);
+/// Crossings of one key are solved side by side.
+pub(super) type CrewKey = (CrossingKey, u64, Option<u64>);
 type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, u64);
 
 /// Damping and where it came from.
@@ -40,10 +48,32 @@ pub(super) struct Bench {
     modules: BTreeMap<ModuleKey, Shared<PreparedModule>>,
     bridges: BTreeMap<BridgeKey, Shared<Bridge>>,
     damping: BTreeMap<DampingKey, Shared<Damping>>,
+    operators: BTreeMap<OperatorKey, Shared<BridgeOperator>>,
+    operated: BTreeMap<CrewKey, Shared<OperatorSolver>>,
     crossings: BTreeMap<CrossingKey, Shared<CrossingSolver>>,
     statics: BTreeMap<BridgeKey, Shared<StaticSolver>>,
     creeping: BTreeMap<CreepingKey, Shared<Vec<f64>>>,
     condensations: AtomicUsize,
+    operators_made: OperatorsMade,
+}
+
+/// Where operators came from.
+#[derive(Debug, Default)]
+struct OperatorsMade {
+    built: AtomicUsize,
+    from_cache: AtomicUsize,
+    refused: AtomicUsize,
+}
+
+/// Where the operators of a run came from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct OperatorCounts {
+    /// Built from the bridge's matrices.
+    pub built: usize,
+    /// Read from the cache.
+    pub from_cache: usize,
+    /// Of those built, the ones whose file in the cache was damaged or of another form.
+    pub replaced: usize,
 }
 
 /// What was prepared of one bridge.
@@ -71,20 +101,37 @@ pub struct BridgeReport {
     pub damping_stiffness_s: Option<f64>,
     /// Mass-proportional damping [1/s].
     pub damping_mass_1_s: Option<f64>,
+    /// Operator of its crossings: modes kept.
+    pub operator_modes: Option<usize>,
+    /// Frequency of the highest [Hz].
+    pub operator_cutoff_hz: Option<f64>,
+    /// Error allowed, and what is left of it: the largest share by which the flexibility of a connector or deck node at 5 Hz
+    /// is off.
+    pub operator_tolerance: Option<f64>,
+    /// See `operator_tolerance`.
+    pub operator_error: Option<f64>,
 }
 
 impl Bench {
     /// Prepares everything that `jobs` need, each thing once, on the current pool; modules that are `known` are taken from
     /// there.
-    pub(super) fn prepare(jobs: &[Job], known: &PreparedModules, progress: &dyn Progress) -> Self {
+    pub(super) fn prepare(
+        jobs: &[Job],
+        known: &PreparedModules,
+        cache: Option<&Cache>,
+        progress: &dyn Progress,
+    ) -> Self {
         let mut bench = Self {
             modules: BTreeMap::new(),
             bridges: BTreeMap::new(),
             damping: BTreeMap::new(),
+            operators: BTreeMap::new(),
+            operated: BTreeMap::new(),
             crossings: BTreeMap::new(),
             statics: BTreeMap::new(),
             creeping: BTreeMap::new(),
             condensations: AtomicUsize::new(0),
+            operators_made: OperatorsMade::default(),
         };
         let crossing = |job: &&Job| matches!(job.task, Task::Crossing { .. });
         let crossings: Vec<&Job> = jobs.iter().filter(crossing).collect();
@@ -107,14 +154,16 @@ impl Bench {
         bench.statics = each(&held, bridge_key, |job| {
             StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?).map_err(text)
         });
-        bench.crossings = each(&crossings, crossing_key, |job| bench.crossing_solver(job));
+        let (operated, integrated): (Vec<&Job>, Vec<&Job>) = crossings.iter().partition(|job| by_operator(job));
+        let again = operated.iter().copied().filter(|job| verify::asked(job).is_some());
+        let judged: Vec<&Job> = integrated.into_iter().chain(again).collect();
+        bench.crossings = each(&judged, crossing_key, |job| bench.crossing_solver(job));
+        progress.stage("operators: modes and what they leave out");
+        bench.operators = each(&operated, operator_key, |job| bench.operator(job, cache));
+        bench.operated = each(&operated, Self::crew_key, |job| bench.operator_solver(job));
         progress.stage("static peaks of creeping loads");
         let creeping: Vec<&Job> = crossings.iter().copied().filter(|job| is_held(job)).collect();
-        bench.creeping = each(&creeping, creeping_key, |job| {
-            shared(&bench.statics, &bridge_key(job))?
-                .creeping_peaks_m(&job.vehicle.vehicle, &static_case(job, 0.0))
-                .map_err(text)
-        });
+        bench.creeping = bench.creeping_peaks(&creeping);
         bench
     }
 
@@ -149,15 +198,97 @@ impl Bench {
         })
     }
 
+    /// The operator of a job, from the cache where it is there whole, else built and kept.
+    fn operator(&self, job: &Job, cache: Option<&Cache>) -> Result<BridgeOperator, String> {
+        let tolerance = job.analysis.spec.operator_tolerance.unwrap_or_default();
+        let (bridge, made) = (shared(&self.bridges, &bridge_key(job))?, &self.operators_made);
+        let name = Cache::name(&format!("{:?}", operator_key(job)));
+        match cache.map_or(Found::Nothing, |cache| cache.read(&name, &bridge)) {
+            Found::Whole(operator) => {
+                made.from_cache.fetch_add(1, Ordering::Relaxed);
+                return Ok(*operator);
+            }
+            Found::Refused => made.refused.fetch_add(1, Ordering::Relaxed),
+            Found::Nothing => 0,
+        };
+        made.built.fetch_add(1, Ordering::Relaxed);
+        let operator = BridgeOperator::new(&bridge, tolerance).map_err(text)?;
+        if let Some(cache) = cache {
+            // a cache that cannot be written costs time at the next run, and nothing else
+            let _ = cache.write(&name, &operator);
+        }
+        Ok(operator)
+    }
+
+    /// Where the operators came from.
+    pub(super) fn operator_counts(&self) -> OperatorCounts {
+        let of = |count: &AtomicUsize| count.load(Ordering::Relaxed);
+        OperatorCounts {
+            built: of(&self.operators_made.built),
+            from_cache: of(&self.operators_made.from_cache),
+            replaced: of(&self.operators_made.refused),
+        }
+    }
+
+    fn operator_solver(&self, job: &Job) -> Result<OperatorSolver, String> {
+        let bridge = shared(&self.bridges, &bridge_key(job))?;
+        let operator = shared(&self.operators, &operator_key(job))?;
+        Ok(OperatorSolver::new(&bridge, &operator, &self.settings(job)?))
+    }
+
+    /// Crossings of one key are solved side by side.
+    pub(super) fn crew_key(job: &Job) -> CrewKey {
+        let spec = &job.analysis.spec;
+        let auto = match spec.time_step_s {
+            Some(TimeStepSpec::Auto(_)) => spec.time_step_tolerance.map(f64::to_bits),
+            _ => None,
+        };
+        (
+            crossing_key(job),
+            spec.operator_tolerance.unwrap_or_default().to_bits(),
+            auto,
+        )
+    }
+
+    /// The operator's solver of a crossing.
+    pub(super) fn operated(&self, job: &Job) -> Shared<OperatorSolver> {
+        shared(&self.operated, &Self::crew_key(job))
+    }
+
     fn crossing_solver(&self, job: &Job) -> Result<CrossingSolver, String> {
-        let settings = CrossingSettings {
-            time_step_s: job.analysis.spec.time_step_s.unwrap_or_default(),
+        CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &self.settings(job)?).map_err(text)
+    }
+
+    fn settings(&self, job: &Job) -> Result<CrossingSettings, String> {
+        Ok(CrossingSettings {
+            time_step_s: job.analysis.spec.time_step_s.map_or(0.0, TimeStepSpec::seconds),
             spectral_radius: job.analysis.spec.spectral_radius.unwrap_or_default(),
             rayleigh: shared(&self.damping, &damping_key(job))?.coefficients,
             newton_limit: job.analysis.spec.newton_limit.unwrap_or_default(),
             bisection_limit: job.analysis.spec.bisection_limit.unwrap_or_default(),
+        })
+    }
+
+    /// The static peaks of creeping loads; cases of one vehicle on one bridge share what it does at its places, which is let
+    /// go before the next vehicle's.
+    fn creeping_peaks(&self, jobs: &[&Job]) -> BTreeMap<CreepingKey, Shared<Vec<f64>>> {
+        let mut vehicles: BTreeMap<(BridgeKey, Arc<str>), Vec<&Job>> = BTreeMap::new();
+        for job in jobs {
+            let key = (bridge_key(job), job.vehicle.key.clone());
+            vehicles.entry(key).or_default().push(job);
+        }
+        let peaks = |((bridge, _), jobs): ((BridgeKey, _), Vec<&Job>)| {
+            let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
+            each(&jobs, creeping_key, |job| {
+                load.as_ref()
+                    .map_err(Clone::clone)?
+                    .peaks_m(&static_case(job, 0.0))
+                    .map_err(text)
+            })
         };
-        CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &settings).map_err(text)
+        let vehicles: Vec<_> = vehicles.into_iter().collect();
+        let made: Vec<_> = vehicles.into_par_iter().with_max_len(1).map(peaks).collect();
+        made.into_iter().flatten().collect()
     }
 
     /// The solver of a crossing.
@@ -194,9 +325,15 @@ impl Bench {
     /// What was prepared of each bridge and model, in the order of jobs.
     pub(super) fn reports(&self, jobs: &[Job]) -> Vec<BridgeReport> {
         let mut reports: Vec<BridgeReport> = Vec::new();
+        let mut seen = BTreeSet::new();
         for job in jobs {
+            // what a report is made of: the same entries make the same report
+            if !seen.insert((job.bridge.id, job.analysis.id)) {
+                continue;
+            }
             let module = shared(&self.modules, &module_key(job)).ok();
             let damping = shared(&self.damping, &damping_key(job)).ok();
+            let operator = shared(&self.operators, &operator_key(job)).ok().map(|o| o.cutoff());
             let report = BridgeReport {
                 blake3: job.bridge.hash.clone(),
                 name: job.bridge.design.name.clone(),
@@ -213,6 +350,10 @@ impl Bench {
                 damping_frequencies_hz: damping.as_ref().map(|d| d.frequencies_hz),
                 damping_stiffness_s: damping.as_ref().map(|d| d.coefficients.a),
                 damping_mass_1_s: damping.as_ref().map(|d| d.coefficients.b),
+                operator_modes: operator.map(|o| o.modes),
+                operator_cutoff_hz: operator.map(|o| o.frequency_hz),
+                operator_tolerance: operator.map(|o| o.tolerance),
+                operator_error: operator.map(|o| o.error),
             };
             if !reports.contains(&report) {
                 reports.push(report);
@@ -290,8 +431,18 @@ fn damping_key(job: &Job) -> DampingKey {
 fn crossing_key(job: &Job) -> CrossingKey {
     let bits = |x: Option<f64>| x.unwrap_or_default().to_bits();
     let spec = &job.analysis.spec;
-    let scheme = [bits(spec.time_step_s), bits(spec.spectral_radius)];
+    let scheme = [
+        bits(spec.time_step_s.map(TimeStepSpec::seconds)),
+        bits(spec.spectral_radius),
+    ];
     (damping_key(job), scheme, [spec.newton_limit, spec.bisection_limit])
+}
+
+fn operator_key(job: &Job) -> OperatorKey {
+    (
+        bridge_key(job),
+        job.analysis.spec.operator_tolerance.unwrap_or_default().to_bits(),
+    )
 }
 
 fn creeping_key(job: &Job) -> CreepingKey {

@@ -1,25 +1,126 @@
-//! A crossing job to its record.
+//! Crossing jobs to their records: by the operator side by side, or by the reference solver one by one.
 
 use super::bench::Bench;
 use super::record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
-use crate::plan::Job;
-use pontoon_core::analysis::crossing::Crossing;
+use crate::plan::{Job, Task};
+use crate::spec::TimeStepSpec;
+use pontoon_core::analysis::AnalysisError;
+use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::response::{CrossingResponse, Quantity, Record};
+use pontoon_core::vehicle::Vehicle;
 
-/// Solves the crossing of a job.
-pub(super) fn solve(job: &Job, speed_m_s: f64, record: Record, bench: &Bench) -> Result<JobRecord, String> {
-    let crossing = Crossing {
+/// Solves the crossing of a job by the reference solver.
+pub(super) fn solve(job: &Job, record: Record, bench: &Bench) -> Result<JobRecord, String> {
+    let solved = bench.crossing(job)?.solve(&job.vehicle.vehicle, &crossing(job, record));
+    recorded(job, solved.map_err(|e| e.to_string())?, bench)
+}
+
+/// Solves crossings that share a solver by the operator.
+pub(super) fn solve_crew(crew: &[(&Job, Record)], bench: &Bench) -> Result<Vec<Result<JobRecord, String>>, String> {
+    let Some((first, _)) = crew.first() else {
+        return Ok(Vec::new());
+    };
+    let solver = match bench.operated(first) {
+        Ok(solver) => solver,
+        Err(reason) => return Ok(crew.iter().map(|_| Err(reason.clone())).collect()),
+    };
+    let crossings: Vec<Crossing> = crew.iter().map(|(job, record)| crossing(job, record.clone())).collect();
+    let asked: Vec<(&Vehicle, &Crossing)> = crew
+        .iter()
+        .zip(&crossings)
+        .map(|((job, _), crossing)| (&job.vehicle.vehicle, crossing))
+        .collect();
+    let auto = matches!(first.analysis.spec.time_step_s, Some(TimeStepSpec::Auto(_)));
+    let answers = if auto {
+        let tolerance = first.analysis.spec.time_step_tolerance.unwrap_or_default();
+        refined(&solver, &asked, tolerance)
+    } else {
+        let plain =
+            |answer: Result<CrossingResponse, AnalysisError>| answer.map(|r| (r, None)).map_err(|e| e.to_string());
+        solver.solve_all(&asked, 0).into_iter().map(plain).collect()
+    };
+    let record = |((job, _), answer): (&(&Job, Record), Result<Answer, String>)| {
+        let (response, time_step_s) = answer?;
+        let mut record = recorded(job, response, bench)?;
+        record.summary.time_step_s = time_step_s;
+        Ok(record)
+    };
+    Ok(crew.iter().zip(answers).map(record).collect())
+}
+
+/// A response and the time step that the program has found for it.
+type Answer = (CrossingResponse, Option<f64>);
+
+/// Solves crossings at half the time step again and again, each until its peak force has settled: the last halving changed
+/// it by no more than half the tolerance and the one before by no more than the tolerance. One small change alone may be
+/// chance where contacts decide.
+fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: f64) -> Vec<Result<Answer, String>> {
+    let mut answers: Vec<Option<Result<Answer, String>>> = vec![None; asked.len()];
+    // peak force at the last step and by how much it had changed there
+    let mut before = vec![(f64::NAN, f64::NAN); asked.len()];
+    let mut open: Vec<usize> = (0..asked.len()).collect();
+    for refinement in 0..=REFINEMENTS {
+        let list: Vec<_> = open.iter().map(|&i| asked[i]).collect();
+        let solved = solver.solve_all(&list, refinement);
+        let mut next = Vec::new();
+        for (place, answer) in open.into_iter().zip(solved) {
+            let response = match answer {
+                Ok(response) => response,
+                // a smaller step may settle what this one did not
+                Err(_) if refinement < REFINEMENTS => {
+                    next.push(place);
+                    continue;
+                }
+                Err(error) => {
+                    answers[place] = Some(Err(error.to_string()));
+                    continue;
+                }
+            };
+            let (peak, h) = (peak_force_n(&response), solver.time_step_s(refinement));
+            let (last, last_change) = before[place];
+            let change = (peak - last).abs();
+            if change <= 0.5 * tolerance * peak && last_change <= tolerance * peak {
+                answers[place] = Some(Ok((response, Some(h))));
+            } else if refinement == REFINEMENTS {
+                let share = change / peak;
+                let reason = format!("peak force still changes by {share:.1e} of itself at a time step of {h} s");
+                answers[place] = Some(Err(reason));
+            } else {
+                before[place] = (peak, change);
+                next.push(place);
+            }
+        }
+        open = next;
+    }
+    let lost = || Err("program error: no answer".to_owned());
+    answers.into_iter().map(|answer| answer.unwrap_or_else(lost)).collect()
+}
+
+/// Largest force of any joint [N].
+fn peak_force_n(response: &CrossingResponse) -> f64 {
+    let of_joint = response
+        .joints
+        .iter()
+        .map(|j| j.sum.compression.value.max(j.sum.tension.value));
+    of_joint.fold(0.0, f64::max)
+}
+
+fn crossing(job: &Job, record: Record) -> Crossing {
+    let speed_m_s = match job.task {
+        Task::Crossing { speed_m_s } => speed_m_s,
+        _ => 0.0,
+    };
+    Crossing {
         connection: job.connection,
         connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
         load_n: job.load_n,
         speed_m_s,
         tail_s: job.analysis.spec.tail_s.unwrap_or_default(),
         record,
-    };
-    let response = bench
-        .crossing(job)?
-        .solve(&job.vehicle.vehicle, &crossing)
-        .map_err(|e| e.to_string())?;
+    }
+}
+
+fn recorded(job: &Job, response: CrossingResponse, bench: &Bench) -> Result<JobRecord, String> {
     let static_peaks_m = bench.creeping_peaks_m(job)?;
     Ok(rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice)))
 }

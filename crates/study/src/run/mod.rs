@@ -1,104 +1,103 @@
 //! Jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record.
 //!
-//! Knows threads and the clock. Does not know files: a record holds all rows of its job, whatever becomes of it.
+//! Knows threads and the clock. Does not know files: a record holds all rows of its job, whatever becomes of it, and is
+//! handed on as soon as its batch is solved.
 
+mod batch;
 mod bench;
+mod cache;
 mod crossing;
+mod cut;
 mod guard;
 mod modes;
+mod outcome;
 mod progress;
 mod record;
 mod statics;
+mod verify;
 
-pub use bench::{BridgeReport, PreparedModules};
+pub use bench::{BridgeReport, OperatorCounts, PreparedModules};
+pub use cache::Cache;
+pub use cut::Batch;
+pub use outcome::{Failures, Outcome, PoolError, RunError};
 pub use progress::{Progress, Silent, Tally};
 pub use record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
+pub use verify::Verification;
 
-use crate::plan::{Job, Task};
+use crate::plan::Job;
 use crate::spec::Study;
 use bench::Bench;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use progress::Count;
+use std::error::Error as StdError;
 use std::time::Instant;
-use thiserror::Error;
 
-/// Why a run could not begin.
-#[derive(Debug, Error)]
-#[error("no pool of {threads} threads: {cause}")]
-pub struct PoolError {
-    /// Threads asked for.
-    threads: usize,
-    /// What the system said.
-    cause: rayon::ThreadPoolBuildError,
+/// The instructions that crossings by the operator run on here.
+pub fn instruction_path() -> &'static str {
+    pontoon_core::operator::InstructionPath::of_this_machine().name
 }
 
-/// What a run leaves behind.
-#[derive(Debug)]
-pub struct Outcome {
-    /// A record for each job, in the order of jobs.
-    pub records: Vec<JobRecord>,
-    /// Modules condensed.
-    pub condensations: usize,
-    /// What was prepared of each bridge.
-    pub bridges: Vec<BridgeReport>,
-    /// Threads used.
+/// How a run goes about its jobs; no record depends on it.
+#[derive(Debug, Clone, Default)]
+pub struct Setting {
+    /// Threads; 0: as many as the machine has.
     pub threads: usize,
-    /// Wall time of what jobs share: finite elements, condensation, assembly, factors, static peaks [s].
-    pub offline_s: f64,
-    /// Wall time of the jobs [s].
-    pub jobs_s: f64,
+    /// What is solved at a time.
+    pub batch: Batch,
+    /// Where operators are kept from run to run; none: nowhere.
+    pub cache: Option<Cache>,
 }
 
-impl Outcome {
-    /// Number of failed jobs.
-    pub fn failed(&self) -> usize {
-        self.records.iter().filter(|r| r.reason.is_some()).count()
-    }
-}
+/// Where the records of a batch go, in the order of jobs.
+pub type Sink<'a, E> = dyn FnMut(Vec<JobRecord>) -> Result<(), E> + Send + 'a;
 
-/// Runs jobs of a study on `threads` threads (0: as many as the machine has). The records do not depend on the number
-/// of threads.
+/// Runs jobs of a study, batch by batch in their order. While a batch is solved, `sink` takes the one before it, on the
+/// same pool: no more than the records of two batches are in memory. Neither the records nor the batches depend on the
+/// number of threads.
 ///
 /// # Errors
-/// [`PoolError`]; a job that fails is a record.
-pub fn run(study: &Study, jobs: &[Job], threads: usize, progress: &dyn Progress) -> Result<Outcome, PoolError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|cause| PoolError { threads, cause })?;
-    let threads = pool.current_num_threads();
+/// [`RunError::Pool`]; [`RunError::Sink`] with what the sink said, which ends the run. A job that fails is a record.
+pub fn run<E: StdError + Send + 'static>(
+    study: &Study,
+    jobs: &[Job],
+    setting: Setting,
+    progress: &dyn Progress,
+    sink: &mut Sink<'_, E>,
+) -> Result<Outcome, RunError<E>> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(setting.threads).build();
+    let pool = pool.map_err(|cause| PoolError {
+        threads: setting.threads,
+        cause,
+    })?;
     pool.install(|| {
         let start = Instant::now();
-        let bench = Bench::prepare(jobs, &PreparedModules::default(), progress);
+        let bench = Bench::prepare(jobs, &PreparedModules::default(), setting.cache.as_ref(), progress);
         let offline_s = start.elapsed().as_secs_f64();
         progress.stage("running jobs");
-        let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        progress.jobs(Tally {
-            done: 0,
-            failed: 0,
-            total: jobs.len(),
-        });
-        let records = jobs.par_iter().with_max_len(1).map(|job| {
-            let record = record(study, job, &bench);
-            let failed = failed.fetch_add(usize::from(record.reason.is_some()), Ordering::Relaxed)
-                + usize::from(record.reason.is_some());
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.jobs(Tally {
-                done,
-                failed,
-                total: jobs.len(),
-            });
-            record
-        });
-        let records = records.collect();
-        let jobs_s = start.elapsed().as_secs_f64() - offline_s;
+        let count = Count::new(jobs.len(), progress);
+        let (mut failures, mut verification) = (Failures::default(), Verification::default());
+        let (mut batches, mut solved) = (cut::cut(study, jobs, setting.batch), None);
+        loop {
+            let (batch, before) = (batches.next(), solved.take());
+            let (records, taken) = rayon::join(
+                || batch.map(|batch| batch::solve_batch(study, batch, &bench, &|record| count.done(record))),
+                || before.map_or(Ok(()), &mut *sink),
+            );
+            taken.map_err(RunError::Sink)?;
+            let Some(records) = records else { break };
+            failures.take(&records);
+            verification.take(&records);
+            solved = Some(records);
+        }
         Ok(Outcome {
-            records,
+            jobs: jobs.len(),
+            failures,
+            verification,
             condensations: bench.condensations(),
+            operators: bench.operator_counts(),
             bridges: bench.reports(jobs),
-            threads,
+            threads: rayon::current_num_threads(),
             offline_s,
-            jobs_s,
+            jobs_s: start.elapsed().as_secs_f64() - offline_s,
         })
     })
 }
@@ -107,12 +106,8 @@ pub fn run(study: &Study, jobs: &[Job], threads: usize, progress: &dyn Progress)
 /// `known` are not prepared again. Leaves a record for each job in their order, and the modules.
 pub(crate) fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<JobRecord>, Prepared) {
     let alone: Vec<Job> = jobs.iter().map(|(_, job)| (*job).clone()).collect();
-    let bench = Bench::prepare(&alone, known, &Silent);
-    let records = jobs
-        .par_iter()
-        .with_max_len(1)
-        .map(|(study, job)| record(study, job, &bench));
-    let records = records.collect();
+    let bench = Bench::prepare(&alone, known, None, &Silent);
+    let records = batch::solve(jobs, &bench, &|_| ());
     let prepared = Prepared {
         modules: bench.modules(),
         condensations: bench.condensations(),
@@ -128,19 +123,5 @@ pub(crate) struct Prepared {
     pub condensations: usize,
 }
 
-fn record(study: &Study, job: &Job, bench: &Bench) -> JobRecord {
-    let solved = guard::guarded(|| match job.task {
-        Task::Crossing { speed_m_s } => crossing::solve(job, speed_m_s, study.spec.record.histories.record(), bench),
-        Task::Static(load) => statics::solve(job, load, bench),
-        Task::Modes => modes::solve(job, bench),
-    });
-    let mut record = solved.unwrap_or_else(|reason| JobRecord::failed(job, reason));
-    // rows that no table will hold are not kept until the end of a large study
-    if !study.spec.record.positions {
-        record.positions = Vec::new();
-    }
-    if !study.spec.record.connectors {
-        record.connectors = Vec::new();
-    }
-    record
-}
+#[cfg(test)]
+mod tests;

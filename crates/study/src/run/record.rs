@@ -69,6 +69,8 @@ pub struct Summary {
     pub deck_submerged: Option<bool>,
     /// Smallest contact force of an axle [N].
     pub min_contact_force_n: Option<f64>,
+    /// Time step that the program has found for the job, where it was to find one [s].
+    pub time_step_s: Option<f64>,
     /// Time steps.
     pub steps: Option<usize>,
     /// Newton solutions.
@@ -79,6 +81,14 @@ pub struct Summary {
     pub energy_residual: Option<f64>,
     /// Largest numerical dissipation over the load's work.
     pub numerical_dissipation: Option<f64>,
+    /// How far the operator's largest deflection is off, as a share of the reference solver's; of jobs solved again.
+    pub verify_deflection: Option<f64>,
+    /// The same of the largest compression, as a share of the job's largest joint force.
+    pub verify_compression: Option<f64>,
+    /// The same of the largest tension, on that scale.
+    pub verify_tension: Option<f64>,
+    /// Whether all are within their tolerances.
+    pub verify_held: Option<bool>,
 }
 
 /// A largest value with its time; the time is null where the value is zero, for nothing occurred then, and in a static
@@ -177,7 +187,7 @@ pub struct HistoryRows {
 
 impl JobRecord {
     /// The record of a job that failed: the rows of a job that did not, their numbers null.
-    pub(super) fn failed(job: &Job, reason: String) -> Self {
+    pub(crate) fn failed(job: &Job, reason: String) -> Self {
         let design = &job.bridge.design;
         let none = Extreme::default();
         let positions = (1..=design.positions()).map(|position| PositionRow {

@@ -24,9 +24,84 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverSpec {
-    /// Direct integration of the assembled bridge.
+    /// The bridge operator: modes, residual flexibilities and a small piecewise-linear system, many crossings at once.
     #[default]
+    Operator,
+    /// Direct integration of the assembled bridge, the operator's judge.
     Reference,
+}
+
+/// Length of a crossing's steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum TimeStepSpec {
+    /// As stated [s].
+    Seconds(f64),
+    /// Each job's own: 0.02 s, halved as often as its peak force asks for.
+    Auto(AutoSpec),
+}
+
+/// The word that leaves the time step to the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AutoSpec {
+    /// Follow an error estimate.
+    Auto,
+}
+
+impl TimeStepSpec {
+    /// The coarsest step that "auto" begins with [s].
+    pub const COARSEST_S: f64 = 0.02;
+
+    /// The step, the coarsest of "auto" [s].
+    pub fn seconds(self) -> f64 {
+        match self {
+            Self::Seconds(seconds) => seconds,
+            Self::Auto(_) => Self::COARSEST_S,
+        }
+    }
+}
+
+/// The reference solver as judge of the operator: which share of the jobs it solves again, and how far the operator may be
+/// off.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VerifySpec {
+    /// Share of the jobs, above 0 to 1: the first and then evenly one in `1 / share`.
+    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
+    pub share: f64,
+    /// How far the largest deflection may be off, as a share of the reference solver's.
+    #[serde(default = "default_deflection_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub deflection_tolerance: f64,
+    /// How far the largest compression may be off, as a share of the job's largest joint force.
+    #[serde(default = "default_compression_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub compression_tolerance: f64,
+    /// How far the largest tension may be off, on the same scale.
+    #[serde(default = "default_tension_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub tension_tolerance: f64,
+}
+
+fn default_deflection_tolerance() -> f64 {
+    0.005
+}
+
+fn default_compression_tolerance() -> f64 {
+    0.02
+}
+
+fn default_tension_tolerance() -> f64 {
+    0.1
+}
+
+impl VerifySpec {
+    /// Whether a job is one of those that are solved again.
+    pub fn takes(&self, job: usize) -> bool {
+        let before = |n: usize| (n as f64 * self.share).floor();
+        job == 0 || before(job) > before(job - 1)
+    }
 }
 
 /// Which matrices a module contributes.
@@ -93,17 +168,30 @@ impl Default for DampingSpec {
 pub struct AnalysisSpec {
     /// What is asked of the bridge.
     pub kind: Kind,
-    /// Time step of a crossing [s]; 0.01 where absent. At most the passage of one module.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Time step of a crossing [s]; 0.01 where absent. At most the passage of one module. `"auto"`: each job's own, 0.02 s
+    /// halved until its peak force changes no more than `time_step_tolerance`.
+    #[serde(default, deserialize_with = "time_step", skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub time_step_s: Option<f64>,
+    pub time_step_s: Option<TimeStepSpec>,
+    /// How far a job's peak force may be off for its time step, as a share of it; 0.02 where absent. A key of `"auto"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 0.5), extend("exclusiveMinimum" = 0.0))]
+    pub time_step_tolerance: Option<f64>,
     /// How long a crossing goes on after the vehicle has left the bridge [s]; 6 where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub tail_s: Option<f64>,
-    /// Solver of a crossing; `reference` where absent.
+    /// Solver of a crossing; `operator` where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<SolverSpec>,
+    /// What the operator may leave out: modes are added until the flexibility of connectors and deck at 5 Hz is off by no
+    /// more than this share; 0.0005 where absent. A key of the operator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 0.1))]
+    pub operator_tolerance: Option<f64>,
+    /// A share of the jobs solved again by the reference solver; none where absent. A key of the operator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verify: Option<VerifySpec>,
     /// Model of the modules.
     #[serde(default)]
     pub model: ModelSpec,
@@ -139,8 +227,11 @@ impl AnalysisSpec {
     pub fn checked(mut self) -> Result<Self, InvalidInput> {
         let crossing = [
             ("time_step_s", self.time_step_s.is_some()),
+            ("time_step_tolerance", self.time_step_tolerance.is_some()),
             ("tail_s", self.tail_s.is_some()),
             ("solver", self.solver.is_some()),
+            ("operator_tolerance", self.operator_tolerance.is_some()),
+            ("verify", self.verify.is_some()),
             ("spectral_radius", self.spectral_radius.is_some()),
             ("newton_limit", self.newton_limit.is_some()),
             ("bisection_limit", self.bisection_limit.is_some()),
@@ -170,10 +261,9 @@ impl AnalysisSpec {
             }
             Kind::Crossing => none(&modes, "modes", "no key of modes in a study of crossings")?,
         }
-        positive("time_step_s", *self.time_step_s.get_or_insert(0.01))?;
+        self.check_solver()?;
         not_negative("tail_s", *self.tail_s.get_or_insert(6.0))?;
         within("spectral_radius", *self.spectral_radius.get_or_insert(0.9), 0.0, 1.0)?;
-        self.solver.get_or_insert_default();
         whole("newton_limit", *self.newton_limit.get_or_insert(30), 1, 1000)?;
         whole("bisection_limit", *self.bisection_limit.get_or_insert(8), 0, 12)?;
         let damping = self.damping.get_or_insert_default();
@@ -190,6 +280,62 @@ impl AnalysisSpec {
         }
         Ok(self)
     }
+}
+
+impl AnalysisSpec {
+    /// Refuses the operator's keys beside the reference solver, and fills the defaults of time step and solver.
+    fn check_solver(&mut self) -> Result<(), InvalidInput> {
+        let solver = *self.solver.get_or_insert_default();
+        let step = *self.time_step_s.get_or_insert(TimeStepSpec::Seconds(0.01));
+        positive("time_step_s", step.seconds())?;
+        let auto = matches!(step, TimeStepSpec::Auto(_));
+        if auto {
+            let tolerance = *self.time_step_tolerance.get_or_insert(0.02);
+            positive("time_step_tolerance", tolerance)?;
+            within("time_step_tolerance", tolerance, 0.0, 0.5)?;
+        } else if let Some(tolerance) = self.time_step_tolerance {
+            let allowed = "no tolerance where time_step_s is a number";
+            return Err(InvalidInput::new("time_step_tolerance", tolerance, allowed));
+        }
+        if solver == SolverSpec::Reference {
+            let of_operator = [
+                ("operator_tolerance", self.operator_tolerance.is_some()),
+                ("verify", self.verify.is_some()),
+                ("time_step_s", auto),
+            ];
+            return match of_operator.iter().find(|(_, given)| *given) {
+                Some((key, _)) => Err(InvalidInput::new(*key, "a key of the operator", "solver: operator")),
+                None => Ok(()),
+            };
+        }
+        within(
+            "operator_tolerance",
+            *self.operator_tolerance.get_or_insert(5e-4),
+            0.0,
+            0.1,
+        )?;
+        if let Some(verify) = self.verify {
+            positive("verify.share", verify.share)?;
+            within("verify.share", verify.share, 0.0, 1.0)?;
+            not_negative("verify.deflection_tolerance", verify.deflection_tolerance)?;
+            not_negative("verify.compression_tolerance", verify.compression_tolerance)?;
+            not_negative("verify.tension_tolerance", verify.tension_tolerance)?;
+        }
+        Ok(())
+    }
+}
+
+/// A number or the word; anything else is told as such.
+fn time_step<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<TimeStepSpec>, D::Error> {
+    let value: Option<serde_json::Value> = Option::deserialize(deserializer)?;
+    let read = |value: serde_json::Value| match (value.as_f64(), value.as_str()) {
+        (Some(seconds), _) => Ok(TimeStepSpec::Seconds(seconds)),
+        (None, Some("auto")) => Ok(TimeStepSpec::Auto(AutoSpec::Auto)),
+        _ => Err(D::Error::custom(format!(
+            "found {value}, allowed: a number of seconds or \"auto\""
+        ))),
+    };
+    value.map(read).transpose()
 }
 
 fn whole(key: &str, value: usize, from: usize, to: usize) -> Result<(), InvalidInput> {
@@ -217,7 +363,11 @@ mod tests {
         let spec = checked(json!({"kind": "crossing"})).unwrap();
         assert_eq!(
             (spec.time_step_s, spec.tail_s, spec.spectral_radius),
-            (Some(0.01), Some(6.0), Some(0.9))
+            (Some(TimeStepSpec::Seconds(0.01)), Some(6.0), Some(0.9))
+        );
+        assert_eq!(
+            (spec.solver, spec.operator_tolerance),
+            (Some(SolverSpec::Operator), Some(5e-4))
         );
         assert_eq!(spec.model, ModelSpec::SuperElement);
         assert_eq!(

@@ -8,7 +8,7 @@ mod design;
 mod study;
 mod values;
 
-pub use analysis::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec};
+pub use analysis::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, TimeStepSpec, VerifySpec};
 pub use axes::{Axis, AxisName, Block, Point, SHORT_NAMES};
 pub use design::{AxisMap, Design};
 pub use study::{BridgeFile, HistoriesSpec, RecordSpec, Study, StudySpec, read_bridge};
