@@ -6,7 +6,9 @@
 
 pub mod beams;
 pub mod chain;
+pub mod operated;
 pub mod oscillator;
+pub mod scenario;
 
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
@@ -304,10 +306,15 @@ pub fn held(what: &str, tolerance: f64, right: f64, wrong: f64) {
 
 /// Answers of all jobs in their order, two threads at work.
 pub fn on_two_threads<J: Sync, R: Send>(jobs: &[J], answer: impl Fn(&J) -> R + Sync) -> Vec<R> {
+    on_threads(2, jobs, answer)
+}
+
+/// Answers of all jobs in their order, some threads at work.
+pub fn on_threads<J: Sync, R: Send>(threads: usize, jobs: &[J], answer: impl Fn(&J) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let answers = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
-        for _ in 0..2 {
+        for _ in 0..threads {
             scope.spawn(|| {
                 loop {
                     let place = next.fetch_add(1, Ordering::Relaxed);

@@ -206,7 +206,12 @@ const PURE: [&str; 7] = [
 
 /// Numbers in the unit of something else that is named beside them: a column, a quantity, a parameter whose name ends in
 /// its unit.
-const OF_WHAT_IS_NAMED: [&str; 25] = [
+const OF_WHAT_IS_NAMED: [&str; 30] = [
+    "time_step_tolerance",
+    "operator_tolerance",
+    "deflection_tolerance",
+    "compression_tolerance",
+    "tension_tolerance",
     "above",
     "below",
     "weights",
