@@ -444,32 +444,45 @@ class ChainPeer:
         return shares
 
 
+class ChainCrossing:
+    """A crossing of the chain that is about to begin, in OpenSees' domain."""
+
+    def __init__(self, chain, crossing, time_step_s, system="BandGeneral", algorithm="Newton"):
+        self.peer = peer = ChainPeer(chain, crossing["connection"])
+        self.crossing, self.time_step_s = crossing, time_step_s
+        load, speed_m_s = chain["load"], crossing["speed_m_s"]
+        footprint_m, points = load["footprint_length_m"], load["points"]
+        self.steps = int(np.ceil(((peer.length_m + footprint_m) / speed_m_s + chain["tail_s"]) / time_step_s))
+        # the footprint's front reaches the bridge at time 0
+        centre_m = speed_m_s * time_step_s * np.arange(self.steps + 1) - 0.5 * footprint_m
+        shares = sum(peer.shares(centre_m + footprint_m * ((i + 0.5) / points - 0.5)) for i in range(points)) / points
+        for i, history in enumerate(shares.T, 1):
+            ops.timeSeries("Path", i, "-dt", time_step_s, "-values", *map(float, history))
+            ops.pattern("Plain", i, i)
+            ops.load(i, 0.0, -load["weight_n"], 0.0)
+        ops.constraints("Transformation")
+        ops.numberer("RCM")
+        ops.system(system)
+        ops.test("NormDispIncr", 1e-10, 50)
+        ops.algorithm("Linear" if crossing["connection"] == "linear" else algorithm)
+        ops.integrator("Newmark", 0.5, 0.25)
+        ops.analysis("Transient")
+
+    def run(self):
+        """Deflections of the positions, upward [m], and forces of the joints [N], a row a step."""
+        peer = self.peer
+        z_m, force_n = np.zeros((self.steps, peer.modules + 1)), np.zeros((self.steps, peer.modules - 1))
+        for step in range(self.steps):
+            if ops.analyze(1, self.time_step_s) != 0:
+                sys.exit(f"OpenSees found no equilibrium in step {step} of {self.crossing}")
+            z_m[step] = [ops.nodeDisp(node, 2) for node in peer.positions()]
+            force_n[step] = [ops.basicForce(tag)[0] for tag in peer.connectors]
+        return z_m, force_n
+
+
 def opensees_crossing(chain, crossing, time_step_s):
     """Peaks of the positions and joints of one crossing, by the keys of pontoon's example."""
-    peer = ChainPeer(chain, crossing["connection"])
-    load, speed_m_s = chain["load"], crossing["speed_m_s"]
-    footprint_m, points = load["footprint_length_m"], load["points"]
-    steps = int(np.ceil(((peer.length_m + footprint_m) / speed_m_s + chain["tail_s"]) / time_step_s))
-    # the footprint's front reaches the bridge at time 0
-    centre_m = speed_m_s * time_step_s * np.arange(steps + 1) - 0.5 * footprint_m
-    shares = sum(peer.shares(centre_m + footprint_m * ((i + 0.5) / points - 0.5)) for i in range(points)) / points
-    for i, history in enumerate(shares.T, 1):
-        ops.timeSeries("Path", i, "-dt", time_step_s, "-values", *map(float, history))
-        ops.pattern("Plain", i, i)
-        ops.load(i, 0.0, -load["weight_n"], 0.0)
-    ops.constraints("Transformation")
-    ops.numberer("RCM")
-    ops.system("BandGeneral")
-    ops.test("NormDispIncr", 1e-10, 50)
-    ops.algorithm("Linear" if crossing["connection"] == "linear" else "Newton")
-    ops.integrator("Newmark", 0.5, 0.25)
-    ops.analysis("Transient")
-    z_m, force_n = np.zeros((steps, peer.modules + 1)), np.zeros((steps, peer.modules - 1))
-    for step in range(steps):
-        if ops.analyze(1, time_step_s) != 0:
-            sys.exit(f"OpenSees found no equilibrium in step {step} of {crossing}")
-        z_m[step] = [ops.nodeDisp(node, 2) for node in peer.positions()]
-        force_n[step] = [ops.basicForce(tag)[0] for tag in peer.connectors]
+    z_m, force_n = ChainCrossing(chain, crossing, time_step_s).run()
     return {
         "peak_deflection_m": np.maximum(-z_m, 0.0).max(axis=0),
         "peak_uplift_m": np.maximum(z_m, 0.0).max(axis=0),

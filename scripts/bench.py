@@ -1,0 +1,242 @@
+"""Prints how fast pontoon is: beside OpenSees, on two threads beside one, beside a core's peak. See scripts/bench.
+
+It measures speed and is no part of the tests. Knows what is asked and which clock is read when; models and loops of
+OpenSees are those of peers.py. Both sides take turns, round after round, and of each the least time counts, so that a
+machine that is busy for a moment favours neither.
+
+A step of OpenSees' is one of the plane chain, weight only, which is the smaller problem: 779 degrees of freedom in a
+plane, one connector a joint, no energy balance. Pontoon's is one of the bridge in space with everything that it
+reports. Gaps, load, footprint, speed, time step and tail are the same. Of OpenSees' equation solvers and algorithms the
+fastest on this chain stand here; their answers differ by less than 1e-8 of themselves.
+"""
+
+import argparse
+import json
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import openseespy.opensees as ops
+import peers
+
+SPEEDS_M_S = [15.0, 7.0]
+MODES = 20
+EQUATIONS, ALGORITHM = "ProfileSPD", "KrylovNewton"
+ASKED_LONE, ASKED_FULL, ASKED_THREADS, ASKED_SWEEP_S = 300.0, 1000.0, 1.9, 60.0
+VEHICLE = {"footprint_length_m": peers.FOOTPRINT_M, "track_y_m": peers.TRACK_Y_M,
+           "patch_points": peers.FOOTPRINT_POINTS}
+KINDS = {"none": "weight only", "local": "local inertia"}
+# from, to of the sweep's axes, each in as many values as the number of jobs asks for
+AXES = {"gap_tension_m": (0.0, 0.036), "gap_compression_m": (0.0, 0.018), "speed_m_s": (3.0, 15.0),
+        "load_n": (1e5, 4e5)}
+
+
+# ---- the table
+
+class Table:
+    """Rows of Markdown, and the names of those that fall short of what is asked."""
+
+    def __init__(self):
+        self.rows, self.short = [], []
+
+    def row(self, what, ours, other, figure, asked="", holds=True):
+        """A line of the table."""
+        if not holds:
+            self.short.append(f"{what}: {figure}, asked {asked}")
+        self.rows.append((what, ours, other, figure, asked, "" if not asked else "holds" if holds else "FALLS SHORT"))
+
+    def ratio(self, what, ours, other, ratio, at_least=None):
+        """A line whose figure is how many times faster."""
+        asked = "" if at_least is None else f"{at_least:,g}"
+        self.row(what, ours, other, f"{ratio:,.3g}" if ratio < 1000 else f"{ratio:,.0f}", asked,
+                 at_least is None or ratio >= at_least)
+
+    def print(self):
+        """All of it."""
+        head = ("what", "pontoon", "beside", "figure", "asked", "")
+        for row in (head, ("---",) * len(head), *self.rows):
+            print("| " + " | ".join(row) + " |")
+
+
+def note(text):
+    """Says what is being measured."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def micro(seconds):
+    """As microseconds."""
+    return f"{1e6 * seconds:,.3g} µs" if seconds < 1e-3 else f"{1e6 * seconds:,.0f} µs"
+
+
+def cpu():
+    """What the machine calls its processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return f"{names[0]}, {os.cpu_count()} cores" if names else f"{platform.processor()}, {os.cpu_count()} cores"
+
+
+# ---- crossings
+
+def chain_steps_s(chain):
+    """For each speed the seconds a step of OpenSees' loop, its outputs read."""
+    found = {}
+    for speed_m_s in SPEEDS_M_S:
+        crossing = {"connection": "nonlinear", "speed_m_s": speed_m_s}
+        ready = peers.ChainCrossing(chain, crossing, chain["time_step_s"], EQUATIONS, ALGORITHM)
+        _, seconds = peers.timed(ready.run)
+        found[speed_m_s] = seconds / ready.steps
+    return found
+
+
+def compare_crossings(table, rounds):
+    """A step alone and with all lanes full beside a step of the chain's, and the share of the core's peak."""
+    chain = json.loads(peers.CHAIN.read_text())
+    ours, theirs, peak = {}, {}, 0.0
+    for turn in range(rounds):
+        note(f"crossings, round {turn + 1} of {rounds}")
+        speed = json.loads(subprocess.check_output([os.environ["PONTOON_SPEED"]]))
+        peak = max(peak, speed["peak_flop_per_s"])
+        for c in speed["crossings"]:
+            best = ours.setdefault((c["speed_m_s"], c["inertia"]), c)
+            for key in ("lone_step_s", "full_step_s"):
+                best[key] = min(best[key], c[key])
+        chain |= {"time_step_s": speed["time_step_s"], "tail_s": speed["tail_s"]}
+        for speed_m_s, seconds in chain_steps_s(chain).items():
+            theirs[speed_m_s] = min(theirs.get(speed_m_s, seconds), seconds)
+    for (speed_m_s, inertia), c in ours.items():
+        other = theirs[speed_m_s]
+        weight_only = inertia == "none"
+        for key, how, asked in (("lone_step_s", "alone", ASKED_LONE),
+                                ("full_step_s", f"{speed['lanes']} lanes full", ASKED_FULL)):
+            what = f"step of a crossing at {speed_m_s:g} m/s, {KINDS[inertia]}, {how}"
+            beside = micro(other) + (" chain" if weight_only else " chain, weight only")
+            table.ratio(what, micro(c[key]), beside, other / c[key], asked if weight_only else None)
+    for (speed_m_s, inertia), c in ours.items():
+        if inertia == "none":
+            rate = c["flop_per_step"] / c["full_step_s"]
+            table.row(f"floating-point operations at {speed_m_s:g} m/s, weight only, lanes full",
+                      f"{c['flop_per_step']:,.0f} a step, {rate / 1e9:.1f} Gflop/s",
+                      f"{peak / 1e9:.1f} Gflop/s peak of a core", f"{100 * rate / peak:.0f} %")
+    sizes = speed["operator"]
+    note(f"{sizes['modes']} modes, {sizes['connectors']} connectors, {sizes['observed_rows']} observed rows,"
+         f" {speed['instructions']}; the count of operations: tests/examples/speed.rs")
+
+
+# ---- modes
+
+def compare_modes(table, rounds):
+    """The program from file to printed frequencies beside OpenSees' model and eigenvalues."""
+    bridge = {key: value for key, value in json.loads(peers.BRIDGE.read_text()).items() if key != "provenance"}
+    ours, theirs = [], []
+    for turn in range(rounds):
+        note(f"modes, round {turn + 1} of {rounds}")
+        words = ("modes", peers.BRIDGE, "--model", "full", "--count", MODES, "--format", "json")
+        ours.append(peers.timed(peers.pontoon, *words)[1])
+        _, made_s = peers.timed(peers.BridgePeer, bridge, "ASDShellQ4", bridge["modules"], True)
+        theirs.append((made_s, peers.timed(ops.eigen, "-genBandArpack", MODES)[1]))
+    eigen_s, made_s = min(eigen for _, eigen in theirs), min(made for made, _ in theirs)
+    table.ratio(f"{MODES} modes of the full bridge, the whole program", f"{min(ours):.2f} s",
+                f"{eigen_s:.2f} s eigenvalues alone ({made_s:.2f} s model)", eigen_s / min(ours))
+
+
+# ---- the sweep
+
+def sides(jobs):
+    """The number of values of each axis: as equal as the factors of the number of jobs allow."""
+    factors, rest, p = [], jobs, 2
+    while rest > 1:
+        while rest % p == 0:
+            factors.append(p)
+            rest //= p
+        p += 1
+    values = [1] * len(AXES)
+    for factor in reversed(factors):
+        values[values.index(min(values))] *= factor
+    return values
+
+
+def processor_s():
+    """Processor time of the programs that have been run."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def sweep_s(folder, threads):
+    """Seconds of the sweep's jobs, and of the program from start to end."""
+    out, before_s = folder / f"out-{threads}", processor_s()
+    _, whole_s = peers.timed(peers.pontoon, "run", folder / "study.json", "--out", out, "--threads", threads, "--quiet")
+    manifest = json.loads((out / "manifest.json").read_text())
+    if manifest["failed"]:
+        sys.exit(f"{manifest['failed']} jobs of the sweep failed")
+    # as much on two threads as on one: what is missing of the ratio, other programs took
+    note(f"  {manifest['jobs_s']:.1f} s, processor time of the program {processor_s() - before_s:.1f} s")
+    return manifest["jobs_s"], whole_s
+
+
+def compare_threads(table, rounds, jobs, solver, inertia):
+    """The program's sweep on one thread and on two."""
+    grid = {axis: {"linspace": [*AXES[axis], count]} if count > 1 else AXES[axis][1]
+            for axis, count in zip(AXES, sides(jobs))}
+    analysis = {"kind": "crossing", "time_step_s": 0.01, "tail_s": 6.0, "solver": solver}
+    study = {"name": "bench", "bridge": "bridge.json", "vehicle": VEHICLE | {"inertia": inertia},
+             "analysis": analysis, "design": [{"grid": {"connection": "nonlinear", **grid}}]}
+    times = {1: [], 2: []}
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        (folder / "bridge.json").write_text(peers.BRIDGE.read_text())
+        (folder / "study.json").write_text(json.dumps(study))
+        for turn in range(rounds):
+            for threads, found in times.items():
+                note(f"{jobs:,} jobs on {threads} thread(s), round {turn + 1} of {rounds}")
+                found.append(sweep_s(folder, threads))
+    one, two = (min(jobs_s for jobs_s, _ in times[threads]) for threads in (1, 2))
+    whole = min(whole_s for _, whole_s in times[2])
+    what = f"{jobs:,} crossings of a sweep, {KINDS[inertia]}, on two threads"
+    table.ratio(what, f"{two:.1f} s", f"{one:.1f} s one thread", one / two, ASKED_THREADS)
+    table.row(what, f"{two:.1f} s", f"{whole:.1f} s the whole program",
+              f"{two:.1f} s", f"under {ASKED_SWEEP_S:g} s", two < ASKED_SWEEP_S)
+
+
+def main():
+    """Measures the parts that are asked for; exit status 1 where a figure falls short."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("part", nargs="?", default="all", choices=["crossing", "modes", "sweep", "all"])
+    parser.add_argument("--jobs", type=int, default=10_000, help="crossings of the sweep")
+    parser.add_argument("--rounds", type=int, default=3, help="how often crossings and modes are measured")
+    parser.add_argument("--sweep-rounds", type=int, default=1, help="how often the sweep is")
+    parser.add_argument("--solver", default="operator", help="the sweep's analysis.solver")
+    parser.add_argument("--inertia", default="local", choices=list(KINDS), help="the sweep's vehicle.inertia")
+    options = parser.parse_args()
+    if min(options.jobs, options.rounds, options.sweep_rounds) < 1:
+        parser.error("jobs and rounds are 1 or more")
+    busy = os.getloadavg()[0]
+    if busy > 0.5:
+        note(f"load average {busy:.1f}: other programs are running, the ratios will be too low")
+    table, start = Table(), time.perf_counter()
+    with tempfile.NamedTemporaryFile() as log:
+        ops.logFile(log.name, "-noEcho")
+        if options.part in ("crossing", "all"):
+            compare_crossings(table, options.rounds)
+        if options.part in ("modes", "all"):
+            compare_modes(table, options.rounds)
+        if options.part in ("sweep", "all"):
+            compare_threads(table, options.sweep_rounds, options.jobs, options.solver, options.inertia)
+    rounds = f"{options.rounds} round(s) in turns, of the sweep {options.sweep_rounds}"
+    print(f"Speed, no test of anything else: {cpu()}, OpenSeesPy {ops.version()}; the least of {rounds}.\n")
+    table.print()
+    print(f"\n{time.perf_counter() - start:.0f} s; short of what is asked: {len(table.short)}")
+    for name in table.short:
+        print(f"  {name}")
+    sys.exit(1 if table.short else 0)
+
+
+if __name__ == "__main__":
+    main()

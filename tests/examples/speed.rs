@@ -1,0 +1,173 @@
+//! Prints what the operator's crossings cost on one thread of this machine, and what its core could do at most, as one JSON
+//! document: `speed [seconds for each figure]`. scripts/bench reads it.
+//!
+//! Knows a clock, which no test does. Does not know what another code needs, nor what is asked.
+//!
+//! Floating-point operations of a step of one crossing, of m modes, c connectors of which a pull or push, and v observed
+//! rows, a fused multiply-add being two:
+//!
+//! `2 (m c + m a + c a + (m + c) v) + 73 m + 110 c + 25 v`
+//!
+//! elongations `B q`, forces on the modes `B^T N` and residual `R_BB N`, readings `V [q; s]`; then what the step does for each
+//! mode, connector and row to advance and account for it, counted in the source. Settling the contact, comparisons, copies
+//! and the vehicle's own numbers are left out, so that the share of the peak is rather too low.
+
+#![allow(clippy::expect_used)]
+
+use pontoon_core::analysis::crossing::Crossing;
+use pontoon_core::operator::InstructionPath;
+use pontoon_core::response::{CrossingResponse, Quantity};
+use pontoon_core::vehicle::{Inertia, Vehicle};
+use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, vehicle};
+use pulp::{Arch, Simd, WithSimd};
+use serde_json::{Value, json};
+use std::hint::black_box;
+use std::time::Instant;
+
+fn main() {
+    let seconds = std::env::args()
+        .nth(1)
+        .map_or(0.5, |word| word.parse().expect("seconds"));
+    let path = InstructionPath::of_this_machine();
+    let start = Instant::now();
+    let scenario = Scenario::new();
+    let ready_s = start.elapsed().as_secs_f64();
+    let sizes = Sizes::of(&scenario);
+    let mut crossings = Vec::new();
+    for speed_m_s in [15.0, 7.0] {
+        for inertia in [Inertia::None, Inertia::Local] {
+            let crossing = scenario.crossing(speed_m_s, scenario.everything());
+            crossings.push(figures(&scenario, &sizes, &vehicle(inertia), &crossing, seconds));
+        }
+    }
+    let report = json!({
+        "instructions": path.name,
+        "lanes": path.lanes,
+        "time_step_s": TIME_STEP_S,
+        "tail_s": TAIL_S,
+        "ready_s": ready_s,
+        "operator": {
+            "tolerance": OPERATOR_TOLERANCE,
+            "modes": sizes.modes,
+            "connectors": sizes.connectors,
+            "observed_rows": sizes.observed,
+        },
+        "crossings": crossings,
+        "peak_flop_per_s": peak_flop_per_s(seconds),
+    });
+    println!("{report}");
+}
+
+/// Sizes of the operator's matrices.
+struct Sizes {
+    modes: usize,
+    connectors: usize,
+    observed: usize,
+}
+
+impl Sizes {
+    fn of(scenario: &Scenario) -> Self {
+        let design = &scenario.ready.design;
+        // four corners of each module's deck and, where the draft is known, of its bottom
+        let corners = 4 * design.modules * if design.draft_m.is_some() { 2 } else { 1 };
+        Self {
+            modes: scenario.solver.operator().cutoff().modes,
+            connectors: design.connectors.y_m.len() * (design.modules - 1),
+            observed: design.positions() + corners,
+        }
+    }
+
+    fn flop_per_step(&self, active: f64) -> f64 {
+        let [m, c, v] = [self.modes, self.connectors, self.observed].map(|count| count as f64);
+        2.0 * (m * c + m * active + c * active + (m + c) * v) + 73.0 * m + 110.0 * c + 25.0 * v
+    }
+}
+
+/// Seconds a step of a crossing alone and beside its likes.
+fn figures(scenario: &Scenario, sizes: &Sizes, vehicle: &Vehicle, crossing: &Crossing, seconds: f64) -> Value {
+    let solver = &scenario.solver;
+    let answer = solver.solve(vehicle, crossing).expect("a crossing");
+    let steps = answer.statistics.steps as f64;
+    let jobs = vec![(vehicle, crossing); ROUNDS * InstructionPath::of_this_machine().lanes];
+    let lone_s = least_s(seconds, || drop(black_box(solver.solve(vehicle, crossing))));
+    let full_s = least_s(seconds, || drop(black_box(solver.solve_all(&jobs, 0))));
+    let active = mean_active(
+        &answer,
+        sizes.connectors as f64 / (scenario.ready.design.modules - 1) as f64,
+    );
+    json!({
+        "speed_m_s": crossing.speed_m_s,
+        "inertia": vehicle.inertia,
+        "steps": answer.statistics.steps,
+        "mean_active_connectors": active,
+        "lone_step_s": lone_s / steps,
+        "full_step_s": full_s / steps / jobs.len() as f64,
+        "flop_per_step": sizes.flop_per_step(active),
+    })
+}
+
+/// Crossings that a lane takes one after the other.
+const ROUNDS: usize = 8;
+
+/// Connectors that pull or push, on the mean over the steps: those of a joint do so together, the load being centric.
+fn mean_active(answer: &CrossingResponse, connectors_of_a_joint: f64) -> f64 {
+    let at_work = |values: &[f64]| values.iter().filter(|force| **force != 0.0).count();
+    let joints = answer
+        .histories
+        .iter()
+        .filter(|history| history.quantity == Quantity::Force);
+    let instants: usize = joints.map(|history| at_work(&history.values)).sum();
+    connectors_of_a_joint * instants as f64 / answer.history_time_s.len() as f64
+}
+
+/// Least time of something that is done again and again for a while.
+fn least_s(seconds: f64, work: impl Fn()) -> f64 {
+    let (start, mut least) = (Instant::now(), f64::INFINITY);
+    loop {
+        let begun = Instant::now();
+        work();
+        least = least.min(begun.elapsed().as_secs_f64());
+        if start.elapsed().as_secs_f64() > seconds {
+            return least;
+        }
+    }
+}
+
+/// Fused multiply-adds that do not wait for each other: as many as hide the latency of two units.
+const CHAINS: usize = 12;
+
+/// Multiply-adds of each chain.
+const LINKS: usize = 1_000_000;
+
+/// What one core does at most on vectors as the lanes have.
+fn peak_flop_per_s(seconds: f64) -> f64 {
+    let flop = (2 * CHAINS * LINKS * InstructionPath::of_this_machine().lanes) as f64;
+    let factor = black_box(0.999);
+    let run = || {
+        black_box(Arch::new().dispatch(Chains { factor }));
+    };
+    flop / least_s(seconds, run)
+}
+
+struct Chains {
+    factor: f64,
+}
+
+impl WithSimd for Chains {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let (a, b) = (simd.splat_f64s(self.factor), simd.splat_f64s(1.0 - self.factor));
+        let mut x = [simd.splat_f64s(0.5); CHAINS];
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = simd.splat_f64s(i as f64);
+        }
+        for _ in 0..LINKS {
+            for x in &mut x {
+                *x = simd.mul_add_f64s(*x, a, b);
+            }
+        }
+        x.iter().map(|x| simd.reduce_sum_f64s(*x)).sum()
+    }
+}
