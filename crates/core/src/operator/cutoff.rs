@@ -19,7 +19,7 @@ pub struct Cutoff {
     pub frequency_hz: f64,
     /// Error asked for.
     pub tolerance: f64,
-    /// Largest `omega^2 D / F` over connectors and deck nodes at [`REFERENCE_HZ`]: F the whole flexibility of a row, D the
+    /// Largest `omega^2 D / F` over connectors and deck nodes at 5 Hz: F the whole flexibility of a row, D the
     /// part `r K^-1 M K^-1 r^T - sum of phi^2 / omega_k^4` by which the residual flexibility would answer otherwise than
     /// statically.
     pub error: f64,
