@@ -143,10 +143,9 @@ pub(super) struct Scratch {
     pub x: Vec<f64>,
     pub w: Vec<f64>,
     pub inside: Vec<f64>,
-    /// `sum of omega^2 q^2`.
+    /// `sum of omega^2 q^2`, `s^T R s`.
     pub modal_strain: Vec<f64>,
-    /// One lane's reach.
-    pub reach: Vec<f64>,
+    pub residual_strain: Vec<f64>,
     pub lane_free: Free,
     /// One lane's connector forces.
     pub lane_n: Vec<f64>,
@@ -220,7 +219,7 @@ impl Lanes {
                 w: of(nv),
                 inside: of(sizes.inside),
                 modal_strain: of(1),
-                reach: vec![0.0; sizes.followed()],
+                residual_strain: of(1),
                 lane_free: Free {
                     q: vec![0.0; m],
                     v: vec![0.0; m],
@@ -365,6 +364,13 @@ impl Lanes {
         self.most_nodes
     }
 
+    /// Whether any lane's vehicle has masses that ride along.
+    #[inline(always)]
+    pub(super) fn any_mass(&self) -> bool {
+        let has = |lane: &Lane| lane.passage.as_ref().is_some_and(|p| !p.wheels.masses.is_empty());
+        self.lanes.iter().any(has)
+    }
+
     /// The passage of a lane.
     pub fn passage(&self, lane: usize) -> Option<&Passage> {
         self.lanes[lane].passage.as_ref()
@@ -415,8 +421,14 @@ impl Lanes {
             return;
         }
         *unloaded = 0;
-        spread(&wheels.weights, wheels.width, weights, &mut self.scratch.reach);
-        scatter(&self.scratch.reach, &mut self.scratch.weights, lane, width);
+        spread(
+            &wheels.weights,
+            wheels.width,
+            weights,
+            &mut self.scratch.weights,
+            lane,
+            width,
+        );
     }
 }
 
@@ -428,20 +440,43 @@ fn half_compliance(law: &Law) -> f64 {
     0.5 / law.line(at_work).k
 }
 
-/// `reach := sum of forces times the reach of their stations`.
+/// Columns that are summed at once.
+const COLUMNS: usize = 16;
+
+/// Writes the sum of forces times the reach of their stations into a lane.
 #[inline(always)]
 pub(super) fn spread(
     lines: &[super::wheels::WheelLine],
-    width: usize,
+    reach: usize,
     forces: &[(usize, usize, f64)],
-    reach: &mut [f64],
+    to: &mut [f64],
+    lane: usize,
+    width: usize,
 ) {
-    reach.fill(0.0);
-    for &(line, station, force) in forces {
-        let of = &lines[line].reach(station, width)[..reach.len()];
-        for (sum, x) in reach.iter_mut().zip(of) {
-            *sum = force.mul_add(*x, *sum);
+    let columns = to.len() / width;
+    let mut from = 0;
+    while from < columns {
+        let many = COLUMNS.min(columns - from);
+        let mut sums = [0.0; COLUMNS];
+        for &(line, station, force) in forces {
+            let of = &lines[line].reach(station, reach)[from..from + many];
+            if let Some(of) = of.first_chunk::<COLUMNS>() {
+                for i in 0..COLUMNS {
+                    sums[i] = f64::mul_add(force, of[i], sums[i]);
+                }
+            } else {
+                for (sum, x) in sums.iter_mut().zip(of) {
+                    *sum = force.mul_add(*x, *sum);
+                }
+            }
         }
+        for (to, sum) in to[from * width..(from + many) * width]
+            .chunks_exact_mut(width)
+            .zip(&sums)
+        {
+            to[lane] = *sum;
+        }
+        from += many;
     }
 }
 

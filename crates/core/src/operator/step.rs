@@ -43,10 +43,11 @@ impl WithSimd for Step<'_> {
             lanes: all,
         } = self;
         let o = Ops(simd);
+        let masses = all.any_mass();
         for lane in 0..S::F64_LANES {
             all.weigh(operator, lane);
         }
-        all.predict(o, level);
+        all.predict(o, level, masses);
         let mut unsettled: Option<Vec<(usize, Saved)>> = None;
         for lane in 0..S::F64_LANES {
             if !all.settle(operator, level, newton_limit, lane) {
@@ -65,7 +66,7 @@ impl WithSimd for Step<'_> {
 impl Lanes {
     /// The step without new connector and inertia forces: `d` of modes, of what they leave out, trial elongations.
     #[inline(always)]
-    fn predict<S: Simd>(&mut self, o: Ops<S>, level: &Level) {
+    fn predict<S: Simd>(&mut self, o: Ops<S>, level: &Level, masses: bool) {
         let (old, now) = (&self.motion, &mut self.scratch);
         let s = &level.scheme;
         let (m, nc) = (level.c.len(), level.modal.nrows());
@@ -73,11 +74,13 @@ impl Lanes {
         let m_old = o.splat(s.alpha_m);
 
         // modes
+        let all = m + old.r[0].len() / S::F64_LANES;
         let (w_now, w_old, inertia) = (
-            lanes::<S>(&now.weights),
-            lanes::<S>(&old.weights),
-            lanes::<S>(&old.inertia),
+            &lanes::<S>(&now.weights)[..all],
+            &lanes::<S>(&old.weights)[..all],
+            &lanes::<S>(&old.inertia)[..all],
         );
+        let (on_q, on_v, on_a, c) = (&level.on_q[..m], &level.on_v[..m], &level.on_a[..m], &level.c[..m]);
         let (q, v, a) = (
             &lanes::<S>(&old.q)[..m],
             &lanes::<S>(&old.v)[..m],
@@ -93,16 +96,16 @@ impl Lanes {
             // downward forces of the vehicle that do not wait for the new instant
             let down = o.fma(m_old, inertia[k], f.at(o, w_now[k], w_old[k]));
             let force = o.fma(f.old, contact[k], down);
-            let from_a = o.mul(o.splat(level.on_a[k]), a[k]);
-            let motion = o.fma(
-                o.splat(level.on_q[k]),
-                q[k],
-                o.fma(o.splat(level.on_v[k]), v[k], from_a),
-            );
-            d[k] = o.less(motion, o.splat(level.c[k]), force);
-            free_q[k] = o.add(q[k], d[k]);
-            free_v[k] = newmark.velocity(o, d[k], v[k], a[k]);
-            free_a[k] = newmark.acceleration(o, d[k], v[k], a[k]);
+            let from_a = o.mul(o.splat(on_a[k]), a[k]);
+            let motion = o.fma(o.splat(on_q[k]), q[k], o.fma(o.splat(on_v[k]), v[k], from_a));
+            d[k] = o.less(motion, o.splat(c[k]), force);
+        }
+        if masses {
+            for k in 0..m {
+                free_q[k] = o.add(q[k], d[k]);
+                free_v[k] = newmark.velocity(o, d[k], v[k], a[k]);
+                free_a[k] = newmark.acceleration(o, d[k], v[k], a[k]);
+            }
         }
 
         // what the modes leave out
@@ -193,8 +196,7 @@ impl Lanes {
             riders.add_inertia(ride, level, &small.riders, &small.forces, inertia);
             let unscale = 1.0 / (1.0 - level.scheme.alpha_m);
             riders.on_nodes(&small.riders, unscale, masses);
-            spread(&wheels.masses, wheels.width, masses, &mut now.reach);
-            scatter(&now.reach, &mut now.inertia, lane, width);
+            spread(&wheels.masses, wheels.width, masses, &mut now.inertia, lane, width);
             gather(&now.n, &mut now.lane_n, lane, width);
             riders.lead(wheels, level, m, masses, &now.lane_n);
         }
@@ -232,8 +234,10 @@ impl Lanes {
         // modes
         let (mut inertia, mut stiffness, mut damping_m, mut damping_k) = (zero, zero, zero, zero);
         let (mut kinetic, mut strain, mut work) = (zero, zero, zero);
-        let (w_now, w_old) = (lanes::<S>(&now.weights), lanes::<S>(&old.weights));
-        let (i_now, i_old) = (lanes::<S>(&now.inertia), lanes::<S>(&old.inertia));
+        let all = m + old.r[0].len() / S::F64_LANES;
+        let (w_now, w_old) = (&lanes::<S>(&now.weights)[..all], &lanes::<S>(&old.weights)[..all]);
+        let (i_now, i_old) = (&lanes::<S>(&now.inertia)[..all], &lanes::<S>(&old.inertia)[..all]);
+        let (omega2, c) = (&omega2[..m], &level.c[..m]);
         let q = &mut lanes_mut::<S>(&mut old.q)[..m];
         let v = &mut lanes_mut::<S>(&mut old.v)[..m];
         let a = &mut lanes_mut::<S>(&mut old.a)[..m];
@@ -241,7 +245,7 @@ impl Lanes {
         for k in 0..m {
             let w2 = o.splat(omega2[k]);
             let force = o.fma(f.new, contact[k], o.mul(by_m.new, i_now[k]));
-            let d = o.less(d_free[k], o.splat(level.c[k]), force);
+            let d = o.less(d_free[k], o.splat(c[k]), force);
             let q_new = o.add(q[k], d);
             let v_new = newmark.velocity(o, d, v[k], a[k]);
             let a_new = newmark.acceleration(o, d, v[k], a[k]);
@@ -264,7 +268,7 @@ impl Lanes {
         // what the modes leave out, whose energy is 1/2 s^T R s - s^T r but for that of the deck under the wheels alone
         let rho = o.splat(level.rho);
         let (rho_f, rho_m) = (o.mul(rho, f.new), o.mul(rho, by_m.new));
-        let mut springs = zero;
+        let (mut springs, mut residual) = (zero, zero);
         let (n_new, n_old, rn_new) = (lanes::<S>(&now.n), lanes::<S>(&old.n), lanes::<S>(&now.rn));
         let (ds, dsigma, dr) = (lanes::<S>(&now.ds), lanes::<S>(&now.dsigma), lanes::<S>(&now.dr));
         let [s0, s1, s2] = &mut old.s;
@@ -293,6 +297,7 @@ impl Lanes {
                 moved,
                 o.less(damping_k, f.at(o, r1[i], r_old[1]), ds),
             );
+            residual = o.fma(s0[i], t0[i], residual);
             strain = o.fma(s0[i], o.sub(o.sub(t0[i], r0[i]), r0[i]), strain);
             let down = o.add(
                 f.at(o, w_now[m + i], w_old[m + i]),
@@ -306,6 +311,7 @@ impl Lanes {
             let dr = o.less(dr[i], rho_m, i_now[m + i]);
             advance(o, &newmark, dr, &mut r0[i], &mut r1[i], &mut r2[i]);
         }
+        lanes_mut::<S>(&mut now.residual_strain)[0] = residual;
         let half = o.splat(0.5);
         (kinetic, strain) = (o.mul(half, kinetic), o.mul(half, strain));
 

@@ -108,16 +108,31 @@ impl Watch {
         sums[4] = o.max(sums[4], o.abs(gap));
         sums[5] = o.max(sums[5], o.abs(sums[1]));
     }
+}
 
-    /// Takes a value where it is larger than all before.
+/// Peaks of all rows, to be raised one after the other.
+struct Peaks<'a, S: Simd> {
+    o: Ops<S>,
+    now: S::f64s,
+    rows: std::iter::Zip<std::slice::IterMut<'a, S::f64s>, std::slice::IterMut<'a, S::f64s>>,
+}
+
+impl<S: Simd> Peaks<'_, S> {
+    /// Takes the next row's value where it is larger than all before.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, o: Ops<S>, row: usize, value: S::f64s) {
-        let now = lanes::<S>(&self.now)[0];
-        let best = &mut lanes_mut::<S>(&mut self.value)[row];
-        let larger = o.0.greater_than_f64s(value, *best);
-        *best = o.0.select_f64s(larger, value, *best);
-        let time = &mut lanes_mut::<S>(&mut self.time)[row];
-        *time = o.0.select_f64s(larger, now, *time);
+    fn take(&mut self, value: S::f64s) {
+        if let Some((best, time)) = self.rows.next() {
+            let larger = self.o.0.greater_than_f64s(value, *best);
+            *best = self.o.0.select_f64s(larger, value, *best);
+            *time = self.o.0.select_f64s(larger, self.now, *time);
+        }
+    }
+
+    /// The next two rows: one for the value's other sense, one for its own.
+    #[inline(always)]
+    fn take_both(&mut self, value: S::f64s) {
+        self.take(self.o.neg(value));
+        self.take(value);
     }
 }
 
@@ -143,25 +158,24 @@ impl Lanes {
             corners,
             bottom_corners,
         } = watch.rows;
-        for (i, &z) in w[..positions].iter().enumerate() {
-            watch.take(o, 2 * i, o.neg(z));
-            watch.take(o, 2 * i + 1, z);
+        let mut peaks = Peaks::<S> {
+            o,
+            now: lanes::<S>(&watch.now)[0],
+            rows: lanes_mut::<S>(&mut watch.value)
+                .iter_mut()
+                .zip(lanes_mut::<S>(&mut watch.time)),
+        };
+        for &z in &w[..positions] {
+            peaks.take_both(z);
         }
-        let n = lanes::<S>(&motion.n);
-        let per_joint = watch.per_joint.max(1);
-        let mut row = 2 * positions;
-        for joint in n.chunks_exact(per_joint) {
+        for joint in lanes::<S>(&motion.n).chunks_exact(watch.per_joint.max(1)) {
             let mut sum = o.splat(0.0);
             for &force in joint {
                 sum = o.add(sum, force);
             }
-            watch.take(o, row, o.neg(sum));
-            watch.take(o, row + 1, sum);
-            row += 2;
+            peaks.take_both(sum);
             for &force in joint {
-                watch.take(o, row, o.neg(force));
-                watch.take(o, row + 1, force);
-                row += 2;
+                peaks.take_both(force);
             }
         }
         // corners: module after module, left and right end, right and left edge
@@ -201,25 +215,30 @@ impl Lanes {
     #[inline(always)]
     fn watch_inside<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, level: &Level) {
         let (width, sizes) = (S::F64_LANES, &operator.sizes);
-        let (motion, now, watch) = (&self.motion, &mut self.scratch, &mut self.watch);
-        let mut roots = [[0.0; 3]; MOST_LANES];
-        for (lane, of) in self.lanes.iter().enumerate() {
-            let mut residual = 0.0;
-            for i in 0..sizes.connectors {
-                residual += motion.s[0][i * width + lane] * motion.sigma[0][i * width + lane];
-            }
-            let mut load = 0.0;
+        let (now, watch) = (&mut self.scratch, &mut self.watch);
+        let mut loads = [0.0; MOST_LANES];
+        for (load, of) in loads.iter_mut().zip(&self.lanes) {
             for (.., force) in of.weights.iter().chain(&of.masses) {
-                load += force.abs();
+                *load += force.abs();
             }
-            roots[lane] = [now.modal_strain[lane].sqrt(), residual.max(0.0).sqrt(), load];
         }
+        let [modal, residual] = [&now.modal_strain, &now.residual_strain].map(|x| lanes::<S>(x)[0]);
+        let modal = o.0.sqrt_f64s(modal);
+        let residual = o.0.sqrt_f64s(o.max(residual, o.splat(0.0)));
+        let load = lanes::<S>(&loads)[0];
         for (module, bound) in operator.inside_bounds.iter().enumerate() {
+            let [of_modes, of_residual, of_load] = [o.splat(bound[0]), o.splat(bound[1]), o.splat(bound[2])];
+            let margin = o.fma(of_modes, modal, o.fma(of_residual, residual, o.mul(of_load, load)));
+            let lowest = o.add(lanes::<S>(&watch.of_module)[module], margin);
+            let lower = o.0.greater_than_f64s(lowest, lanes::<S>(&watch.edge)[0]);
+            if o.0.first_true_m64s(lower) >= width {
+                continue;
+            }
+            let mut lowests = [0.0; MOST_LANES];
+            lanes_mut::<S>(&mut lowests)[0] = lowest;
             let mut computed = false;
             for (lane, of) in self.lanes.iter().enumerate() {
-                let root = roots[lane];
-                let margin = bound[0] * root[0] + bound[1] * root[1] + bound[2] * root[2];
-                let lower = watch.of_module[module * width + lane] + margin > watch.edge[lane];
+                let lower = lowests[lane] > watch.edge[lane];
                 let (Some(passage), true) = (&of.passage, lower) else {
                     continue;
                 };
