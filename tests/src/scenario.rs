@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub const BRIDGE: &str = "fu2005";
 
 /// The operator's tolerance.
-pub const OPERATOR_TOLERANCE: f64 = 5e-4;
+pub const OPERATOR_TOLERANCE: f64 = 6e-4;
 
 /// The time step [s].
 pub const TIME_STEP_S: f64 = 0.01;

@@ -185,7 +185,7 @@ pub struct AnalysisSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<SolverSpec>,
     /// What the operator may leave out: modes are added until the flexibility of connectors and deck at 5 Hz is off by no
-    /// more than this share; 0.0005 where absent. A key of the operator.
+    /// more than this share; 0.0006 where absent. A key of the operator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 0.1))]
     pub operator_tolerance: Option<f64>,
@@ -310,7 +310,7 @@ impl AnalysisSpec {
         }
         within(
             "operator_tolerance",
-            *self.operator_tolerance.get_or_insert(5e-4),
+            *self.operator_tolerance.get_or_insert(6e-4),
             0.0,
             0.1,
         )?;
@@ -367,7 +367,7 @@ mod tests {
         );
         assert_eq!(
             (spec.solver, spec.operator_tolerance),
-            (Some(SolverSpec::Operator), Some(5e-4))
+            (Some(SolverSpec::Operator), Some(6e-4))
         );
         assert_eq!(spec.model, ModelSpec::SuperElement);
         assert_eq!(
