@@ -17,7 +17,7 @@ use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, BridgeDesign, Condensation, Ends, Model, PreparedModule};
 use pontoon_core::connector::Connection;
 use pontoon_core::response::{CrossingResponse, Quantity, Record, StaticResponse};
-use pontoon_core::vehicle::{Axle, Inertia, Vehicle, VehicleDesign};
+use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::Mutex;
@@ -240,20 +240,10 @@ pub fn footprint(track_y_m: &[f64], inertia: Inertia) -> Vehicle {
 
 /// Axles of two tracks 2.8 m apart: for each its distance behind the front, share and patch length.
 pub fn axles(list: &[(f64, f64, f64)], inertia: Inertia, patch_points: usize) -> Vehicle {
-    let axle = |&(behind_front_m, share, patch_length_m): &(f64, f64, f64)| Axle {
-        behind_front_m,
-        share,
-        patch_length_m,
-        patch_width_m: 0.0,
-        track_y_m: vec![-1.4, 1.4],
-    };
-    let design = VehicleDesign {
-        axles: Some(list.iter().map(axle).collect()),
-        inertia,
-        patch_points,
-        ..VehicleDesign::default()
-    };
-    design.check(8.082).expect("a vehicle")
+    let line =
+        |&(behind_front_m, share, length_m): &(f64, f64, f64)| (behind_front_m, share, length_m, 0.0, [-1.4, 1.4]);
+    let list: Vec<_> = list.iter().map(line).collect();
+    operated::wide_axles(&list, inertia, patch_points)
 }
 
 /// Frequency of the mode of a name [Hz].
