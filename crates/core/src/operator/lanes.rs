@@ -4,8 +4,9 @@
 //! know the step's arithmetic or when a crossing ends.
 
 use super::basis::{BridgeOperator, Sizes};
+use super::beside::Beside;
 use super::panel::InstructionPath;
-use super::riders::{Beside, Free, Riders};
+use super::riders::{Free, Riders};
 use super::settle::{Small, Unsettled};
 use super::watch::Watch;
 use super::wheels::{Ride, Wheels};
@@ -170,7 +171,7 @@ pub struct Lanes {
 pub struct Saved {
     numbers: Vec<f64>,
     states: Vec<State>,
-    beside: Vec<Beside>,
+    beside: Beside,
     masses: Vec<(usize, usize, f64)>,
     statistics: Statistics,
 }
@@ -250,7 +251,7 @@ impl Lanes {
         of.small.states.fill(passage.law.state(0.0));
         of.statistics = Statistics::default();
         of.unloaded = 0;
-        of.riders.put_beside(&[]);
+        of.riders.leave();
         of.masses.clear();
         of.axles = vec![(0.0, true); passage.wheels.vehicle.axles];
         of.inertia = vec![0.0; passage.wheels.vehicle.axles];
@@ -316,7 +317,7 @@ impl Lanes {
                 .flat_map(|x| x.iter().skip(lane).step_by(width).copied())
                 .collect(),
             states: self.lanes[lane].small.states.clone(),
-            beside: self.lanes[lane].riders.beside().to_vec(),
+            beside: self.lanes[lane].riders.beside().clone(),
             masses: self.lanes[lane].masses.clone(),
             statistics: self.lanes[lane].statistics,
         }

@@ -9,6 +9,7 @@
 //! vehicle sees of the deck, [`Lanes`] the motion.
 
 mod basis;
+mod beside;
 mod cutoff;
 mod lanes;
 mod level;

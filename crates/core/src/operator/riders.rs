@@ -3,17 +3,17 @@
 //! Knows one vehicle's place at one instant, laid out once so that a step allocates nothing. Does not know the scheme but
 //! for its factors.
 
+use super::beside::{Beside, Pressing};
 use super::level::Level;
 use super::wheels::{Ride, WheelLine, Wheels};
 use crate::bridge::Track;
-use crate::scheme::Scheme;
 use crate::vehicle::{GRAVITY_M_S2, Inertia};
 
 /// A node of the deck under the vehicle: line of [`Wheels`] and station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Node {
-    line: usize,
-    station: usize,
+pub(super) struct Node {
+    pub line: usize,
+    pub station: usize,
 }
 
 /// A mass and its rows on nodes.
@@ -25,6 +25,16 @@ struct Rider {
     force: (usize, usize),
     /// Entries of its rows r_x and r_xx, where convective.
     slopes: (usize, usize),
+}
+
+/// Riders on stations of a line side by side.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    line: usize,
+    first: usize,
+    count: usize,
+    /// The first one's number.
+    from: usize,
 }
 
 /// A point of a patch between a node and the next.
@@ -44,22 +54,6 @@ pub(super) struct Free {
     pub a: Vec<f64>,
 }
 
-/// A node's motion by what the modes leave out: it follows the forces on the deck nearby and of the connectors as
-/// `x + a x' = R f`, in the same steps as the rest.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Beside {
-    node: Node,
-    /// `x, x', x''`.
-    x: [f64; 3],
-    /// `R f` of weights, inertia and connectors at the last step, downward forces and pulling connectors positive.
-    weights: f64,
-    inertia: f64,
-    contact: f64,
-    /// Of the weights at the step under way; the change of x without new inertia and connector forces.
-    weights_now: f64,
-    free: f64,
-}
-
 /// The masses of one lane at one instant.
 ///
 /// Point masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
@@ -72,6 +66,9 @@ pub(super) struct Riders {
     points: Vec<Point>,
     force: Vec<(usize, f64)>,
     slopes: Vec<(usize, f64, f64)>,
+    /// Riders on a station and the next, where all are; and the second entry of the row of each.
+    runs: Vec<Run>,
+    nexts: Vec<f64>,
     /// Tridiagonal mass matrix of a line: diagonal and the entry to the next station.
     line: Vec<(f64, f64)>,
     /// Free motion of each node: acceleration, velocity, displacement.
@@ -83,8 +80,8 @@ pub(super) struct Riders {
     connectors_on: Vec<f64>,
     free: Vec<f64>,
     /// Nodes' motion beside the modes, near the vehicle; and room for the next list.
-    beside: Vec<Beside>,
-    next: Vec<Beside>,
+    beside: Beside,
+    next: Beside,
     /// Scaled force on each node.
     on_nodes: Vec<f64>,
 }
@@ -99,6 +96,8 @@ impl Riders {
             points: Vec::new(),
             force: Vec::new(),
             slopes: Vec::new(),
+            runs: Vec::new(),
+            nexts: Vec::with_capacity(nodes),
             line: Vec::new(),
             dots: Vec::with_capacity(nodes),
             seen: vec![0.0; nodes * nodes],
@@ -106,8 +105,8 @@ impl Riders {
             connectors_of: vec![0.0; nodes * connectors],
             connectors_on: vec![0.0; nodes * connectors],
             free: vec![0.0; nodes],
-            beside: Vec::with_capacity(2 * nodes),
-            next: Vec::with_capacity(2 * nodes),
+            beside: Beside::new(nodes),
+            next: Beside::new(nodes),
             on_nodes: vec![0.0; nodes],
         }
     }
@@ -130,6 +129,9 @@ impl Riders {
     }
 
     pub(super) fn on_connectors(&self, i: usize) -> &[f64] {
+        if self.symmetric() {
+            return self.of_connectors(i);
+        }
         &self.connectors_on[i * self.connectors..][..self.connectors]
     }
 
@@ -145,6 +147,8 @@ impl Riders {
         self.points.clear();
         self.force.clear();
         self.slopes.clear();
+        self.runs.clear();
+        self.nexts.clear();
         match wheels.vehicle.inertia {
             Inertia::None => {}
             Inertia::Local => {
@@ -208,6 +212,16 @@ impl Riders {
                 if next != 0.0 {
                     self.force.push((base + at + 1, next / mass_kg));
                 }
+                match self.runs.last_mut() {
+                    Some(run) if run.line == line && run.first + run.count == first + at => run.count += 1,
+                    _ => self.runs.push(Run {
+                        line,
+                        first: first + at,
+                        from: self.list.len(),
+                        count: 1,
+                    }),
+                }
+                self.nexts.push(next / mass_kg);
                 self.list.push(Rider {
                     mass_kg,
                     axle: 0,
@@ -305,26 +319,56 @@ impl Riders {
         let (on_x, on_xx) = (2.0 * speed_m_s / s.c_a, speed_m_s * speed_m_s / s.c_a);
         let convective = !self.slopes.is_empty();
         self.dots.clear();
-        let mut at = 0;
         for node in &self.nodes {
             let phi = &wheels.masses[node.line].reach(node.station, wheels.width)[..modes];
-            let mut dots = [dot(phi, &free.a), 0.0, 0.0];
-            if convective {
-                dots = [dots[0], dot(phi, &free.v), dot(phi, &free.q)];
-            }
-            // both lists run along the lines in the same order, more or less: look on from where the last one was
-            let many = self.beside.len();
-            for step in 0..many {
-                let beside = &self.beside[(at + step) % many];
-                if beside.node == *node {
-                    let [x, v, a] = newmark(s, beside.free, beside.x);
-                    dots = [dots[0] + a, dots[1] + v, dots[2] + x];
-                    at += step;
-                    break;
-                }
-            }
-            self.dots.push(dots);
+            let [a, v, x] = self.beside.free(*node, s);
+            self.dots.push(if convective {
+                [a + dot(phi, &free.a), v + dot(phi, &free.v), x + dot(phi, &free.q)]
+            } else {
+                [a + dot(phi, &free.a), 0.0, 0.0]
+            });
         }
+        if self.runs.is_empty() {
+            self.see_rows(ride);
+        } else {
+            self.see_pairs(ride);
+        }
+        self.matrix[..nr * nr].fill(0.0);
+        self.connectors_of[..nr * nc].fill(0.0);
+        if convective {
+            self.connectors_on[..nr * nc].fill(0.0);
+        }
+        for (i, rider) in self.list.iter().enumerate() {
+            let (matrix, of) = (
+                &mut self.matrix[i * nr..][..nr],
+                &mut self.connectors_of[i * nc..][..nc],
+            );
+            let mut free = 0.0;
+            for &(node, w) in &self.force[rider.force.0..rider.force.1] {
+                let Node { line, station } = self.nodes[node];
+                add_to(matrix, w, &self.seen[node * nr..][..nr]);
+                let there = ride.with_connectors(line, station);
+                add_to(of, w, there);
+                if convective {
+                    add_to(&mut self.connectors_on[i * nc..][..nc], w, there);
+                }
+                free += w * self.dots[node][0] / s.c_a;
+            }
+            for &(node, r_x, r_xx) in &self.slopes[rider.slopes.0..rider.slopes.1] {
+                let (w, Node { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
+                add_to(matrix, w, &self.seen[node * nr..][..nr]);
+                add_to(of, w, ride.with_connectors(line, station));
+                free += on_x * r_x * self.dots[node][1] + on_xx * r_xx * self.dots[node][2];
+            }
+            self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * rider.mass_kg * s.c_a);
+            self.free[i] = free;
+        }
+    }
+
+    /// What nodes see of riders on any rows.
+    #[inline(always)]
+    fn see_rows(&mut self, ride: &Ride) {
+        let nr = self.list.len();
         for (a, node) in self.nodes.iter().enumerate() {
             let seen = &mut self.seen[a * nr..][..nr];
             for (seen, rider) in seen.iter_mut().zip(&self.list) {
@@ -343,100 +387,31 @@ impl Riders {
                 *seen = sum;
             }
         }
-        self.matrix[..nr * nr].fill(0.0);
-        self.connectors_of[..nr * nc].fill(0.0);
-        self.connectors_on[..nr * nc].fill(0.0);
-        for (i, rider) in self.list.iter().enumerate() {
-            let (matrix, of) = (
-                &mut self.matrix[i * nr..][..nr],
-                &mut self.connectors_of[i * nc..][..nc],
-            );
-            let mut free = 0.0;
-            for &(node, w) in &self.force[rider.force.0..rider.force.1] {
-                let Node { line, station } = self.nodes[node];
-                add_to(matrix, w, &self.seen[node * nr..][..nr]);
-                add_to(of, w, ride.with_connectors(line, station));
-                let there = ride.with_connectors(line, station);
-                add_to(&mut self.connectors_on[i * nc..][..nc], w, there);
-                free += w * self.dots[node][0] / s.c_a;
+    }
+
+    /// What nodes see of riders on pairs of stations.
+    #[inline(always)]
+    fn see_pairs(&mut self, ride: &Ride) {
+        let nr = self.list.len();
+        for (a, node) in self.nodes.iter().enumerate() {
+            let seen = &mut self.seen[a * nr..][..nr];
+            for run in &self.runs {
+                let row = &ride.row(node.line, node.station, run.line)[run.first + ride.band - node.station..];
+                let (near, far) = (&row[..run.count], &row[1..][..run.count]);
+                let nexts = &self.nexts[run.from..][..run.count];
+                let seen = &mut seen[run.from..][..run.count];
+                for i in 0..run.count {
+                    seen[i] = nexts[i].mul_add(far[i], near[i]);
+                }
             }
-            for &(node, r_x, r_xx) in &self.slopes[rider.slopes.0..rider.slopes.1] {
-                let (w, Node { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
-                add_to(matrix, w, &self.seen[node * nr..][..nr]);
-                add_to(of, w, ride.with_connectors(line, station));
-                free += on_x * r_x * self.dots[node][1] + on_xx * r_xx * self.dots[node][2];
-            }
-            self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * rider.mass_kg * s.c_a);
-            self.free[i] = free;
         }
     }
 
-    /// Follows the nodes near the vehicle through the step, as far as it is known: weights now and before, inertia and
-    /// connector forces before. A node that comes near has stood still until then.
+    /// Follows the nodes near the vehicle, see [`Beside::follow`].
     #[inline(always)]
-    pub(super) fn follow(
-        &mut self,
-        wheels: &Wheels,
-        level: &Level,
-        modes: usize,
-        weights: &[(usize, usize, f64)],
-        masses: &[(usize, usize, f64)],
-        n: &[f64],
-    ) {
-        let s = &level.scheme;
-        self.next.clear();
-        for i in 0..self.nodes.len() {
-            // the node and, at the ends of a run of stations, its neighbour
-            let Node { line, station } = self.nodes[i];
-            for near in [
-                station.saturating_sub(1),
-                station,
-                (station + 1).min(wheels.stations() - 1),
-            ] {
-                let node = Node { line, station: near };
-                let mut listed = false;
-                for b in self.next.iter().rev() {
-                    listed |= b.node == node;
-                }
-                if listed {
-                    continue;
-                }
-                let mut down = 0.0;
-                for &(group, at, force) in weights {
-                    for &line in &wheels.weights[group].lines {
-                        down += force * between(wheels, node, line, at);
-                    }
-                }
-                let mut known = None;
-                for old in &self.beside {
-                    if old.node == node {
-                        known = Some(*old);
-                        break;
-                    }
-                }
-                let mut beside = if let Some(known) = known {
-                    known
-                } else {
-                    let mut beside = Beside {
-                        node,
-                        x: [0.0; 3],
-                        weights: down,
-                        inertia: 0.0,
-                        contact: 0.0,
-                        weights_now: down,
-                        free: 0.0,
-                    };
-                    beside.take(wheels, modes, masses, n);
-                    beside.x[0] = -(down + beside.inertia + beside.contact);
-                    beside
-                };
-                beside.weights_now = down;
-                let force = -(s.at_f(down, beside.weights) + s.alpha_m * beside.inertia + s.alpha_f * beside.contact);
-                let [x, v, a] = beside.x;
-                beside.free = level.rho * (force - x - level.on_s1 * v - level.on_s2 * a);
-                self.next.push(beside);
-            }
-        }
+    pub(super) fn follow(&mut self, wheels: &Wheels, level: &Level, modes: usize, pressing: Pressing) {
+        self.next
+            .follow(&self.beside, &self.nodes, wheels, level, modes, pressing);
         std::mem::swap(&mut self.beside, &mut self.next);
     }
 
@@ -445,7 +420,7 @@ impl Riders {
         std::mem::swap(&mut self.beside, &mut self.next);
     }
 
-    /// Takes the nodes near the vehicle to the end of the step, inertia and connector forces found.
+    /// Takes the nodes near the vehicle to the end of the step, see [`Beside::lead`].
     #[inline(always)]
     pub(super) fn lead(
         &mut self,
@@ -455,24 +430,22 @@ impl Riders {
         masses: &[(usize, usize, f64)],
         n: &[f64],
     ) {
-        let s = &level.scheme;
-        for beside in &mut self.beside {
-            beside.take(wheels, modes, masses, n);
-            let late = (1.0 - s.alpha_m) * beside.inertia + (1.0 - s.alpha_f) * beside.contact;
-            beside.x = newmark(s, beside.free - level.rho * late, beside.x);
-            beside.weights = beside.weights_now;
-        }
+        self.beside.lead(wheels, level, modes, masses, n);
     }
 
     /// The nodes near the vehicle.
-    pub(super) fn beside(&self) -> &[Beside] {
+    pub(super) fn beside(&self) -> &Beside {
         &self.beside
     }
 
     /// Puts them back.
-    pub(super) fn put_beside(&mut self, saved: &[Beside]) {
+    pub(super) fn put_beside(&mut self, saved: &Beside) {
+        self.beside.clone_from(saved);
+    }
+
+    /// No nodes near a vehicle.
+    pub(super) fn leave(&mut self) {
         self.beside.clear();
-        self.beside.extend_from_slice(saved);
     }
 
     /// Force on each node from the riders' forces times `factor`: line, station, force.
@@ -519,38 +492,6 @@ impl Riders {
     }
 }
 
-impl Beside {
-    /// `R f` of inertia and connectors.
-    #[inline(always)]
-    fn take(&mut self, wheels: &Wheels, modes: usize, masses: &[(usize, usize, f64)], n: &[f64]) {
-        self.inertia = 0.0;
-        for &(line, at, force) in masses {
-            self.inertia += force * between(wheels, self.node, line, at);
-        }
-        let reach = wheels.masses[self.node.line].reach(self.node.station, wheels.width);
-        self.contact = dot(&reach[modes..][..n.len()], n);
-    }
-}
-
-/// R between a node and a station of a line.
-#[inline(always)]
-fn between(wheels: &Wheels, node: Node, line: usize, station: usize) -> f64 {
-    let row = wheels.residual(node.line, node.station, line);
-    row.get((station + wheels.band).wrapping_sub(node.station))
-        .copied()
-        .unwrap_or(0.0)
-}
-
-/// `x, x', x''` at the end of a step in which x changes by d.
-#[inline(always)]
-fn newmark(s: &Scheme, d: f64, [x, v, a]: [f64; 3]) -> [f64; 3] {
-    [
-        x + d,
-        s.c_v * d + s.v_v * v + s.v_a * a,
-        s.c_a * d + s.a_v * v + s.a_a * a,
-    ]
-}
-
 /// Adds to the entry of a row that begins at `from`.
 #[inline(always)]
 fn add(row: &mut Vec<(usize, f64)>, from: usize, node: usize, w: f64) {
@@ -560,8 +501,9 @@ fn add(row: &mut Vec<(usize, f64)>, from: usize, node: usize, w: f64) {
     }
 }
 
+/// `sum := sum + w x`.
 #[inline(always)]
-fn add_to(sum: &mut [f64], w: f64, x: &[f64]) {
+pub(super) fn add_to(sum: &mut [f64], w: f64, x: &[f64]) {
     for (sum, x) in sum.iter_mut().zip(x) {
         *sum = w.mul_add(*x, *sum);
     }

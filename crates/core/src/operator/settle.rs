@@ -141,8 +141,10 @@ impl Small {
             }
             for (p, &i) in self.active.iter().enumerate() {
                 let row = &mut self.matrix[(nr + p) * stride..][..n];
-                for (r, entry) in row[..nr].iter_mut().enumerate() {
-                    *entry = riders.on_connectors(r)[i];
+                if !riders.symmetric() {
+                    for (r, entry) in row[..nr].iter_mut().enumerate() {
+                        *entry = riders.on_connectors(r)[i];
+                    }
                 }
                 // a column is a row, the matrix being symmetric
                 let column = &among.as_slice()[i * self.states.len()..][..self.states.len()];

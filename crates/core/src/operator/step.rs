@@ -4,6 +4,7 @@
 //! Knows the arithmetic of a step, the same for every lane whatever is beside it. Does not know when a crossing ends.
 
 use super::basis::BridgeOperator;
+use super::beside::Pressing;
 use super::lanes::{Lane, Lanes, Saved, scatter, spread};
 use super::level::Level;
 use super::panel::{lanes, lanes_mut};
@@ -164,12 +165,19 @@ impl Lanes {
         let (wheels, ride, law) = (&*passage.wheels, &*passage.ride, &passage.law);
         riders.place(wheels, &operator.track, passage.load_n, *front_x_m);
         if riders.count() > 0 {
-            gather(&now.free[0], &mut now.lane_free.q, lane, width);
-            gather(&now.free[1], &mut now.lane_free.v, lane, width);
+            if !riders.symmetric() {
+                gather(&now.free[0], &mut now.lane_free.q, lane, width);
+                gather(&now.free[1], &mut now.lane_free.v, lane, width);
+            }
             gather(&now.free[2], &mut now.lane_free.a, lane, width);
             gather(&self.motion.n, &mut now.lane_n, lane, width);
         }
-        riders.follow(wheels, level, m, weights, masses, &now.lane_n);
+        let pressing = Pressing {
+            weights,
+            masses,
+            n: &now.lane_n,
+        };
+        riders.follow(wheels, level, m, pressing);
         riders.couple(wheels, ride, level, m, passage.speed_m_s, &now.lane_free);
         gather(&now.e, &mut small.e, lane, width);
         let weight = 1.0 - level.scheme.alpha_f;

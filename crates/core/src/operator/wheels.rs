@@ -121,9 +121,14 @@ impl Wheels {
     }
 }
 
+/// Entries of a row from `station - band` to `station + band`, and a zero after the last, for those who look at the next.
+fn row_width(band: usize) -> usize {
+    2 * band + 2
+}
+
 /// R between the nodes of lines that lie between lines of the deck.
 fn residual(operator: &BridgeOperator, across: &[[(usize, f64); 2]], band: usize) -> Vec<f64> {
-    let (stations, width) = (operator.track.stations(), 2 * band + 1);
+    let (stations, width) = (operator.track.stations(), row_width(band));
     let mut all = vec![0.0; across.len() * stations * across.len() * width];
     for (line, own) in across.iter().enumerate() {
         for s in 0..stations {
@@ -149,7 +154,7 @@ impl Wheels {
     /// R between a node and the stations of a line, from `station - band` on.
     #[inline(always)]
     pub(super) fn residual(&self, line: usize, station: usize, other_line: usize) -> &[f64] {
-        let width = 2 * self.band + 1;
+        let width = row_width(self.band);
         &self.residual[((line * self.stations + station) * self.masses.len() + other_line) * width..][..width]
     }
 
@@ -225,7 +230,7 @@ impl Ride {
             band,
             lines,
             stations,
-            among: vec![0.0; lines * stations * lines * (2 * band + 1)],
+            among: vec![0.0; lines * stations * lines * row_width(band)],
             with_connectors: Vec::with_capacity(lines * stations * nc),
             connectors: nc,
         };
@@ -258,14 +263,14 @@ impl Ride {
 
     #[inline(always)]
     fn at(&self, line: usize, station: usize, other_line: usize, other_station: usize) -> usize {
-        ((line * self.stations + station) * self.lines + other_line) * (2 * self.band + 1) + other_station + self.band
+        ((line * self.stations + station) * self.lines + other_line) * row_width(self.band) + other_station + self.band
             - station
     }
 
     /// What the acceleration at a node sees of forces at the stations of a line, from `station - band` on.
     #[inline(always)]
     pub(super) fn row(&self, line: usize, station: usize, other_line: usize) -> &[f64] {
-        let width = 2 * self.band + 1;
+        let width = row_width(self.band);
         &self.among[((line * self.stations + station) * self.lines + other_line) * width..][..width]
     }
 

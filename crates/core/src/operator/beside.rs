@@ -1,0 +1,269 @@
+//! The deck's nodes near one vehicle, as what the modes leave out moves them.
+//!
+//! Knows how a node follows the forces on the deck nearby and of the connectors, `x + a x' = R f`, in the same steps as the
+//! rest. Does not know who exerts them.
+
+use super::level::Level;
+use super::riders::{Node, add_to, dot};
+use super::wheels::Wheels;
+use crate::scheme::Scheme;
+
+/// Stations of a line side by side, the vehicle's own and one more at each end.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    line: usize,
+    first: usize,
+    count: usize,
+    /// Where its nodes begin in the lists.
+    from: usize,
+}
+
+/// The nodes' motion, one entry a node. Forces are what a node sees of them, `R f`, downward and pulling positive.
+#[derive(Debug, Default)]
+pub(super) struct Beside {
+    runs: Vec<Run>,
+    x: [Vec<f64>; 3],
+    /// Of weights, inertia and connectors at the last step.
+    weights: Vec<f64>,
+    inertia: Vec<f64>,
+    contact: Vec<f64>,
+    /// Of the weights at the step under way; the change of x without new inertia and connector forces.
+    weights_now: Vec<f64>,
+    free: Vec<f64>,
+}
+
+impl Clone for Beside {
+    fn clone(&self) -> Self {
+        let mut clone = Self::default();
+        clone.clone_from(self);
+        clone
+    }
+
+    /// Keeps the room that is there.
+    fn clone_from(&mut self, other: &Self) {
+        self.runs.clone_from(&other.runs);
+        for (own, other) in self.lists().into_iter().zip(other.listed()) {
+            own.clone_from(other);
+        }
+    }
+}
+
+/// Forces on stations: line, station, force; and of the connectors.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pressing<'a> {
+    /// Lines of the weights.
+    pub weights: &'a [(usize, usize, f64)],
+    /// Lines of the masses, at the last step.
+    pub masses: &'a [(usize, usize, f64)],
+    /// Connectors, at the last step.
+    pub n: &'a [f64],
+}
+
+impl Beside {
+    /// Room for vehicles of at most `nodes` nodes.
+    pub(super) fn new(nodes: usize) -> Self {
+        let mut new = Self {
+            runs: Vec::with_capacity(nodes),
+            ..Self::default()
+        };
+        // two more on each line, of which there are fewer than nodes
+        for list in new.lists() {
+            list.reserve(3 * nodes);
+        }
+        new
+    }
+
+    fn lists(&mut self) -> [&mut Vec<f64>; 8] {
+        let [x, v, a] = &mut self.x;
+        let (now, free) = (&mut self.weights_now, &mut self.free);
+        [
+            x,
+            v,
+            a,
+            &mut self.weights,
+            &mut self.inertia,
+            &mut self.contact,
+            now,
+            free,
+        ]
+    }
+
+    fn listed(&self) -> [&Vec<f64>; 8] {
+        let ([x, v, a], now, free) = (&self.x, &self.weights_now, &self.free);
+        [x, v, a, &self.weights, &self.inertia, &self.contact, now, free]
+    }
+
+    /// No nodes.
+    pub(super) fn clear(&mut self) {
+        self.runs.clear();
+        for list in self.lists() {
+            list.clear();
+        }
+    }
+
+    /// Follows the nodes near the vehicle from where they were, `old`, through the step as far as it is known: weights now
+    /// and before, inertia and connector forces before. A node that comes near has stood still until then.
+    #[inline(always)]
+    pub(super) fn follow(
+        &mut self,
+        old: &Self,
+        nodes: &[Node],
+        wheels: &Wheels,
+        level: &Level,
+        modes: usize,
+        pressing: Pressing,
+    ) {
+        self.runs.clear();
+        for node in nodes {
+            let mut new = true;
+            for run in &mut self.runs {
+                if run.line == node.line {
+                    let end = (run.first + run.count).max(node.station + 1);
+                    run.first = run.first.min(node.station);
+                    run.count = end - run.first;
+                    new = false;
+                }
+            }
+            if new {
+                self.runs.push(Run {
+                    line: node.line,
+                    first: node.station,
+                    count: 1,
+                    from: 0,
+                });
+            }
+        }
+        let mut count = 0;
+        for run in &mut self.runs {
+            let end = (run.first + run.count + 1).min(wheels.stations());
+            run.first = run.first.saturating_sub(1);
+            run.count = end - run.first;
+            run.from = count;
+            count += run.count;
+        }
+        for list in self.lists() {
+            list.clear();
+            list.resize(count, 0.0);
+        }
+        for &(group, at, force) in pressing.weights {
+            for &line in &wheels.weights[group].lines {
+                press(&self.runs, &mut self.weights_now, wheels, line, at, force);
+            }
+        }
+        for i in 0..self.runs.len() {
+            self.take_over(self.runs[i], old, wheels, modes, pressing);
+        }
+        let s = &level.scheme;
+        let (now, before) = (&self.weights_now[..count], &self.weights[..count]);
+        let (inertia, contact) = (&self.inertia[..count], &self.contact[..count]);
+        let [x, v, a] = self.x.each_ref().map(|x| &x[..count]);
+        for (i, free) in self.free[..count].iter_mut().enumerate() {
+            let force = -(s.at_f(now[i], before[i]) + s.alpha_m * inertia[i] + s.alpha_f * contact[i]);
+            *free = level.rho * (force - x[i] - level.on_s1 * v[i] - level.on_s2 * a[i]);
+        }
+    }
+
+    /// A run's motion: that of nodes known before, rest of the others.
+    #[inline(always)]
+    fn take_over(&mut self, run: Run, old: &Self, wheels: &Wheels, modes: usize, pressing: Pressing) {
+        let (mut lo, mut hi) = (run.first, run.first);
+        for before in &old.runs {
+            if before.line == run.line {
+                let first = run.first.max(before.first);
+                let end = (run.first + run.count).min(before.first + before.count);
+                if first < end {
+                    (lo, hi) = (first, end);
+                    let (to, from) = (run.from + lo - run.first, before.from + lo - before.first);
+                    for (to_list, from_list) in self.lists().into_iter().zip(old.listed()).take(6) {
+                        to_list[to..][..hi - lo].copy_from_slice(&from_list[from..][..hi - lo]);
+                    }
+                }
+            }
+        }
+        for station in (run.first..lo).chain(hi..run.first + run.count) {
+            let (i, line) = (run.from + station - run.first, run.line);
+            self.weights[i] = self.weights_now[i];
+            for &(other, at, force) in pressing.masses {
+                let row = wheels.residual(other, at, line);
+                let seen = row.get((station + wheels.band).wrapping_sub(at));
+                self.inertia[i] += force * seen.copied().unwrap_or(0.0);
+            }
+            self.contact[i] = of_connectors(wheels, line, station, modes, pressing.n);
+            self.x[0][i] = -(self.weights[i] + self.inertia[i] + self.contact[i]);
+        }
+    }
+
+    /// Takes the nodes to the end of the step, inertia and connector forces found.
+    #[inline(always)]
+    pub(super) fn lead(
+        &mut self,
+        wheels: &Wheels,
+        level: &Level,
+        modes: usize,
+        masses: &[(usize, usize, f64)],
+        n: &[f64],
+    ) {
+        self.inertia.fill(0.0);
+        for &(line, at, force) in masses {
+            press(&self.runs, &mut self.inertia, wheels, line, at, force);
+        }
+        for run in &self.runs {
+            for (i, contact) in self.contact[run.from..][..run.count].iter_mut().enumerate() {
+                *contact = of_connectors(wheels, run.line, run.first + i, modes, n);
+            }
+        }
+        let s = &level.scheme;
+        let count = self.free.len();
+        let (inertia, contact, free) = (&self.inertia[..count], &self.contact[..count], &self.free[..count]);
+        let [x, v, a] = self.x.each_mut().map(|x| &mut x[..count]);
+        for i in 0..count {
+            let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * contact[i];
+            [x[i], v[i], a[i]] = newmark(s, free[i] - level.rho * late, [x[i], v[i], a[i]]);
+        }
+        self.weights.copy_from_slice(&self.weights_now);
+    }
+
+    /// A node's acceleration, velocity and displacement at the end of the step without new inertia and connector forces.
+    #[inline(always)]
+    pub(super) fn free(&self, node: Node, s: &Scheme) -> [f64; 3] {
+        for run in &self.runs {
+            if run.line == node.line {
+                let i = run.from + node.station - run.first;
+                let [x, v, a] = newmark(s, self.free[i], [self.x[0][i], self.x[1][i], self.x[2][i]]);
+                return [a, v, x];
+            }
+        }
+        [0.0; 3]
+    }
+}
+
+/// Adds what nodes see of a force on a station.
+#[inline(always)]
+fn press(runs: &[Run], seen: &mut [f64], wheels: &Wheels, line: usize, station: usize, force: f64) {
+    let band = wheels.band;
+    for run in runs {
+        let lo = run.first.max(station.saturating_sub(band));
+        let hi = (run.first + run.count).min(station + band + 1);
+        if lo < hi {
+            let row = &wheels.residual(line, station, run.line)[lo + band - station..hi + band - station];
+            add_to(&mut seen[run.from + lo - run.first..][..hi - lo], force, row);
+        }
+    }
+}
+
+/// What a node sees of the connectors.
+#[inline(always)]
+fn of_connectors(wheels: &Wheels, line: usize, station: usize, modes: usize, n: &[f64]) -> f64 {
+    let reach = wheels.masses[line].reach(station, wheels.width);
+    dot(&reach[modes..][..n.len()], n)
+}
+
+/// `x, x', x''` at the end of a step in which x changes by d.
+#[inline(always)]
+fn newmark(s: &Scheme, d: f64, [x, v, a]: [f64; 3]) -> [f64; 3] {
+    [
+        x + d,
+        s.c_v * d + s.v_v * v + s.v_a * a,
+        s.c_a * d + s.a_v * v + s.a_a * a,
+    ]
+}
