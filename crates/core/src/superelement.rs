@@ -2,8 +2,8 @@
 //!
 //! Knows matrices and a list of masters. Does not know what the masters are for.
 
-use crate::fem::{Factor, FemError, SymmetricMatrix, lowest_modes};
-use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
+use crate::fem::{Factor, FemError, SymmetricMatrix, allowed, diagonal, hold, lowest_modes, pattern, residual, sizes};
+use faer::{Accum, ColRef, Mat, MatRef, Par, linalg::matmul::matmul};
 
 /// `k' = T^T k T`, `m' = T^T m T` with `T = [I 0; -k22^-1 k21  Phi]` (masters 1, slaves 2) [36-44].
 ///
@@ -56,7 +56,7 @@ impl SuperElement {
                 }
             }
         }
-        Factor::new(&k22)?.solve_columns(x.as_mut());
+        Factor::new("stiffness of a module's slaves", &k22)?.solve_columns(x.as_mut());
         let mut transformation = Mat::<f64>::zeros(n, n1 + modes);
         for (j, &dof) in masters.iter().enumerate() {
             transformation[(dof, j)] = 1.0;
@@ -85,12 +85,53 @@ impl SuperElement {
         let condensed_k = SymmetricMatrix::from_entries(n1 + modes, &entries)?;
         let condensed_m = congruence(m, transformation.as_ref());
         let condensed_m = SymmetricMatrix::from_entries(n1 + modes, &dense_entries(condensed_m.as_ref()))?;
-        Ok(Self {
+        let condensed = Self {
             masters: masters.to_vec(),
             k: condensed_k,
             m: condensed_m,
             transformation,
-        })
+        };
+        condensed.probe(k, m)?;
+        Ok(condensed)
+    }
+
+    /// Whether this condenses stiffness `k` and mass `m`, for one motion z of its dofs each: the slaves of `k T z` are in
+    /// balance and its masters feel `k' z`, the modes at rest; `T^T m T z` is `m' z`. Gives the larger backward error as a
+    /// share of what [`Factor::probe`] allows. Verified by `tests/tests/probe.rs`.
+    ///
+    /// # Errors
+    /// [`FemError::BadFactor`] where one is above: this is no super-element of `k` and `m`.
+    pub fn probe(&self, k: &SymmetricMatrix, m: &SymmetricMatrix) -> Result<f64, FemError> {
+        let (n, n1, reduced) = (k.order(), self.masters.len(), self.k.order());
+        let moved = |z: &[f64]| -> Vec<f64> {
+            let mut u = vec![0.0; n];
+            for (column, z) in self.transformation.col_iter().zip(z) {
+                u.iter_mut().zip(column.iter()).for_each(|(u, t)| *u += t * z);
+            }
+            u
+        };
+
+        let own = sizes(diagonal(&self.k));
+        let z: Vec<f64> = (0..reduced)
+            .map(|j| if j < n1 { pattern(j) / own[j] } else { 0.0 })
+            .collect();
+        let (mut felt, mut balanced) = (vec![0.0; reduced], vec![0.0; n]);
+        self.k.multiply(&z, &mut felt);
+        for (&dof, felt) in self.masters.iter().zip(&felt) {
+            balanced[dof] = *felt;
+        }
+        let error = residual(k, &sizes(diagonal(k)), &moved(&z), &balanced);
+        let stiffness = hold("condensed stiffness", n, error, allowed(n))?;
+
+        let own = sizes(diagonal(&self.m));
+        let z: Vec<f64> = own.iter().enumerate().map(|(j, own)| pattern(j) / own).collect();
+        let mut mu = vec![0.0; n];
+        m.multiply(&moved(&z), &mut mu);
+        let seen = |column: ColRef<'_, f64>| column.iter().zip(&mu).map(|(t, mu)| t * mu).sum();
+        let felt: Vec<f64> = self.transformation.col_iter().map(seen).collect();
+        let error = residual(&self.m, &own, &z, &felt);
+        let mass = hold("condensed mass", n, error, allowed(n))?;
+        Ok(stiffness.max(mass))
     }
 }
 

@@ -169,7 +169,8 @@ fn small_problems() {
     assert_eq!(modes.lambda.len(), 3);
 }
 
-/// More modes than masses, an indefinite stiffness and a shift that is none are errors, each its own.
+/// More modes than masses, an indefinite stiffness, a shift that is none and a count at an eigenvalue are errors, each its
+/// own.
 #[test]
 fn refusals() {
     let (k, m) = (diagonal(&[1.0, 2.0, 3.0]), diagonal(&[1.0, 0.0, 1.0]));
@@ -202,6 +203,14 @@ fn refusals() {
             Some(FemError::Shift { value: shift })
         );
     }
+    let unit = diagonal(&[1.0; 3]);
+    let at = |sigma: f64| count_below(&k, &unit, sigma);
+    assert!(
+        matches!(at(2.0), Err(FemError::BadFactor { dofs: 3, .. })),
+        "{:?}",
+        at(2.0)
+    );
+    assert_eq!(at(2.0 + 1e-9), Ok(2));
     assert!(matches!(
         lowest_modes(&k, &m, 2, f64::NAN).err(),
         Some(FemError::Shift { .. })
@@ -225,12 +234,12 @@ fn factor() {
         let x: Vec<f64> = (0..k.order()).map(|i| (i as f64).sin()).collect();
         let mut f = vec![0.0; x.len()];
         k.multiply(&x, &mut f);
-        Factor::new(other).unwrap().solve(&mut f);
+        Factor::new("test", other).unwrap().solve(&mut f);
         f.iter().zip(&x).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
     };
     assert!(error(&k) < 1e-6, "error {:.1e}", error(&k));
     assert!(wrong('t').iter().all(|w| error(&plate(w.t / RIGHT.t)) > 1e-2));
-    let refused = |values: &[f64]| Factor::new(&diagonal(values)).err();
+    let refused = |values: &[f64]| Factor::new("test", &diagonal(values)).err();
     assert_eq!(refused(&[1.0, 2.0]), None);
     assert!(matches!(
         refused(&[1.0, -1e-3]),

@@ -17,10 +17,10 @@ pub struct EigenPairs {
 }
 
 /// Residual `|A y - mu y| / mu` at which a pair has converged; its eigenvalue is then exact to the square of it.
-const CONVERGED: f64 = 1e-9;
+pub(super) const CONVERGED: f64 = 1e-9;
 
 /// Residual that rounding leaves of an operator of norm 1: no pair is asked for more.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 
 /// Pairs that converge beyond those asked for, so that a gap can be found above the last.
 const GUARD: usize = 2;
@@ -41,13 +41,14 @@ const MASSLESS: f64 = 1e-13;
 ///
 /// # Errors
 /// [`FemError::Shift`], [`FemError::NotPositiveDefinite`] where `K + s M` is not, [`FemError::Eigen`] where not all
-/// converge or M has fewer modes, [`FemError::BadFactor`] where the check finds no sigma at which it can count.
+/// converge or M has fewer modes, [`FemError::BadFactor`] where the check finds no sigma at which it can count,
+/// [`FemError::BadPair`] where a mode fails [`EigenPairs::probe`].
 pub fn lowest_modes(k: &SymmetricMatrix, m: &SymmetricMatrix, count: usize, s: f64) -> Result<EigenPairs, FemError> {
     let n = k.order();
     if !(s.is_finite() && s > 0.0) {
         return Err(FemError::Shift { value: s });
     }
-    let factor = Factor::new(&SymmetricMatrix::combine(&[(1.0, k), (s, m)])?)?;
+    let factor = Factor::new("K + s M of modes", &SymmetricMatrix::combine(&[(1.0, k), (s, m)])?)?;
     let operator = ShiftInvert { m, factor: &factor, s };
     let count = count.min(n);
     let (mu, mut shapes) = if n < 4 * count + 240 {
@@ -68,10 +69,12 @@ pub fn lowest_modes(k: &SymmetricMatrix, m: &SymmetricMatrix, count: usize, s: f
         let norm = m.form(&x, &x).sqrt();
         shapes.col_mut(j).iter_mut().for_each(|x| *x /= norm);
     }
-    Ok(EigenPairs {
+    let pairs = EigenPairs {
         lambda: mu.iter().map(|mu| s / mu - s).collect(),
         shapes,
-    })
+    };
+    pairs.probe(k, m, s)?;
+    Ok(pairs)
 }
 
 /// The largest eigenvalues of the operator, counted, and their vectors.

@@ -3,6 +3,7 @@
 //! Knows how to solve with a symmetric positive definite matrix. Does not know where it comes from. Runs on one thread:
 //! the library's parallel kernels give bits that depend on the number of threads.
 
+use super::probe::{allowed, backward_error, diagonal, hold, sizes};
 use super::{FemError, SymmetricMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
@@ -20,17 +21,18 @@ pub struct Factor {
     values: Vec<f64>,
 }
 
-/// Relative residual allowed in the probe solution, far above rounding (1e-16 times the fill) and far below what a
-/// wrong factor leaves.
-pub(super) const PROBE_ALLOWED: f64 = 1e-6;
-
 impl Factor {
-    /// Factorises and solves one probe.
+    /// Factorises and probes; `name` is what an error calls the matrix.
     ///
     /// # Errors
-    /// [`FemError::NotPositiveDefinite`], [`FemError::BadFactor`] where the probe's residual `|A x - b| / (|A| |x|)` is
-    /// too large, [`FemError::OutOfMemory`].
-    pub fn new(a: &SymmetricMatrix) -> Result<Self, FemError> {
+    /// [`FemError::NotPositiveDefinite`], [`FemError::BadFactor`] as [`Factor::probe`], [`FemError::OutOfMemory`].
+    pub fn new(name: &'static str, a: &SymmetricMatrix) -> Result<Self, FemError> {
+        let factor = Self::unprobed(a)?;
+        factor.probe(name, a)?;
+        Ok(factor)
+    }
+
+    fn unprobed(a: &SymmetricMatrix) -> Result<Self, FemError> {
         let dofs = a.order();
         let symbolic = analyse(a)?;
         let mut values = vec![0.0; symbolic.len_val()];
@@ -47,16 +49,18 @@ impl Factor {
                 Default::default(),
             )
             .map_err(|Pivot::NonPositivePivot { index }| FemError::NotPositiveDefinite { dofs, pivot: index })?;
-        let factor = Self { symbolic, values };
-        let residual = probe(a, |x| factor.solve(x));
-        if residual > PROBE_ALLOWED {
-            return Err(FemError::BadFactor {
-                dofs,
-                residual,
-                allowed: PROBE_ALLOWED,
-            });
-        }
-        Ok(factor)
+        Ok(Self { symbolic, values })
+    }
+
+    /// Solves one system with `a`, a matrix of its order; gives the backward error, the largest entry of `A x - b` over
+    /// `|A| |x| + |b|` with each degree of freedom divided by the root of its diagonal entry, as a share of the
+    /// `100 sqrt(n) eps` that are allowed.
+    ///
+    /// # Errors
+    /// [`FemError::BadFactor`] where it is above: this is no factor of `a`.
+    pub fn probe(&self, name: &'static str, a: &SymmetricMatrix) -> Result<f64, FemError> {
+        let error = backward_error(a, &sizes(diagonal(a)), |x| self.solve(x));
+        hold(name, a.order(), error, allowed(a.order()))
     }
 
     /// Order of the matrix.
@@ -142,25 +146,50 @@ pub(super) fn analyse(a: &SymmetricMatrix) -> Result<SymbolicCholesky<usize>, Fe
         .map_err(|_| FemError::OutOfMemory { dofs: a.order() })
 }
 
-/// `|A x - b| / (|A| |x| + |b|)` in the largest norm for a right-hand side of ones and minus ones; infinite where x is
-/// not finite.
-pub(super) fn probe(a: &SymmetricMatrix, solve: impl FnOnce(&mut [f64])) -> f64 {
-    let n = a.order();
-    let b: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { -1.0 } else { 1.0 }).collect();
-    let mut x = b.clone();
-    solve(&mut x);
-    let mut ax = vec![0.0; n];
-    a.multiply(&x, &mut ax);
-    let row_sum = (0..n)
-        .map(|j| a.column(j).map(|(_, v)| v.abs()).sum::<f64>())
-        .fold(0.0, f64::max);
-    let scale = row_sum * largest(&x) + 1.0;
-    ax.iter_mut().zip(&b).for_each(|(ax, b)| *ax -= b);
-    largest(&ax) / scale
-}
+#[cfg(test)]
+#[allow(clippy::expect_used)]
+mod tests {
+    use super::*;
 
-/// The largest absolute value; infinite where one is not a number.
-fn largest(v: &[f64]) -> f64 {
-    v.iter()
-        .fold(0.0, |m, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) })
+    /// A plate of springs, `n` x `n` places, each held softly; places count in units that differ by up to a thousand.
+    fn plate(n: usize) -> SymmetricMatrix {
+        let unit = |i: usize| 10_f64.powi((i % 4) as i32 - 1);
+        let mut entries = Vec::new();
+        for i in 0..n * n {
+            entries.push((i, i, 1e-3 * unit(i).powi(2)));
+            let neighbours = [(i % n + 1 < n, i + 1), (i + n < n * n, i + n)];
+            for (_, j) in neighbours.into_iter().filter(|e| e.0) {
+                let ends = [(i, unit(i)), (j, -unit(j))];
+                entries.extend(ends.iter().flat_map(|a| ends.iter().map(|b| (a.0, b.0, a.1 * b.1))));
+            }
+        }
+        SymmetricMatrix::from_entries(n * n, &entries).expect("a matrix")
+    }
+
+    /// 5 % off in any entry of a factor is refused. Entries that no solution reads (above the diagonal of a dense block) are
+    /// told by just that.
+    #[test]
+    fn a_factor_with_one_wrong_entry_is_refused() {
+        for n in [1, 2, 5, 12] {
+            let a = plate(n);
+            let mut factor = Factor::unprobed(&a).expect("a factor");
+            assert!(factor.probe("plate", &a).expect("sound") < 0.01);
+            let solution = |factor: &Factor| {
+                let mut x: Vec<f64> = (0..n * n).map(|i| 1.0 + i as f64).collect();
+                factor.solve(&mut x);
+                x
+            };
+            let (sound, mut refused) = (solution(&factor), 0);
+            for i in 0..factor.nnz() {
+                let right = factor.values[i];
+                factor.values[i] = 1.05 * right;
+                match factor.probe("plate", &a) {
+                    Err(FemError::BadFactor { name: "plate", .. }) => refused += 1,
+                    other => assert_eq!(solution(&factor), sound, "entry {i}, {right:e}: {other:?}"),
+                }
+                factor.values[i] = right;
+            }
+            assert!(refused >= n * n, "{refused}");
+        }
+    }
 }

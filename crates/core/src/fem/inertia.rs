@@ -2,7 +2,8 @@
 //!
 //! Knows Sylvester's law of inertia. Does not know eigenvectors.
 
-use super::factor::{PROBE_ALLOWED, analyse, probe};
+use super::factor::analyse;
+use super::probe::{INDEFINITE_GROWTH, allowed, backward_error, diagonal, hold, sizes};
 use super::{FemError, SymmetricMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::supernodal::SupernodalIntranodeLbltRef;
@@ -36,19 +37,15 @@ pub fn count_below(k: &SymmetricMatrix, m: &SymmetricMatrix, sigma: f64) -> Resu
         Default::default(),
     );
     let perm = faer::perm::PermRef::new_checked(&forward, &inverse, n);
-    let residual = probe(&a, |x| {
+    // a diagonal of differences may be anything; no entry is larger than the root of these
+    let sizes = sizes(diagonal(k).zip(diagonal(m)).map(|(k, m)| k + sigma.abs() * m));
+    let residual = backward_error(&a, &sizes, |x| {
         let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let x = MatMut::from_column_major_slice_mut(x, n, 1);
         let factor = IntranodeLbltRef::new(&symbolic, &values, &below_diagonal, perm);
         factor.solve_in_place_with_conj(Conj::No, x, Par::Seq, MemStack::new(&mut memory));
     });
-    if residual > PROBE_ALLOWED {
-        return Err(FemError::BadFactor {
-            dofs: n,
-            residual,
-            allowed: PROBE_ALLOWED,
-        });
-    }
+    hold("K - sigma M", n, residual, INDEFINITE_GROWTH * allowed(n))?;
     let SymbolicCholeskyRaw::Supernodal(supernodes) = symbolic.raw() else {
         return Ok(0); // of order 0
     };

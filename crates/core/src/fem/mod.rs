@@ -13,6 +13,7 @@ mod lanczos;
 mod membrane;
 mod mesh;
 mod plate;
+mod probe;
 mod shell;
 mod sparse;
 
@@ -23,6 +24,7 @@ pub use factor::Factor;
 pub use frame::QuadFrame;
 pub use inertia::count_below;
 pub use mesh::{DOFS_PER_NODE, Mesh, NodeId};
+pub(crate) use probe::{allowed, diagonal, hold, pattern, residual, sizes};
 pub use shell::{Shell, ShellSection};
 pub use sparse::{SparseRow, SymmetricMatrix};
 
@@ -40,8 +42,12 @@ pub enum FemError {
         pivot: usize,
     },
     /// A factorisation solved its probe badly.
-    #[error("factorisation of {dofs} degrees of freedom leaves a residual of {residual:.1e}, allowed {allowed:.1e}")]
+    #[error(
+        "{name}, {dofs} degrees of freedom: its factorisation leaves {residual:.1e} of the probe, allowed {allowed:.1e}"
+    )]
     BadFactor {
+        /// What was factorised.
+        name: &'static str,
         /// Degrees of freedom.
         dofs: usize,
         /// Relative residual of the probe.
@@ -73,6 +79,20 @@ pub enum FemError {
         asked: usize,
         /// Eigenvalues that converged.
         converged: usize,
+    },
+    /// A mode is none, or not of unit modal mass, or not orthogonal to one before it.
+    #[error("mode {mode} of {dofs} degrees of freedom: {measure} is off by {found:.1e}, allowed {allowed:.1e}")]
+    BadPair {
+        /// Number of the mode, from 1 in rising order.
+        mode: usize,
+        /// Degrees of freedom.
+        dofs: usize,
+        /// What is wrong.
+        measure: &'static str,
+        /// By how much, relative.
+        found: f64,
+        /// How much is allowed.
+        allowed: f64,
     },
     /// Storage for a matrix or factor could not be had.
     #[error("no memory for a matrix of {dofs} degrees of freedom")]

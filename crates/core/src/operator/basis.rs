@@ -104,7 +104,7 @@ impl BridgeOperator {
     /// # Errors
     /// [`OperatorError::Factor`].
     pub fn new(bridge: &Bridge, tolerance: f64) -> Result<Self, OperatorError> {
-        let factor = Factor::new(&shifted(bridge)?)?;
+        let factor = Factor::new("K + s M of the operator", &shifted(bridge)?)?;
         let track = Track::new(bridge);
         let mut count = FIRST_MODES.min(bridge.dofs());
         let judged = judged_rows(bridge, &track);

@@ -82,7 +82,7 @@ impl Model {
         k.multiply(&u, &mut f);
         let free = self.free();
         let mut x: Vec<f64> = free.iter().map(|&i| self.load[i] - f[i]).collect();
-        Factor::new(&part(&k, &free)).unwrap().solve(&mut x);
+        Factor::new("test", &part(&k, &free)).unwrap().solve(&mut x);
         for (&i, x) in free.iter().zip(x) {
             u[i] = x;
         }

@@ -175,7 +175,7 @@ impl CrossingSolver {
             let (c_m, c_c, c_k) = scheme.effective();
             let Rayleigh { a, b } = self.settings.rayleigh;
             let matrix = SymmetricMatrix::combine(&[(c_m + c_c * b, &self.bridge.m), (c_k + c_c * a, &self.bridge.k)])?;
-            let flexibility = Flexibility::new(&matrix, &self.bridge)?;
+            let flexibility = Flexibility::new("matrix of the time step", &matrix, &self.bridge)?;
             Ok(Level { scheme, flexibility })
         });
         level.as_ref().map_err(|error| AnalysisError::Factor(error.clone()))

@@ -62,7 +62,7 @@ impl StaticSolver {
     pub fn new(bridge: &Arc<Bridge>) -> Result<Self, AnalysisError> {
         Ok(Self {
             bridge: Arc::clone(bridge),
-            flexibility: Flexibility::new(&bridge.k, bridge)?,
+            flexibility: Flexibility::new("stiffness of the bridge", &bridge.k, bridge)?,
             influence: OnceLock::new(),
         })
     }
