@@ -6,6 +6,7 @@
 mod batch;
 mod bench;
 mod cache;
+pub mod canary;
 mod crossing;
 mod cut;
 mod guard;
@@ -18,6 +19,7 @@ mod verify;
 
 pub use bench::{BridgeReport, OperatorCounts, PreparedModules};
 pub use cache::Cache;
+pub use canary::CanaryError;
 pub use cut::Batch;
 pub use outcome::{Failures, Outcome, PoolError, RunError};
 pub use progress::{Progress, Silent, Tally};
