@@ -154,6 +154,34 @@ fn rooms_of_core_know_only_their_own_floor_and_those_below() {
     assert!(seen > 20, "only {seen} uses found");
 }
 
+/// The lower floors of the studies from the ground up: whatever is not named here stands above them.
+const STUDY_FLOORS: [&[&str]; 3] = [&["refusal", "document", "filter"], &["spec"], &["plan"]];
+
+#[test]
+fn the_lower_rooms_of_the_studies_do_not_know_the_upper_ones() {
+    let src = root().join("crates/study/src");
+    let floor = |room: &str| STUDY_FLOORS.iter().position(|rooms| rooms.contains(&room));
+    let mut seen = 0;
+    for file in files(&src, ".rs") {
+        let inside = file.strip_prefix(&src).expect("below src").to_string_lossy();
+        let Some(own) = floor(inside.split(['/', '.']).next().unwrap_or_default()) else {
+            continue;
+        };
+        for line in read(&file).lines().filter(|line| !line.trim_start().starts_with("//")) {
+            for used in line.split("crate::").skip(1) {
+                let used = used
+                    .split(|c: char| !c.is_ascii_lowercase() && c != '_')
+                    .next()
+                    .unwrap_or_default();
+                seen += 1;
+                let below = used.is_empty() || floor(used).is_some_and(|floor| floor <= own);
+                assert!(below, "{inside} knows {used}");
+            }
+        }
+    }
+    assert!(seen > 10, "only {seen} uses found");
+}
+
 #[test]
 fn files_are_short_and_begin_with_what_they_are() {
     for file in rust_files() {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`refusal`] | what a refused input looks like: file, key path, found, allowed, nearest known |
 //! | [`document`] | JSON documents: strict reading, typed reading, values at a path |
+//! | [`filter`] | which rows or points are meant: a value, a list or a range for each of some names |
 //! | [`spec`] | the study file: its keys, its designs, the points they expand to |
 //! | [`plan`] | jobs: a point of a design made into a checked job, equal jobs merged |
 //! | [`run`] | jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record |
@@ -19,6 +20,7 @@
 pub mod calibrate;
 pub mod compare;
 pub mod document;
+pub mod filter;
 pub mod modes;
 pub mod plan;
 pub mod reference;

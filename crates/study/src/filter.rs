@@ -1,6 +1,6 @@
-//! Which rows are meant: a value, a list of values or a range for each of some columns.
+//! Which rows or points are meant: a value, a list of values or a range for each of some columns or axes.
 //!
-//! Knows the forms and when a cell is meant. Does not know which columns there are.
+//! Knows the forms and when a cell is meant. Does not know which columns or axes there are.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{Error as _, MapAccess, Visitor};
@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::fmt;
+use std::marker::PhantomData;
 
 /// Columns with what they may hold, in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -48,7 +49,8 @@ impl Allowed {
         values.iter().filter_map(Value::as_str)
     }
 
-    fn read(written: &Value) -> Result<Self, String> {
+    /// What a file writes; what is wrong with it as text.
+    pub(crate) fn read(written: &Value) -> Result<Self, String> {
         let forms = "a value, a list of values or {\"from\": .., \"to\": ..}";
         match written {
             Value::Array(list) if list.is_empty() => Err(format!("an empty list, expected {forms}")),
@@ -97,7 +99,8 @@ impl Allowed {
     }
 }
 
-fn same(a: f64, b: f64) -> bool {
+/// Whether two numbers are the same but for their last bits.
+pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs())
 }
 
@@ -143,18 +146,25 @@ impl Serialize for Filter {
 
 impl<'de> Deserialize<'de> for Filter {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(FilterVisitor).map(Self)
+        entries(deserializer).map(Self)
     }
 }
 
-/// Reads a filter entry by entry, so that a mistake is told with the path of its column.
-struct FilterVisitor;
+/// The entries of an object in the order of the file, read one by one, so that a mistake is told with the path of its
+/// entry.
+pub(crate) fn entries<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Vec<(String, T)>, D::Error> {
+    deserializer.deserialize_map(EntriesVisitor(PhantomData))
+}
 
-impl<'de> Visitor<'de> for FilterVisitor {
-    type Value = Vec<(String, Allowed)>;
+struct EntriesVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for EntriesVisitor<T> {
+    type Value = Vec<(String, T)>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("an object of columns and what they may hold")
+        f.write_str("an object of names and what is allowed for each")
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
