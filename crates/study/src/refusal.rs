@@ -71,8 +71,15 @@ impl Refusal {
     }
 }
 
-/// The known name nearest to `name`, by the Damerau-Levenshtein distance over the longer length (the first of equals).
+/// Longest name that a known one may be near to; to compare a longer one with all would take long.
+const LONGEST_NAME: usize = 200;
+
+/// The known name nearest to `name`, by the Damerau-Levenshtein distance over the longer length (the first of equals);
+/// none for a name longer than any that is known can be.
 pub fn nearest(name: &str, known: &[String]) -> Option<String> {
+    if name.len() > LONGEST_NAME {
+        return None;
+    }
     let mut best: Option<(f64, &String)> = None;
     for candidate in known {
         let likeness = strsim::normalized_damerau_levenshtein(name, candidate);

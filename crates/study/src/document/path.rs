@@ -5,6 +5,9 @@
 
 use serde_json::{Map, Value};
 
+/// Most steps of a path; no document of this program is as deep as a tenth of it.
+const MOST_STEPS: usize = 100;
+
 /// A step of a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Step {
@@ -17,7 +20,7 @@ enum Step {
 pub struct DocumentPath(Vec<Step>);
 
 impl DocumentPath {
-    /// Reads a path; `None` where it is not well formed.
+    /// Reads a path; `None` where it is not well formed or has more than a hundred steps.
     pub fn parse(text: &str) -> Option<Self> {
         let mut steps = Vec::new();
         for segment in text.split('.') {
@@ -36,7 +39,7 @@ impl DocumentPath {
                 places = rest;
             }
         }
-        Some(Self(steps))
+        Some(Self(steps)).filter(|path| path.0.len() <= MOST_STEPS)
     }
 
     /// The value at the path, if there is one.
@@ -126,6 +129,9 @@ mod tests {
         for text in ["", ".a", "a..b", "a[", "a[x]", "a[0]b", "[0]", "a[01]", "a[+1]"] {
             assert_eq!(DocumentPath::parse(text), None, "{text}");
         }
+        let steps = |n: usize| vec!["a"; n].join(".");
+        assert!(DocumentPath::parse(&steps(MOST_STEPS)).is_some());
+        assert_eq!(DocumentPath::parse(&steps(MOST_STEPS + 1)), None);
     }
 
     #[test]
