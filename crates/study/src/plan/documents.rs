@@ -67,16 +67,22 @@ pub(super) struct Documents {
     analyses: Interned<AnalysisEntry>,
 }
 
+/// What was asked for: the text of the changes, nothing where there are none, and bits of what else they are read with.
+type Asked = (u64, Option<String>);
+
 /// Entries by what was asked for, then by what it came to: two ways of writing the same share one entry.
 #[derive(Debug)]
 struct Interned<T> {
-    asked: HashMap<String, Arc<T>>,
+    /// What was asked for last: most points of a study ask for the same as the one before.
+    last: Option<(Asked, Arc<T>)>,
+    asked: HashMap<Asked, Arc<T>>,
     distinct: HashMap<String, Arc<T>>,
 }
 
 impl<T> Default for Interned<T> {
     fn default() -> Self {
         Self {
+            last: None,
             asked: HashMap::new(),
             distinct: HashMap::new(),
         }
@@ -87,17 +93,24 @@ impl<T> Interned<T> {
     /// The entry for `asked`; `make` reads it and gives its text, `build` makes the entry of a text not seen before.
     fn get<D>(
         &mut self,
-        asked: String,
+        asked: Asked,
         make: impl FnOnce() -> Result<(String, D), Refusal>,
         build: impl FnOnce(usize, D) -> T,
     ) -> Result<Arc<T>, Refusal> {
-        if let Some(entry) = self.asked.get(&asked) {
+        if let Some((_, entry)) = self.last.as_ref().filter(|(last, _)| *last == asked) {
             return Ok(Arc::clone(entry));
         }
-        let (text, made) = make()?;
-        let id = self.distinct.len();
-        let entry = Arc::clone(self.distinct.entry(text).or_insert_with(|| Arc::new(build(id, made))));
-        self.asked.insert(asked, Arc::clone(&entry));
+        let entry = match self.asked.get(&asked) {
+            Some(entry) => Arc::clone(entry),
+            None => {
+                let (text, made) = make()?;
+                let id = self.distinct.len();
+                let entry = self.distinct.entry(text).or_insert_with(|| Arc::new(build(id, made)));
+                self.asked.insert(asked.clone(), Arc::clone(entry));
+                Arc::clone(entry)
+            }
+        };
+        self.last = Some((asked, Arc::clone(&entry)));
         Ok(entry)
     }
 }
@@ -112,7 +125,7 @@ impl Documents {
             let document = to_value(&design);
             Ok((canonical_text(&document), (design, document)))
         };
-        self.bridges.get(changes.text(), read, |id, (design, document)| {
+        self.bridges.get((0, changes.text()), read, |id, (design, document)| {
             bridge_entry(id, design, document)
         })
     }
@@ -138,7 +151,7 @@ impl Documents {
             Ok((canonical_text(&document), (vehicle, document)))
         };
         self.vehicles.get(
-            format!("{breadth_m} {}", changes.text()),
+            (breadth_m.to_bits(), changes.text()),
             read,
             |id, (vehicle, document)| VehicleEntry {
                 id,
@@ -159,7 +172,7 @@ impl Documents {
             Ok((canonical_text(&document), (spec, document)))
         };
         self.analyses
-            .get(changes.text(), read, |id, (spec, document)| AnalysisEntry {
+            .get((0, changes.text()), read, |id, (spec, document)| AnalysisEntry {
                 id,
                 spec,
                 document,
@@ -204,7 +217,7 @@ struct Changes<'a> {
 }
 
 impl<'a> Changes<'a> {
-    fn of(study: &'a Study, point: &Point<'a>, root: &'static str) -> Self {
+    fn of(study: &'a Study, point: &'a Point<'_>, root: &'static str) -> Self {
         let list = point.values().filter_map(|(axis, value)| match &axis.varies {
             AxisName::Path { root: r, path } if *r == root => Some((axis.name.as_str(), path, value)),
             _ => None,
@@ -217,12 +230,10 @@ impl<'a> Changes<'a> {
         }
     }
 
-    /// Equal for equal changes.
-    fn text(&self) -> String {
-        self.list
-            .iter()
-            .map(|(name, _, value)| format!("{name}={value};"))
-            .collect()
+    /// Equal for equal changes; nothing where there are none, as of most points of large studies.
+    fn text(&self) -> Option<String> {
+        let texts = self.list.iter().map(|(name, _, value)| format!("{name}={value};"));
+        (!self.list.is_empty()).then(|| texts.collect())
     }
 
     /// The document with the changes, typed.

@@ -1,9 +1,10 @@
 //! The jobs of a study, one after the other.
 //!
-//! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a few numbers a job.
+//! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a fingerprint a job.
 
 use super::documents::{BridgeEntry, Documents, VehicleEntry};
-use super::job::{Identity, Job, Load, Task};
+use super::job::{Job, Load, Task};
+use super::seen::Seen;
 use crate::document::canonical;
 use crate::refusal::Refusal;
 use crate::spec::{AnalysisSpec, AxisName, Kind, ModelSpec, Point, SHORT_NAMES, Study, check_histories};
@@ -20,7 +21,7 @@ pub struct Jobs<'a> {
     study: &'a Study,
     points: Box<dyn Iterator<Item = Point<'a>> + 'a>,
     documents: Documents,
-    seen: HashSet<Identity>,
+    seen: Seen,
     /// Bridges whose size was checked, with their model.
     sized: HashSet<(usize, ModelSpec)>,
 }
@@ -33,7 +34,7 @@ impl<'a> Jobs<'a> {
             study,
             points,
             documents: Documents::default(),
-            seen: HashSet::new(),
+            seen: Seen::with_room_for(study.points()),
             sized: HashSet::new(),
         }
     }
@@ -46,7 +47,7 @@ impl Iterator for Jobs<'_> {
         loop {
             let point = self.points.next()?;
             match self.job(&point) {
-                Ok(job) if self.seen.insert(job.identity()) => return Some(Ok(job)),
+                Ok(job) if self.seen.insert(&job.identity()) => return Some(Ok(job)),
                 Ok(_) => {}
                 Err(refusal) => return Some(Err(refusal)),
             }

@@ -5,6 +5,7 @@
 mod documents;
 mod job;
 mod jobs;
+mod seen;
 
 pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
 pub use job::{Job, Load, Task};
@@ -13,7 +14,7 @@ pub use jobs::Jobs;
 use crate::refusal::Refusal;
 use crate::spec::{ModelSpec, SolverSpec, Study};
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// What a study would run. Making one checks every job.
 #[derive(Debug, Clone, Serialize)]
@@ -58,14 +59,14 @@ impl Plan {
             steps: 0,
             expected_seconds: 0.0,
         };
-        let (mut bridges, mut modules) = (BTreeSet::new(), BTreeSet::new());
+        let (mut bridges, mut modules) = (HashSet::new(), BTreeSet::new());
         let mut seconds = 0.0;
         for job in Jobs::new(study) {
             let job = job?;
             plan.jobs += 1;
             plan.steps += job.steps() as u64;
-            bridges.insert(job.bridge.hash.clone());
-            if job.analysis.spec.model == ModelSpec::SuperElement {
+            let model = job.analysis.spec.model;
+            if bridges.insert((job.bridge.id, model)) && model == ModelSpec::SuperElement {
                 modules.insert(job.bridge.module_key.clone());
             }
             let step = match job.analysis.spec.solver {
@@ -74,10 +75,10 @@ impl Plan {
             };
             seconds += SECONDS_A_STATIC_JOB + step * job.steps() as f64 * job.bridge.design.modules as f64;
         }
-        plan.distinct_bridges = bridges.len();
+        plan.distinct_bridges = bridges.iter().map(|(id, _)| id).collect::<HashSet<_>>().len();
         plan.condensations = modules.len();
         let threads = threads.max(1).min(plan.jobs.max(1)) as f64;
-        plan.expected_seconds = SECONDS_A_BRIDGE * bridges.len() as f64 + seconds / threads;
+        plan.expected_seconds = SECONDS_A_BRIDGE * plan.distinct_bridges as f64 + seconds / threads;
         Ok(plan)
     }
 }
