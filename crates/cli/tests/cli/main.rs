@@ -13,6 +13,7 @@ mod compare_histories;
 mod compare_input;
 mod compare_kinds;
 mod damaged;
+mod designs;
 mod old_results;
 mod operator;
 mod refusals;

@@ -131,6 +131,70 @@ mod tests {
     }
 
     #[test]
+    fn designs_of_all_forms_are_united_and_equal_points_are_one_job() {
+        let constant = json!({ "count": 5, "seed": 1, "ranges": { "connection": "linear", "speed_m_s": 10, "load_n": 1e5,
+                               "gap_tension_m": [0, 0.1] } });
+        let found = jobs(json!([
+            { "grid": { "speed_m_s": [10, 20], "load_n": [1e5, 2e5], "gap_tension_m": 0.028 } },
+            { "zip": { "speed_m_s": { "linspace": [10, 20, 2] }, "load_n": [100000, 2e5], "connection": "nonlinear" } },
+            { "cases": [{ "speed_m_s": 20.0, "load_n": 1e5, "bridge.connectors.gap_tension_m": 0.028 },
+                        { "speed_m_s": 30, "load_n": 1e5, "connection": "linear" }] },
+            { "grid": { "speed_m_s": { "geomspace": [10, 40, 3] }, "load_n": 1e5, "vehicle.track_y_m": [[-1.4, 1.4]] },
+              "where": { "speed_m_s": { "from": 20 } } },
+            { "latin_hypercube": constant },
+            { "sobol": constant },
+        ]))
+        .unwrap();
+        let told: Vec<(f64, f64, bool)> = found
+            .iter()
+            .map(|job| {
+                let Task::Crossing { speed_m_s } = job.task else {
+                    panic!("{:?}", job.task)
+                };
+                (speed_m_s, job.load_n, job.gaps_m().is_some())
+            })
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (10.0, 1e5, true),
+                (10.0, 2e5, true),
+                (20.0, 1e5, true),
+                (20.0, 2e5, true),
+                (30.0, 1e5, false),
+                (40.0, 1e5, true),
+                (10.0, 1e5, false),
+            ]
+        );
+        assert!(found.iter().enumerate().all(|(i, job)| job.number == i));
+    }
+
+    #[test]
+    fn any_number_of_the_documents_is_an_axis_of_every_form() {
+        for axis in [
+            "bridge.hydrostatic_stiffness_pa_m",
+            "vehicle.track_y_m[0]",
+            "analysis.tail_s",
+            "analysis.damping.ratio",
+        ] {
+            let listed = json!({ axis: [0.5, 0.75], "speed_m_s": 10, "load_n": 1e5 });
+            let drawn = json!({ "count": 2, "seed": 1,
+                                "ranges": { axis: [0.5, 0.75], "speed_m_s": 10, "load_n": 1e5 } });
+            for form in [
+                json!({ "grid": listed, "where": { axis: { "to": 0.8 } } }),
+                json!({ "zip": listed }),
+                json!({ "latin_hypercube": drawn }),
+                json!({ "sobol": drawn }),
+            ] {
+                let found = jobs(json!([form])).unwrap_or_else(|e| panic!("{axis}: {e}"));
+                let values: Vec<f64> = found.iter().map(|job| job.column(axis).as_f64().unwrap()).collect();
+                assert!(values.len() == 2 && values[0] != values[1], "{form}: {values:?}");
+                assert!(values.iter().all(|x| (0.5..=0.75).contains(x)), "{form}: {values:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_part_of_a_default_may_be_an_axis() {
         for axis in ["vehicle.track_y_m[0]", "bridge.supports.left", "analysis.damping.ratio"] {
             let value = match axis {
@@ -168,6 +232,17 @@ mod tests {
             jobs.iter().map(|job| job.number).collect::<Vec<_>>(),
             (0..count).collect::<Vec<_>>()
         );
+    }
+
+    #[test]
+    fn a_vehicle_is_checked_on_every_deck() {
+        let on = |breadth_m: f64| {
+            let more = json!({ "bridge.module.breadth_m": breadth_m, "vehicle.track_y_m": [-4.4, 4.4] });
+            case(more)
+        };
+        assert_eq!(jobs(json!([{ "cases": [on(9.0), on(10.0)] }])).unwrap().len(), 2);
+        let refused = jobs(json!([{ "cases": [on(9.0), on(8.082)] }])).unwrap_err();
+        assert_eq!(refused.key, "design[0].cases[1].vehicle.track_y_m[0]", "{refused}");
     }
 
     #[test]

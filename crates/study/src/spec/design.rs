@@ -2,20 +2,87 @@
 //!
 //! Knows its forms and their schema. Does not know what an axis may be called or what it expands to.
 
+use super::condition::Conditions;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
-/// One design. The designs of a study are united in the order of the file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Design {
+/// One design: exactly one of `grid`, `zip`, `cases`, `latin_hypercube` and `sobol` says which points it has. The designs
+/// of a study are united in the order of the file.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = Form::NAMES.map(|name| json!({ "required": [name] }))))]
+pub struct Design {
     /// Every combination of the axes' values; the first axis changes slowest.
-    Grid(AxisMap),
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "AxisMap")]
+    pub grid: Option<AxisMap>,
+    /// The axes' first values, then their second ones, and so on: all axes have equally many, or one that stands for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "AxisMap")]
+    pub zip: Option<AxisMap>,
     /// Single points, each axis with one value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Vec<Case>")]
-    Cases(Vec<Map<String, Value>>),
+    pub cases: Option<Vec<Map<String, Value>>>,
+    /// Points drawn at random, one in each of `count` equal parts of each range.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "SampleSpec")]
+    pub latin_hypercube: Option<SampleSpec>,
+    /// Points of the scrambled Sobol' sequence, which fills the ranges evenly at every length: a longer design of the same
+    /// seed begins with the points of a shorter one. Best at a power of two.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "SampleSpec")]
+    pub sobol: Option<SampleSpec>,
+    /// What a point must meet to become a job.
+    #[serde(default, rename = "where", skip_serializing_if = "Conditions::is_empty")]
+    pub conditions: Conditions,
+}
+
+/// The one form of a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Form<'a> {
+    /// Every combination.
+    Grid(&'a AxisMap),
+    /// Value by value.
+    Zip(&'a AxisMap),
+    /// Point by point.
+    Cases(&'a [Map<String, Value>]),
+    /// Drawn at random, one in each part of each range.
+    LatinHypercube(&'a SampleSpec),
+    /// Points of a sequence.
+    Sobol(&'a SampleSpec),
+}
+
+impl Form<'_> {
+    /// The keys of the forms.
+    pub const NAMES: [&'static str; 5] = ["grid", "zip", "cases", "latin_hypercube", "sobol"];
+}
+
+impl Design {
+    /// The form.
+    ///
+    /// # Errors
+    /// The keys that were found where there is not exactly one.
+    pub fn form(&self) -> Result<Form<'_>, Vec<&'static str>> {
+        let forms = [
+            self.grid.as_ref().map(Form::Grid),
+            self.zip.as_ref().map(Form::Zip),
+            self.cases.as_deref().map(Form::Cases),
+            self.latin_hypercube.as_ref().map(Form::LatinHypercube),
+            self.sobol.as_ref().map(Form::Sobol),
+        ];
+        let found: Vec<(&str, Form<'_>)> = Form::NAMES
+            .into_iter()
+            .zip(forms)
+            .filter_map(|(name, form)| Some((name, form?)))
+            .collect();
+        match found.as_slice() {
+            [(_, form)] => Ok(*form),
+            several => Err(several.iter().map(|(name, _)| *name).collect()),
+        }
+    }
 }
 
 /// Axes by name, in the order of the file.
@@ -23,13 +90,32 @@ pub enum Design {
 #[serde(transparent)]
 pub struct AxisMap(pub Map<String, Value>);
 
+/// Points drawn from ranges.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SampleSpec {
+    /// Number of points.
+    #[schemars(range(min = 1, max = 10_000_000))]
+    pub count: usize,
+    /// The same seed gives the same points, another one others.
+    pub seed: u64,
+    /// The axes with their ranges.
+    pub ranges: RangeMap,
+}
+
+/// Ranges and constants by the name of their axis, in the order of the file.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct RangeMap(pub Map<String, Value>);
+
 /// Pattern of the axes that are named by their path.
 const PATH_PATTERN: &str = r"^(bridge|vehicle|analysis)\.[a-z0-9_]+(\.[a-z0-9_]+|\[[0-9]+\])*$";
 
 /// The schema of an object of axes, where `number` and `word` are the schemas of one axis of numbers and of words.
-fn object_of(number: &Value, word: &Value, any: &Value) -> Schema {
+fn object_of(text: &str, number: &Value, word: &Value, any: &Value) -> Schema {
     let schema = json!({
         "type": "object",
+        "description": text,
         "properties": {
             "connection": word, "gap_tension_m": number, "gap_compression_m": number, "speed_m_s": number,
             "load_n": number, "load_position": number, "load_x_m": number
@@ -38,6 +124,11 @@ fn object_of(number: &Value, word: &Value, any: &Value) -> Schema {
         "additionalProperties": false
     });
     schema.try_into().unwrap_or_default()
+}
+
+/// How the connectors may work.
+fn words() -> Value {
+    json!({ "enum": ["linear", "nonlinear"] })
 }
 
 impl JsonSchema for AxisMap {
@@ -64,11 +155,33 @@ impl JsonSchema for AxisMap {
             let forms: Vec<Value> = forms.into_iter().chain([more]).collect();
             json!({ "anyOf": forms })
         };
-        let words = json!({ "enum": ["linear", "nonlinear"] });
         object_of(
+            "Axes by name, each a list of values, one value or a spaced range.",
             &with(forms(json!({ "type": "number" })), json!({ "type": "number" })),
-            &json!({ "anyOf": [words, { "type": "array", "items": words, "minItems": 1 }] }),
+            &json!({ "anyOf": [words(), { "type": "array", "items": words(), "minItems": 1 }] }),
             &with(forms(json!(true)), json!({ "type": ["number", "string", "boolean"] })),
+        )
+    }
+}
+
+impl JsonSchema for RangeMap {
+    fn schema_name() -> Cow<'static, str> {
+        "Ranges".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let or = |constant: Value| {
+            let ends = json!({
+                "type": "array", "description": "[from, to], from below to",
+                "items": { "type": "number" }, "minItems": 2, "maxItems": 2
+            });
+            json!({ "anyOf": [ends, constant] })
+        };
+        object_of(
+            "Axes by name, each a range [from, to] or one value that all points have; at least one is a range.",
+            &or(json!({ "type": "number" })),
+            &words(),
+            &or(json!({ "type": ["number", "string", "boolean"] })),
         )
     }
 }
@@ -83,8 +196,9 @@ impl JsonSchema for Case {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         object_of(
+            "One point: a value for each axis.",
             &json!({ "type": "number" }),
-            &json!({ "enum": ["linear", "nonlinear"] }),
+            &words(),
             &json!(true),
         )
     }

@@ -3,7 +3,8 @@
 //! Knows files. Does not know jobs: what holds for a single point is checked where jobs are made.
 
 use super::analysis::AnalysisSpec;
-use super::axes::{Block, SHORT_NAMES};
+use super::axes::SHORT_NAMES;
+use super::block::Block;
 use super::design::Design;
 use crate::document::{canonical_text, leaves, read, typed};
 use crate::refusal::Refusal;

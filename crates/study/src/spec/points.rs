@@ -1,0 +1,160 @@
+//! The points of a block, one after the other.
+//!
+//! Knows their order. Stores none: a point is made when it is asked for. Does not know what a point means.
+
+use super::axes::Axis;
+use super::block::Block;
+use super::condition::Test;
+use super::sampling::{SobolPoints, Strata};
+use super::values::{Values, number};
+use serde_json::Value;
+use std::borrow::Cow;
+
+/// How the points of a block are made.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Making {
+    /// Every combination of the axes' values.
+    Grid(Vec<Values>),
+    /// The axes' values one by one; one value stands for all.
+    Zip(Vec<Values>),
+    /// Drawn at random, one in each part of each range.
+    LatinHypercube(Sample),
+    /// Points of the Sobol' sequence.
+    Sobol(Sample),
+}
+
+/// Points drawn from ranges.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sample {
+    /// Number of points.
+    pub(super) count: usize,
+    /// Seed.
+    pub(super) seed: u64,
+    /// What each axis is drawn from.
+    pub(super) drawn: Vec<Drawn>,
+}
+
+/// What an axis of a sample is drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Drawn {
+    /// The same for all points.
+    Constant(Value),
+    /// From the first to the second number.
+    Range(f64, f64),
+}
+
+impl Making {
+    /// Number of points, whatever conditions leave of them; `None` beyond what can be counted.
+    pub(super) fn count(&self) -> Option<usize> {
+        match self {
+            Self::Grid(axes) => axes
+                .iter()
+                .try_fold(1_usize, |count, values| count.checked_mul(values.len())),
+            Self::Zip(axes) => Some(axes.iter().map(Values::len).max().unwrap_or(1)),
+            Self::LatinHypercube(sample) | Self::Sobol(sample) => Some(sample.count),
+        }
+    }
+
+    /// The same as a number that may be beyond counting.
+    pub(super) fn size(&self) -> f64 {
+        match (self, self.count()) {
+            (Self::Grid(axes), None) => axes.iter().map(|values| values.len() as f64).product(),
+            (_, count) => count.map_or(f64::INFINITY, |count| count as f64),
+        }
+    }
+}
+
+/// One point: a value for each axis of its block.
+#[derive(Debug, Clone)]
+pub struct Point<'a> {
+    /// The block it is of.
+    pub block: &'a Block,
+    values: Vec<Cow<'a, Value>>,
+}
+
+impl<'a> Point<'a> {
+    /// The axes with the point's values.
+    pub fn values(&self) -> impl Iterator<Item = (&'a Axis, &Value)> {
+        self.block.axes.iter().zip(self.values.iter().map(Cow::as_ref))
+    }
+}
+
+/// The points of a block in order that meet conditions: of a grid the first axis changes slowest.
+pub(super) fn points<'a>(block: &'a Block, making: &'a Making, tests: &'a [Test]) -> impl Iterator<Item = Point<'a>> {
+    let mut source = Source::of(block, making);
+    (0..making.count().unwrap_or(0))
+        .map_while(move |number| source.values(number))
+        .filter(|values| tests.iter().all(|test| test.met(values)))
+        .map(move |values| Point { block, values })
+}
+
+/// What the values of the next point come from.
+enum Source<'a> {
+    Grid(&'a [Values]),
+    Zip(&'a [Values]),
+    /// With the coordinates of the ranges.
+    LatinHypercube(&'a [Drawn], Vec<Strata>),
+    Sobol(&'a [Drawn], SobolPoints),
+}
+
+impl<'a> Source<'a> {
+    fn of(block: &Block, making: &'a Making) -> Self {
+        match making {
+            Making::Grid(axes) => Self::Grid(axes),
+            Making::Zip(axes) => Self::Zip(axes),
+            Making::LatinHypercube(Sample { count, seed, drawn }) => {
+                let ranges = block.axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
+                let strata = ranges.map(|(axis, _)| Strata::new(*count, *seed, &axis.name));
+                Self::LatinHypercube(drawn, strata.collect())
+            }
+            Making::Sobol(Sample { seed, drawn, .. }) => {
+                let dimensions = drawn.iter().filter(|drawn| drawn.is_range()).count();
+                Self::Sobol(drawn, SobolPoints::new(dimensions, *seed))
+            }
+        }
+    }
+
+    /// The values of a point, to be asked from the first on; nothing where the sequence ends.
+    fn values(&mut self, number: usize) -> Option<Vec<Cow<'a, Value>>> {
+        match self {
+            Self::Grid(axes) => {
+                let axes: &'a [Values] = axes;
+                let mut rest = number;
+                let mut values = Vec::with_capacity(axes.len());
+                for axis in axes.iter().rev() {
+                    values.push(axis.at(rest % axis.len()));
+                    rest /= axis.len();
+                }
+                values.reverse();
+                Some(values)
+            }
+            Self::Zip(axes) => {
+                let axes: &'a [Values] = axes;
+                let value = |values: &'a Values| values.at(if values.len() == 1 { 0 } else { number });
+                Some(axes.iter().map(value).collect())
+            }
+            Self::LatinHypercube(drawn, strata) => {
+                drawn_values(drawn, strata.iter_mut().map(|strata| strata.share(number)))
+            }
+            Self::Sobol(drawn, points) => drawn_values(drawn, points.next()?.into_iter()),
+        }
+    }
+}
+
+impl Drawn {
+    pub(super) fn is_range(&self) -> bool {
+        matches!(self, Self::Range(..))
+    }
+}
+
+/// The values of a point whose ranges have these coordinates.
+fn drawn_values<'a>(drawn: &'a [Drawn], mut shares: impl Iterator<Item = f64>) -> Option<Vec<Cow<'a, Value>>> {
+    let value = |drawn: &'a Drawn| match drawn {
+        Drawn::Constant(value) => Some(Cow::Borrowed(value)),
+        Drawn::Range(from, to) => {
+            let x = from + (to - from) * shares.next()?;
+            Some(Cow::Owned(number(x.clamp(*from, *to))))
+        }
+    };
+    drawn.iter().map(value).collect()
+}
