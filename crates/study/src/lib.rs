@@ -7,6 +7,7 @@
 //! | [`filter`] | which rows or points are meant: a value, a list or a range for each of some names |
 //! | [`spec`] | the study file: its keys, its designs, the points they expand to |
 //! | [`plan`] | jobs: a point of a design made into a checked job, equal jobs merged |
+//! | [`journal`] | what jobs left, kept as soon as they left it, whatever becomes of the process |
 //! | [`run`] | jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record |
 //! | [`tables`] | records to files: Parquet tables, summary, manifest |
 //! | [`reference`] | the reference file: checks with their source |
@@ -21,6 +22,7 @@ pub mod calibrate;
 pub mod compare;
 pub mod document;
 pub mod filter;
+pub mod journal;
 pub mod modes;
 pub mod plan;
 pub mod reference;

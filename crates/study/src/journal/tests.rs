@@ -1,0 +1,1 @@
+//! Tests of journals as a whole.

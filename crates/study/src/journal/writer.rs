@@ -1,0 +1,288 @@
+//! A file of the journal under way.
+//!
+//! Knows that what is written reaches the disk within a second, by a thread of its own, and that after a failed write or sync
+//! nothing more is written. Does not know what is read back.
+
+use super::frame;
+use super::progress::{self, Counts};
+use super::{Binding, EXTENSION, Ending, FOLDER, JobKey, JournalError, Session, fault, kind};
+use serde::Serialize;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// Time between two syncs: two a second leave room for the sync itself within the second that may be lost.
+const BETWEEN_SYNCS: Duration = Duration::from_millis(500);
+
+/// A file of the journal that this process writes.
+#[derive(Debug)]
+pub struct Writer {
+    shared: Arc<Shared>,
+    syncing: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    folder: PathBuf,
+    path: PathBuf,
+    state: Mutex<State>,
+    wake: Condvar,
+}
+
+#[derive(Debug)]
+struct State {
+    file: File,
+    counts: Counts,
+    /// Bytes on the disk for sure.
+    synced: u64,
+    /// Counts that were told.
+    told: Counts,
+    broken: Option<String>,
+    closing: bool,
+}
+
+/// A record to be written.
+#[derive(Debug, Clone, Copy)]
+pub struct NewRecord<'a> {
+    /// Key of the job.
+    pub key: JobKey,
+    /// Whether it failed.
+    pub failed: bool,
+    /// What it left.
+    pub left: &'a [u8],
+}
+
+impl Writer {
+    /// Begins a file in the journal of a folder of results: what it is bound to and who writes, both on the disk before
+    /// this returns. Of `session.jobs` jobs `session.known` are recorded, `failed` of these failed.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn begin(folder: &Path, binding: &Binding, session: &Session, failed: usize) -> Result<Self, JournalError> {
+        let journal = folder.join(FOLDER);
+        let error = |cause| JournalError::io(&journal, cause);
+        fs::create_dir_all(&journal).map_err(error)?;
+        let files = fs::read_dir(&journal).map_err(error)?.count();
+        let (path, file) = create(&journal)?;
+        let mut bytes = Vec::new();
+        frame::append(&mut bytes, kind::BINDING, &json(binding));
+        frame::append(&mut bytes, kind::SESSION, &json(session));
+        let begun = fault::write_all("journal.begin", &file, &bytes)
+            .and_then(|()| fault::at("journal.begin.sync"))
+            .and_then(|()| file.sync_all())
+            .and_then(|()| File::open(&journal)?.sync_all())
+            .and_then(|()| File::open(folder)?.sync_all())
+            .and_then(|()| fault::at("journal.begun"));
+        begun.map_err(|cause| JournalError::io(&path, cause))?;
+        let counts = Counts {
+            study: binding.name.clone(),
+            shard: binding.shard.clone(),
+            jobs: session.jobs,
+            done: session.known,
+            failed,
+            file: path
+                .file_name()
+                .map(|name| name.to_string_lossy().into_owned())
+                .unwrap_or_default(),
+            bytes: bytes.len() as u64,
+            files: files + 1,
+            ended: None,
+        };
+        progress::replace(folder, &counts);
+        let shared = Arc::new(Shared {
+            folder: folder.to_owned(),
+            path,
+            state: Mutex::new(State {
+                file,
+                synced: counts.bytes,
+                told: counts.clone(),
+                counts,
+                broken: None,
+                closing: false,
+            }),
+            wake: Condvar::new(),
+        });
+        let own = Arc::clone(&shared);
+        let syncing = std::thread::Builder::new()
+            .name("journal".to_owned())
+            .spawn(move || own.keep_syncing());
+        let syncing = syncing.map_err(|cause| JournalError::io(&shared.path, cause))?;
+        Ok(Self {
+            shared,
+            syncing: Some(syncing),
+        })
+    }
+
+    /// Says which jobs are about to be solved together.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn started(&self, keys: &[JobKey]) -> Result<(), JournalError> {
+        let payload: Vec<u8> = keys.iter().flat_map(|key| key.0).collect();
+        self.one(kind::STARTED, &payload)
+    }
+
+    /// Keeps what jobs share, as it was prepared.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn prepared(&self, what: &impl Serialize) -> Result<(), JournalError> {
+        self.one(kind::PREPARED, &json(what))
+    }
+
+    fn one(&self, kind: u32, payload: &[u8]) -> Result<(), JournalError> {
+        let mut bytes = Vec::with_capacity(frame::HEAD + payload.len());
+        frame::append(&mut bytes, kind, payload);
+        self.shared.write(&bytes, 0, 0)
+    }
+
+    /// Keeps records, all in one piece.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn record<'a>(&self, records: impl Iterator<Item = NewRecord<'a>>) -> Result<(), JournalError> {
+        let now = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .unwrap_or_default()
+            .as_millis();
+        let now = u64::try_from(now).unwrap_or(u64::MAX).to_le_bytes();
+        let (mut bytes, mut payload, mut done, mut failed) = (Vec::new(), Vec::new(), 0, 0);
+        for record in records {
+            payload.clear();
+            payload.extend_from_slice(&record.key.0);
+            payload.push(u8::from(record.failed));
+            payload.extend_from_slice(&now);
+            payload.extend_from_slice(record.left);
+            frame::append(&mut bytes, kind::RECORD, &payload);
+            done += 1;
+            failed += usize::from(record.failed);
+        }
+        self.shared.write(&bytes, done, failed)
+    }
+
+    /// Brings all that was written to the disk.
+    ///
+    /// # Errors
+    /// [`JournalError`], after which nothing more is written.
+    pub fn sync(&self) -> Result<(), JournalError> {
+        let state = self.shared.sync(self.shared.lock());
+        self.shared.whole(&state)
+    }
+
+    /// Says how the process came to its end, and ends the file.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn end(&self, ending: &Ending) -> Result<(), JournalError> {
+        self.one(kind::ENDING, &json(ending))?;
+        self.shared.lock().counts.ended = Some(ending.how.clone());
+        self.sync()
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.shared.lock().closing = true;
+        self.shared.wake.notify_all();
+        if let Some(syncing) = self.syncing.take() {
+            let _ = syncing.join();
+        }
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn whole(&self, state: &State) -> Result<(), JournalError> {
+        match &state.broken {
+            None => Ok(()),
+            Some(cause) => Err(JournalError::Broken {
+                path: self.path.clone(),
+                cause: cause.clone(),
+            }),
+        }
+    }
+
+    fn write(&self, bytes: &[u8], done: usize, failed: usize) -> Result<(), JournalError> {
+        let mut state = self.lock();
+        self.whole(&state)?;
+        if let Err(cause) = fault::write_all("journal.write", &state.file, bytes) {
+            state.broken = Some(cause.to_string());
+            return Err(JournalError::io(&self.path, cause));
+        }
+        // a process that dies here has written, and told nobody
+        let _ = fault::at("journal.written");
+        state.counts.bytes += bytes.len() as u64;
+        state.counts.done += done;
+        state.counts.failed += failed;
+        Ok(())
+    }
+
+    /// Syncs what was written so far. A sync that failed may have lost what it was to save: nothing is written after it.
+    fn sync<'a>(&'a self, state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
+        if state.broken.is_some() || state.counts == state.told {
+            return state;
+        }
+        let (counts, file) = (state.counts.clone(), state.file.try_clone());
+        let due = counts.bytes > state.synced;
+        // jobs go on while the disk works
+        drop(state);
+        let synced = match file {
+            Ok(file) if due => fault::at("journal.sync")
+                .and_then(|()| file.sync_data())
+                .and_then(|()| fault::at("journal.synced")),
+            Ok(_) => Ok(()),
+            Err(cause) => Err(cause),
+        };
+        let mut state = self.lock();
+        match synced {
+            Ok(()) => {
+                state.synced = state.synced.max(counts.bytes);
+                progress::replace(&self.folder, &counts);
+                state.told = counts;
+            }
+            Err(cause) => state.broken = Some(format!("sync: {cause}")),
+        }
+        state
+    }
+
+    fn keep_syncing(&self) {
+        let mut state = self.lock();
+        loop {
+            if state.closing {
+                drop(self.sync(state));
+                return;
+            }
+            let waited = self.wake.wait_timeout(state, BETWEEN_SYNCS);
+            state = waited.map_or_else(|poisoned| poisoned.into_inner().0, |(state, _)| state);
+            state = self.sync(state);
+        }
+    }
+}
+
+/// A new file whose name sorts after those of files begun before.
+fn create(journal: &Path) -> Result<(PathBuf, File), JournalError> {
+    let now = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .unwrap_or_default()
+        .as_nanos();
+    let mut number = u64::try_from(now).unwrap_or(u64::MAX);
+    loop {
+        let name = format!("{number:016x}-{:08x}.{EXTENSION}", std::process::id());
+        let path = journal.join(name);
+        match File::options().create_new(true).read(true).append(true).open(&path) {
+            Ok(file) => return Ok((path, file)),
+            Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => number += 1,
+            Err(cause) => return Err(JournalError::io(&path, cause)),
+        }
+    }
+}
+
+fn json(value: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(value).unwrap_or_default()
+}
