@@ -3,6 +3,7 @@
 //! Knows flags and their help. Does not know what they lead to.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pontoon_study::plan::Shard;
 use pontoon_study::spec::ModelSpec;
 use std::path::PathBuf;
 
@@ -55,15 +56,29 @@ pub enum Command {
     /// Runs a study and writes its tables.
     ///
     /// Every job is checked before anything runs or is written. Jobs run in parallel; a job that fails is a row with its
-    /// reason, the others go on. The folder of results then holds jobs.parquet, positions.parquet, connectors.parquet,
+    /// reason, the others go on. What a job leaves is kept in a journal at once: after a kill, a crash or an interrupt the same
+    /// command runs what is missing. The folder of results then holds jobs.parquet, positions.parquet, connectors.parquet,
     /// summary.csv, manifest.json and, where asked for, histories.parquet.
     #[command(
         after_help = "Examples:\n  pontoon run studies/fu2005\n  pontoon run studies/smoke --out /tmp/smoke --threads 2 --format json"
     )]
     Run(RunArguments),
-    /// Says what would run: jobs, distinct bridges, steps, expected time. Writes nothing.
+    /// Says what would run: jobs, distinct bridges, steps, expected time; of a folder of results what is done, missing,
+    /// failed. Writes nothing.
     #[command(after_help = "Example:\n  pontoon plan studies/fu2005")]
     Plan(PlanArguments),
+    /// Says how far runs have come, while they run or after: jobs done, missing, failed.
+    #[command(after_help = "Example:\n  pontoon status results/fu2005/shards/* --format json")]
+    Status(StatusArguments),
+    /// Says why a job ran or will run.
+    #[command(after_help = "Example:\n  pontoon explain results/fu2005 7")]
+    Explain(ExplainArguments),
+    /// Puts the shards of a study together.
+    ///
+    /// Refuses shards of different studies or versions, records that contradict each other, and shards that leave jobs out.
+    /// The tables are those of a run of the whole study, byte for byte.
+    #[command(after_help = "Example:\n  pontoon merge results/fu2005/shards/* --out results/fu2005")]
+    Merge(MergeArguments),
     /// Natural frequencies with the name of each shape.
     ///
     /// The bridge floats free, linearly connected, unless told otherwise.
@@ -107,9 +122,58 @@ pub struct RunArguments {
     /// Threads; as many as the machine has where absent. The tables do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Runs a share of the jobs alone, K from 0 to N - 1, into `results/<study name>/shards/K-of-N` unless --out says
+    /// otherwise; `merge` puts shares together.
+    #[arg(long, value_name = "K/N", conflicts_with = "with")]
+    pub shard: Option<Shard>,
+    /// Moves results that the folder holds to a folder `aside` in it, and begins anew.
+    #[arg(long)]
+    pub fresh: bool,
+    /// Stops when more jobs than this have failed.
+    #[arg(long, value_name = "N")]
+    pub max_failures: Option<usize>,
+    /// Takes records that were computed on other instruction paths for its own.
+    #[arg(long)]
+    pub any_instructions: bool,
+    /// Jobs to be solved one by one into the journal of a folder that another process holds.
+    #[arg(long, hide = true, value_delimiter = ',')]
+    pub apart: Vec<usize>,
     /// Holds the results against a reference file (or the folder that holds reference.json) once they are there.
     #[arg(long, value_name = "REFERENCE")]
     pub with: Option<PathBuf>,
+}
+
+/// What `status` takes.
+#[derive(Debug, Args)]
+pub struct StatusArguments {
+    /// Folders of results, or of shards.
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+}
+
+/// What `explain` takes.
+#[derive(Debug, Args)]
+pub struct ExplainArguments {
+    /// Folder of results, or of a shard.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Number of the job, from 0.
+    #[arg(value_name = "JOB")]
+    pub job: usize,
+}
+
+/// What `merge` takes.
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// Folders of the shards.
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Takes shards that were computed on different instruction paths; the tables then say so.
+    #[arg(long)]
+    pub any_instructions: bool,
 }
 
 /// What `compare` takes.
@@ -152,6 +216,9 @@ pub struct PlanArguments {
     /// The study: a study.json or the folder that holds it.
     #[arg(value_name = "STUDY")]
     pub study: PathBuf,
+    /// Folder of results to look into; `results/<study name>` where absent.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// What `modes` takes.

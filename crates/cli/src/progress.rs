@@ -70,11 +70,13 @@ impl Progress for Shown {
     fn jobs(&self, tally: Tally) {
         match self {
             Self::Not => {}
-            Self::Bar(bar) if tally.done == 0 => {
+            Self::Bar(bar) if tally.ran == 0 => {
                 bar.set_length(tally.total as u64);
                 bar.set_style(style("{bar:30} {pos}/{len} jobs, {per_sec}, {eta} left{msg}"));
                 bar.set_message("");
                 bar.reset();
+                bar.set_position(tally.done as u64);
+                bar.reset_eta();
             }
             Self::Bar(bar) => {
                 bar.set_position(bar.position().max(tally.done as u64));
@@ -85,7 +87,7 @@ impl Progress for Shown {
             Self::Lines(lines) => {
                 let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
                 let now = Instant::now();
-                if tally.done == 0 {
+                if tally.ran == 0 {
                     lines.began = now;
                 } else if tally.done == tally.total || now.duration_since(lines.last) >= BETWEEN_LINES {
                     lines.last = now;
@@ -97,8 +99,13 @@ impl Progress for Shown {
 }
 
 fn line(tally: Tally, seconds: f64) -> String {
-    let Tally { done, failed, total } = tally;
-    let rate = done as f64 / seconds.max(1e-9);
+    let Tally {
+        done,
+        failed,
+        total,
+        ran,
+    } = tally;
+    let rate = ran as f64 / seconds.max(1e-9);
     let left = words::duration((total - done) as f64 / rate);
     let failed = if failed > 0 {
         format!(", {failed} failed")
@@ -118,6 +125,7 @@ mod tests {
             done: 5,
             failed: 1,
             total: 20,
+            ran: 5,
         };
         assert_eq!(line(tally, 10.0), "5/20 jobs, 1 failed, 0.50 jobs/s, 30 s left");
     }

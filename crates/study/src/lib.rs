@@ -10,6 +10,7 @@
 //! | [`journal`] | what jobs left, kept as soon as they left it, whatever becomes of the process |
 //! | [`run`] | jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record |
 //! | [`tables`] | records to files: Parquet tables, summary, manifest |
+//! | [`sweep`] | a study run into its folder: journal, resume, shards, tables |
 //! | [`reference`] | the reference file: checks with their source |
 //! | [`compare`] | results held against a reference, or against older results |
 //! | [`calibrate`] | a bridge's numbers identified from the checks of references |
@@ -30,6 +31,7 @@ pub mod refusal;
 pub mod run;
 pub mod schema;
 pub mod spec;
+pub mod sweep;
 pub mod tables;
 
 pub use refusal::Refusal;

@@ -2,7 +2,10 @@
 
 pub mod calibrate;
 pub mod compare;
+pub mod explain;
+pub mod merge;
 pub mod modes;
 pub mod plan;
 pub mod run;
 pub mod schema;
+pub mod status;

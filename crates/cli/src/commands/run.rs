@@ -1,31 +1,30 @@
 //! `pontoon run`: a study to its tables.
 
-use crate::Ending;
 use crate::args::{Common, Format, RunArguments};
-use crate::comparison;
 use crate::progress::Shown;
-use crate::words;
-use anyhow::{Context, Result};
+use crate::signals::Heard;
+use crate::watching::Watching;
+use crate::{Ending, comparison, words};
+use anyhow::Result;
 use pontoon_study::compare::{Comparison, against_reference};
 use pontoon_study::plan::{Job, Jobs};
 use pontoon_study::reference::Reference;
-use pontoon_study::run::{Cache, Failures, JobRecord, Outcome, RunError, Setting, run as run_jobs};
-use pontoon_study::tables::{Folder, Manifest, Moment, Results, SummaryTable, Writer, check_own};
+use pontoon_study::run::{Cache, Failures, Outcome};
+use pontoon_study::sweep::{SweepSetting, Swept, run_apart, sweep};
+use pontoon_study::tables::{Results, SummaryTable};
 use pontoon_study::{Refusal, Study};
 use serde::ser::{Serialize, Serializer};
 use serde_json::{Map, Value};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Rows of the summary that are written on standard output for people; all are in summary.csv.
 const ROWS_SHOWN: usize = 200;
 
-/// What could not be done where a table fails.
-const NOT_WRITTEN: &str = "results not written";
-
-/// Checks every job, runs them, writes the tables, prints the summary and, where asked, holds the results against a
-/// reference.
+/// Checks every job, runs what is missing, writes the tables, prints the summary and, where asked, holds the results against
+/// a reference.
 pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
+    let heard = Heard::listen()?;
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     if let Some(reference) = &reference {
@@ -33,31 +32,60 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
         reference.study_of(&study.spec.name, &study.file)?;
     }
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("results").join(&study.spec.name));
-    check_own(&out, &study.spec.name)?;
-    let folder = Folder::create(&out).context("no folder for the results")?;
-    let started = Moment::now();
-    let shown = Shown::fitting(common.quiet);
-    let mut tables = Writer::begin(&study, &jobs, &folder).context(NOT_WRITTEN)?;
-    let setting = Setting {
+    let setting = setting(arguments, &study);
+    if !arguments.apart.is_empty() {
+        end_with_standard_input();
+        run_apart(&study, &jobs, &arguments.apart, &setting, &heard.stop)?;
+        return Ok(Ending::Good);
+    }
+    let again = Some((arguments.study.clone(), setting.out.clone()));
+    let watching = Watching::new(Shown::fitting(common.quiet), &heard, again);
+    let swept = sweep(&study, &jobs, &setting, &heard.stop, &watching);
+    watching.finish();
+    answer(&study, &swept?, &setting.out, reference.as_ref(), common)
+}
+
+fn setting(arguments: &RunArguments, study: &Study) -> SweepSetting {
+    let default_out = || {
+        let whole = PathBuf::from("results").join(&study.spec.name);
+        match arguments.shard {
+            Some(shard) => whole.join("shards").join(format!("{}-of-{}", shard.number, shard.of)),
+            None => whole,
+        }
+    };
+    SweepSetting {
+        out: arguments.out.clone().unwrap_or_else(default_out),
         threads: arguments.threads.map_or(0, usize::from),
         cache: Cache::of_user(),
-        ..Setting::default()
-    };
-    let mut sink = |records: Vec<JobRecord>| tables.append(&records);
-    let ran = run_jobs(&study, &jobs, setting, &shown, &mut sink);
-    shown.finish();
-    let outcome = ran.map_err(|error| match error {
-        RunError::Sink(error) => anyhow::Error::new(error).context(NOT_WRITTEN),
-        RunError::Pool(error) => error.into(),
-    })?;
-    let manifest = Manifest::new(&study, &jobs, &outcome, started, Moment::now());
-    let summary = tables.finish(manifest).context(NOT_WRITTEN)?;
+        shard: arguments.shard,
+        fresh: arguments.fresh,
+        any_instructions: arguments.any_instructions,
+        most_failures: arguments.max_failures,
+        commit: crate::COMMIT.map(str::to_owned),
+        ..SweepSetting::default()
+    }
+}
+
+/// Ends this process when its standard input does: whoever waits for it is gone then.
+fn end_with_standard_input() {
+    std::thread::spawn(|| {
+        let mut rest = Vec::new();
+        let _ = io::stdin().read_to_end(&mut rest);
+        std::process::exit(3);
+    });
+}
+
+/// Tells what a sweep left.
+pub(super) fn answer(
+    study: &Study,
+    swept: &Swept<'_>,
+    out: &Path,
+    reference: Option<&Reference>,
+    common: Common,
+) -> Result<Ending> {
+    let outcome = &swept.outcome;
     failures(&outcome.failures);
-    if outcome.operators.replaced > 0 {
+    if outcome.preparation.operators.replaced > 0 {
         words::note("an operator in the cache was damaged or of another version: built again and replaced");
     }
     let beyond = outcome.verification.beyond;
@@ -67,21 +95,17 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
             "{beyond} of {of} jobs solved again are beyond a tolerance of analysis.verify: see the column verify_held of jobs.parquet"
         ));
     }
-    let compared = match &reference {
-        Some(reference) => Some(against_reference(&Results::read(&out)?, reference)?),
+    let compared = match reference {
+        Some(reference) => Some(against_reference(&Results::read(out)?, reference)?),
         None => None,
     };
     match (common.format, &compared) {
-        (Format::Json, _) => words::results(|to| write_object(to, &study, &summary, &outcome, &out, compared.as_ref())),
+        (Format::Json, _) => words::results(|to| write_object(to, study, swept, out, compared.as_ref())),
         (Format::Markdown | Format::Junit, Some(compared)) => {
             words::result(&comparison::written(compared, common.format)?)
         }
-        (_, Some(compared)) => words::result(&format!(
-            "{}\n{}",
-            text(&summary, &outcome, &out),
-            comparison::text(compared)
-        )),
-        (_, None) => words::result(&text(&summary, &outcome, &out)),
+        (_, Some(compared)) => words::result(&format!("{}\n{}", text(swept, out), comparison::text(compared))),
+        (_, None) => words::result(&text(swept, out)),
     }?;
     if let Some(compared) = &compared {
         comparison::tell_changes(compared);
@@ -98,29 +122,44 @@ fn failures(failures: &Failures) {
     for (job, reason) in &failures.first {
         words::note(&format!("job {job} failed: {reason}"));
     }
-    match failures.count - failures.first.len() {
-        0 => {}
-        more => words::note(&format!("and {more} more: see the column reason of jobs.parquet")),
+    if failures.count > failures.first.len() {
+        words::note(&format!("{} jobs failed; by cause:", failures.count));
+        for cause in &failures.causes {
+            words::note(&format!("  {} like job {}: {}", cause.count, cause.job, cause.reason));
+        }
+        words::note("see the column reason of jobs.parquet");
     }
 }
 
-fn text(summary: &SummaryTable<'_>, outcome: &Outcome, out: &Path) -> String {
+fn text(swept: &Swept<'_>, out: &Path) -> String {
+    let outcome = &swept.outcome;
+    let recorded = match outcome.jobs - outcome.ran {
+        0 => String::new(),
+        known => format!(" ({known} recorded before)"),
+    };
     let counts = format!(
-        "jobs {}, failed {}; condensations {}, offline part {}, jobs {} on {} threads\nresults in {}\n",
+        "jobs {}{recorded}, failed {}; condensations {}, offline part {}, jobs {} on {} threads\n",
         outcome.jobs,
         outcome.failures.count,
-        outcome.condensations,
+        outcome.preparation.condensations,
         words::duration(outcome.offline_s),
         words::duration(outcome.jobs_s),
         outcome.threads,
-        out.display()
     );
+    let Some(summary) = &swept.summary else {
+        let of = swept.jobs;
+        return format!(
+            "{counts}a share of {of} jobs in {}: `pontoon merge` puts shares together\n",
+            out.display()
+        );
+    };
     let shown: Vec<Vec<Value>> = summary.rows().take(ROWS_SHOWN).collect();
     let more = match summary.len() - shown.len() {
         0 => String::new(),
         more => format!("and {more} more rows: see summary.csv\n"),
     };
-    format!("{}{more}\n{counts}", words::table(summary.columns(), &shown))
+    let table = words::table(summary.columns(), &shown);
+    format!("{table}{more}\n{counts}results in {}\n", out.display())
 }
 
 /// What a run says in JSON; the rows of its summary are made as they are written.
@@ -129,12 +168,14 @@ struct Object<'a> {
     study: &'a str,
     results: String,
     jobs: usize,
+    ran: usize,
     failed: usize,
     condensations: usize,
     threads: usize,
     offline_s: f64,
     jobs_s: f64,
-    summary: Rows<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    summary: Option<Rows<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Value>,
 }
@@ -152,21 +193,22 @@ impl Serialize for Rows<'_> {
 fn write_object(
     mut to: &mut dyn Write,
     study: &Study,
-    summary: &SummaryTable<'_>,
-    outcome: &Outcome,
+    swept: &Swept<'_>,
     out: &Path,
     compared: Option<&Comparison>,
 ) -> io::Result<()> {
+    let outcome: &Outcome = &swept.outcome;
     let object = Object {
         study: &study.spec.name,
         results: out.display().to_string(),
         jobs: outcome.jobs,
+        ran: outcome.ran,
         failed: outcome.failures.count,
-        condensations: outcome.condensations,
+        condensations: outcome.preparation.condensations,
         threads: outcome.threads,
         offline_s: outcome.offline_s,
         jobs_s: outcome.jobs_s,
-        summary: Rows(summary),
+        summary: swept.summary.as_ref().map(Rows),
         comparison: compared.map(comparison::object),
     };
     serde_json::to_writer_pretty(&mut to, &object)?;

@@ -67,7 +67,7 @@ fn structural_mass_kg(stage: &Stage, bridge: &str) -> f64 {
     let study = json!({ "name": "mass", "bridge": bridge, "analysis": { "kind": "modes", "count": 1 },
                         "design": [{ "grid": { "analysis.model": "super-element" } }] });
     stage.json("mass.json", &study);
-    let output = stage.pontoon(&["run", "mass.json", "--out", "mass", "--quiet"]);
+    let output = stage.pontoon(&["run", "mass.json", "--out", "mass", "--quiet", "--fresh"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     stage.numbers("mass/jobs.parquet", "structural_mass_kg")[0].unwrap()
 }

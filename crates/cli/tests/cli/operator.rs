@@ -172,7 +172,7 @@ fn an_operator_is_kept_and_read_back_and_a_damaged_one_replaced() {
     let stage = stage(&json!({}));
     let cache = stage.path("cache");
     let run = |out: &str| {
-        let output = stage.pontoon_with(&["run", "study.json", "--out", out, "--quiet"], &cache);
+        let output = stage.pontoon_with(&["run", "study.json", "--out", out, "--quiet", "--fresh"], &cache);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let tables = ["jobs", "positions", "connectors", "histories"];
         let bytes = tables.map(|name| fs::read(stage.path(&format!("{out}/{name}.parquet"))).unwrap());

@@ -426,7 +426,7 @@ fn words_that_are_not_understood_are_refused_too() {
     stage.write();
     for words in [
         &["run"][..],
-        &["run", "study.json", "--shard", "0/2"],
+        &["run", "study.json", "--shard", "2/2"],
         &["rnu"],
         &["run", "study.json", "--threads", "0"],
     ] {

@@ -248,9 +248,11 @@ fn results_that_cannot_be_written_end_with_status_3() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_ends_the_run_and_leaves_the_results_before_it() {
-    let stage = small();
+    let mut stage = small();
     stage.ran("r");
     let before = fs::read(stage.path("r/manifest.json")).unwrap();
+    stage.study["design"][0]["grid"]["speed_m_s"] = json!([10, 15, 20]);
+    stage.write();
     std::os::unix::fs::symlink("/dev/full", stage.path("r/.connectors.parquet.partial")).unwrap();
     let output = stage.pontoon(&["run", "study.json", "--out", "r", "--quiet"]);
     assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(3), ""));

@@ -57,6 +57,8 @@ pub struct AnalysisEntry {
     pub spec: AnalysisSpec,
     /// The same as a document.
     pub document: Value,
+    /// Equal for analyses that are equal, whatever study they are of.
+    pub key: Arc<str>,
 }
 
 /// The documents read so far.
@@ -175,6 +177,10 @@ impl Documents {
             .get((0, changes.text()), read, |id, (spec, document)| AnalysisEntry {
                 id,
                 spec,
+                key: blake3::hash(canonical_text(&document).as_bytes())
+                    .to_hex()
+                    .as_str()
+                    .into(),
                 document,
             })
     }

@@ -4,6 +4,7 @@
 
 use super::documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
 use crate::document::{DocumentPath, canonical};
+use crate::spec::{SolverSpec, VerifySpec};
 use pontoon_core::analysis::crossing::CrossingSolver;
 use pontoon_core::connector::Connection;
 use serde_json::Value;
@@ -65,6 +66,17 @@ impl Job {
             ),
             _ => 0,
         }
+    }
+
+    /// Whether it is a crossing by the operator.
+    pub fn by_operator(&self) -> bool {
+        matches!(self.task, Task::Crossing { .. }) && self.analysis.spec.solver == Some(SolverSpec::Operator)
+    }
+
+    /// How it is to be verified; none where it is not.
+    pub fn verify(&self) -> Option<VerifySpec> {
+        let verify = self.analysis.spec.verify.filter(|verify| verify.takes(self.number));
+        verify.filter(|_| self.by_operator())
     }
 
     /// The gaps (tension, compression) [m]; none in the linear connection.

@@ -5,11 +5,14 @@
 mod documents;
 mod job;
 mod jobs;
+mod key;
 mod seen;
+mod shard;
 
 pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
 pub use job::{Job, Load, Task};
 pub use jobs::Jobs;
+pub use shard::Shard;
 
 use crate::refusal::Refusal;
 use crate::spec::{ModelSpec, SolverSpec, Study};
@@ -31,8 +34,66 @@ pub struct Plan {
     pub condensations: usize,
     /// Time steps of all crossings, bisected ones apart.
     pub steps: u64,
-    /// A rough time for the whole run [s], from the steps, the modules and the cost of a step on a usual machine.
-    pub expected_seconds: f64,
+    /// What crossings by each solver and other jobs come to.
+    #[serde(skip)]
+    pub work: Work,
+}
+
+/// What the jobs of a plan come to, by what they cost.
+#[derive(Debug, Clone, Default)]
+pub struct Work {
+    /// Crossings by the operator.
+    pub operated: Share,
+    /// Crossings by the reference solver.
+    pub integrated: Share,
+    /// Static cases and modes.
+    pub other: Share,
+}
+
+/// Jobs of one kind.
+#[derive(Debug, Clone, Default)]
+pub struct Share {
+    /// How many.
+    pub jobs: usize,
+    /// Steps times modules.
+    pub module_steps: f64,
+    /// The first of them, to be tried.
+    pub first: Vec<Job>,
+}
+
+/// Jobs that are kept to be tried.
+const KEPT: usize = 64;
+
+impl Share {
+    fn take(&mut self, job: &Job) {
+        self.jobs += 1;
+        self.module_steps += module_steps(job);
+        if self.first.len() < KEPT {
+            self.first.push(job.clone());
+        }
+    }
+}
+
+impl Work {
+    fn take(&mut self, job: &Job) {
+        match (job.task, job.by_operator()) {
+            (Task::Crossing { .. }, true) => self.operated.take(job),
+            (Task::Crossing { .. }, false) => self.integrated.take(job),
+            _ => self.other.take(job),
+        }
+    }
+
+    /// The kinds of jobs that there are.
+    pub fn shares(&self) -> impl Iterator<Item = &Share> {
+        [&self.operated, &self.integrated, &self.other]
+            .into_iter()
+            .filter(|share| share.jobs > 0)
+    }
+}
+
+/// Steps of a crossing times the modules that each of them moves.
+pub(crate) fn module_steps(job: &Job) -> f64 {
+    job.steps() as f64 * job.bridge.design.modules as f64
 }
 
 /// Cost of a step of one module by the reference solver [s], from a release build on one core.
@@ -44,12 +105,21 @@ const SECONDS_A_BRIDGE: f64 = 2.0;
 /// Cost of the static cases of one job [s].
 const SECONDS_A_STATIC_JOB: f64 = 1.0e-3;
 
+/// What a job costs on a usual machine [s], what it shares with others apart.
+fn cost_s(job: &Job) -> f64 {
+    let step = match job.analysis.spec.solver {
+        Some(SolverSpec::Operator) => SECONDS_A_STEP_AND_MODULE_OPERATED,
+        _ => SECONDS_A_STEP_AND_MODULE,
+    };
+    SECONDS_A_STATIC_JOB + step * module_steps(job)
+}
+
 impl Plan {
-    /// Checks every job of a study and counts; `threads` is what the expected time reckons with.
+    /// Checks every job of a study and counts; `look` sees each of them.
     ///
     /// # Errors
     /// [`Refusal`] of the first job that is refused.
-    pub fn new(study: &Study, threads: usize) -> Result<Self, Refusal> {
+    pub fn new(study: &Study, mut look: impl FnMut(&Job)) -> Result<Self, Refusal> {
         let mut plan = Self {
             study: study.spec.name.clone(),
             points: study.points(),
@@ -57,28 +127,22 @@ impl Plan {
             distinct_bridges: 0,
             condensations: 0,
             steps: 0,
-            expected_seconds: 0.0,
+            work: Work::default(),
         };
         let (mut bridges, mut modules) = (HashSet::new(), BTreeSet::new());
-        let mut seconds = 0.0;
         for job in Jobs::new(study) {
             let job = job?;
+            look(&job);
+            plan.work.take(&job);
             plan.jobs += 1;
             plan.steps += job.steps() as u64;
             let model = job.analysis.spec.model;
             if bridges.insert((job.bridge.id, model)) && model == ModelSpec::SuperElement {
                 modules.insert(job.bridge.module_key.clone());
             }
-            let step = match job.analysis.spec.solver {
-                Some(SolverSpec::Operator) => SECONDS_A_STEP_AND_MODULE_OPERATED,
-                _ => SECONDS_A_STEP_AND_MODULE,
-            };
-            seconds += SECONDS_A_STATIC_JOB + step * job.steps() as f64 * job.bridge.design.modules as f64;
         }
         plan.distinct_bridges = bridges.iter().map(|(id, _)| id).collect::<HashSet<_>>().len();
         plan.condensations = modules.len();
-        let threads = threads.max(1).min(plan.jobs.max(1)) as f64;
-        plan.expected_seconds = SECONDS_A_BRIDGE * plan.distinct_bridges as f64 + seconds / threads;
         Ok(plan)
     }
 }

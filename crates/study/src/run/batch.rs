@@ -4,10 +4,12 @@
 //! not know how a study is cut into batches nor what becomes of the records.
 
 use super::bench::Bench;
+use super::crossing::{Failure, Solved};
 use super::record::JobRecord;
 use super::{crossing, guard, modes, statics, verify};
+use crate::journal::LONGEST;
 use crate::plan::{Job, Task};
-use crate::spec::{SolverSpec, Study};
+use crate::spec::Study;
 use pontoon_core::response::Record;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -18,24 +20,38 @@ const CREW: usize = 32;
 /// Crews that a thread should find, where there are jobs enough.
 const CREWS_A_THREAD: usize = 4;
 
-/// Solves a batch of jobs of a study: a record for each job in the order of the batch, a failed job being a record too.
-/// `done` is told of each record as soon as it is there, from any thread and in any order. The records depend on the jobs
-/// alone, not on the batch they came in nor on the pool.
-pub(super) fn solve_batch(
-    study: &Study,
-    batch: &[Job],
-    bench: &Bench,
-    done: &(dyn Fn(&JobRecord) + Sync),
-) -> Vec<JobRecord> {
-    let jobs: Vec<(&Study, &Job)> = batch.iter().map(|job| (study, job)).collect();
-    solve(&jobs, bench, done)
+/// What is told of jobs as they begin and end, from any thread and in any order.
+pub(super) trait Told: Sync {
+    /// Jobs are about to be solved together; whether they may.
+    fn begin(&self, jobs: &[&Job]) -> bool;
+    /// Their records are there.
+    fn end(&self, jobs: &[&Job], records: &[JobRecord]);
 }
 
-/// The same of jobs of several studies.
-pub(super) fn solve(jobs: &[(&Study, &Job)], bench: &Bench, done: &(dyn Fn(&JobRecord) + Sync)) -> Vec<JobRecord> {
-    let solved = crews(jobs).into_par_iter().with_max_len(1).flat_map_iter(|crew| {
-        let records = records(jobs, &crew, bench);
-        records.iter().for_each(done);
+/// Nobody is told.
+pub(super) struct Untold;
+
+impl Told for Untold {
+    fn begin(&self, _: &[&Job]) -> bool {
+        true
+    }
+    fn end(&self, _: &[&Job], _: &[JobRecord]) {}
+}
+
+/// Solves jobs of several studies: a record for each job in their order, a failed job being a record too; none of jobs that
+/// might not begin. The records depend on the jobs alone, not on those beside them nor on the pool. Jobs go `apart` where
+/// none may share its process's fate with another.
+pub(super) fn solve(jobs: &[(&Study, &Job)], apart: bool, bench: &Bench, told: &dyn Told) -> Vec<JobRecord> {
+    let crews = crews(jobs, if apart { 1 } else { CREW });
+    let solved = crews.into_par_iter().with_max_len(1).flat_map_iter(|crew| {
+        let of_crew: Vec<&Job> = crew.iter().map(|&place| jobs[place].1).collect();
+        let records = if told.begin(&of_crew) {
+            let records = records(jobs, &crew, bench);
+            told.end(&of_crew, &records);
+            records
+        } else {
+            Vec::new()
+        };
         crew.into_iter().zip(records).collect::<Vec<_>>()
     });
     let mut solved: Vec<(usize, JobRecord)> = solved.collect();
@@ -45,11 +61,11 @@ pub(super) fn solve(jobs: &[(&Study, &Job)], bench: &Bench, done: &(dyn Fn(&JobR
 
 /// Places of jobs that are solved together: crossings that share a solver, the long ones first so that the lanes of a crew
 /// end together; any other job by itself.
-fn crews(jobs: &[(&Study, &Job)]) -> Vec<Vec<usize>> {
+fn crews(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
     let mut crews = Vec::new();
     let mut operated: BTreeMap<_, Vec<usize>> = BTreeMap::new();
     for (place, (_, job)) in jobs.iter().enumerate() {
-        if by_operator(job) {
+        if job.by_operator() {
             operated.entry(Bench::crew_key(job)).or_default().push(place);
         } else {
             crews.push(vec![place]);
@@ -58,33 +74,29 @@ fn crews(jobs: &[(&Study, &Job)]) -> Vec<Vec<usize>> {
     for mut places in operated.into_values() {
         places.sort_by_key(|&place| std::cmp::Reverse(jobs[place].1.steps()));
         let most = places.len().div_ceil(CREWS_A_THREAD * rayon::current_num_threads());
-        crews.extend(places.chunks(most.clamp(1, CREW)).map(<[usize]>::to_vec));
+        crews.extend(places.chunks(most.clamp(1, largest)).map(<[usize]>::to_vec));
     }
     crews
-}
-
-/// Whether a job is a crossing by the operator.
-pub(super) fn by_operator(job: &Job) -> bool {
-    matches!(job.task, Task::Crossing { .. }) && job.analysis.spec.solver == Some(SolverSpec::Operator)
 }
 
 /// The records of the jobs at some places.
 fn records(jobs: &[(&Study, &Job)], places: &[usize], bench: &Bench) -> Vec<JobRecord> {
     let of = |place: usize| jobs[place];
-    let operated = of(places[0]).1;
-    let solved: Vec<Result<JobRecord, String>> = if by_operator(operated) {
+    let solved: Vec<Solved> = if of(places[0]).1.by_operator() {
         let crew: Vec<(&Job, Record)> = places
             .iter()
             .map(|&place| (of(place).1, histories(of(place).0)))
             .collect();
-        let together = guard::guarded(|| crossing::solve_crew(&crew, bench));
+        let together = guard::guarded(|| Ok::<_, String>(crossing::solve_crew(&crew, bench)));
         // a panic is the failure of the job that it came from alone
         together.unwrap_or_else(|_| {
             let alone = |job: &(&Job, Record)| {
-                let one = guard::guarded(|| crossing::solve_crew(std::slice::from_ref(job), bench))?;
-                one.into_iter()
-                    .next()
-                    .unwrap_or_else(|| Err("program error: no record".to_owned()))
+                guard::guarded(|| {
+                    let one = crossing::solve_crew(std::slice::from_ref(job), bench)
+                        .into_iter()
+                        .next();
+                    one.unwrap_or_else(|| Err("program error: no record".to_owned().into()))
+                })
             };
             crew.iter().map(alone).collect()
         })
@@ -93,15 +105,25 @@ fn records(jobs: &[(&Study, &Job)], places: &[usize], bench: &Bench) -> Vec<JobR
             let (study, job) = of(place);
             guard::guarded(|| match job.task {
                 Task::Crossing { .. } => crossing::solve(job, histories(study), bench),
-                Task::Static(load) => statics::solve(job, load, bench),
-                Task::Modes => modes::solve(job, bench),
+                Task::Static(load) => statics::solve(job, load, bench).map_err(Failure::from),
+                Task::Modes => modes::solve(job, bench).map_err(Failure::from),
             })
         };
         places.iter().map(single).collect()
     };
-    let finish = |(&place, solved): (&usize, Result<JobRecord, String>)| {
+    let finish = |(&place, solved): (&usize, Solved)| {
         let (study, job) = of(place);
-        let mut record = solved.unwrap_or_else(|reason| JobRecord::failed(job, reason));
+        let solved = match solved {
+            Err(failure) if failure.half_step_may_help => {
+                guard::guarded(|| crossing::again_at_half_step(job, histories(study), bench, &failure))
+            }
+            solved => solved,
+        };
+        let mut record = solved.unwrap_or_else(|failure| JobRecord::failed(job, failure.reason));
+        let bytes = record.histories.bytes();
+        if bytes > LONGEST / 2 {
+            record = JobRecord::failed(job, format!("histories of {bytes} bytes, more than a record may have"));
+        }
         verify::judge(job, &mut record, bench);
         // rows that no table will hold are not kept until their batch is written
         if !study.spec.record.positions {

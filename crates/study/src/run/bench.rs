@@ -2,11 +2,10 @@
 //!
 //! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
 
-use super::batch::by_operator;
 use super::cache::{Cache, Found};
 use super::guard::guarded;
 use super::progress::Progress;
-use super::verify;
+use super::stop::Stop;
 use crate::plan::{Job, Task};
 use crate::spec::TimeStepSpec;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
@@ -15,7 +14,7 @@ use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
 use pontoon_core::operator::BridgeOperator;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -66,7 +65,7 @@ struct OperatorsMade {
 }
 
 /// Where the operators of a run came from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OperatorCounts {
     /// Built from the bridge's matrices.
     pub built: usize,
@@ -77,14 +76,14 @@ pub struct OperatorCounts {
 }
 
 /// What was prepared of one bridge.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BridgeReport {
     /// Hash of the bridge's document after the axes.
     pub blake3: String,
     /// Its name.
     pub name: String,
     /// Model of its modules.
-    pub model: &'static str,
+    pub model: String,
     /// Number of modules.
     pub modules: usize,
     /// Degrees of freedom of one module's finite elements.
@@ -113,12 +112,13 @@ pub struct BridgeReport {
 }
 
 impl Bench {
-    /// Prepares everything that `jobs` need, each thing once, on the current pool; modules that are `known` are taken from
-    /// there.
+    /// Prepares everything that `all` jobs need, each thing once, on the current pool; modules that are `known` are taken
+    /// from there. What is not begun when a stop is asked for is not prepared.
     pub(super) fn prepare(
-        jobs: &[Job],
+        all: &[&Job],
         known: &PreparedModules,
         cache: Option<&Cache>,
+        stop: &Stop,
         progress: &dyn Progress,
     ) -> Self {
         let mut bench = Self {
@@ -134,36 +134,35 @@ impl Bench {
             operators_made: OperatorsMade::default(),
         };
         let crossing = |job: &&Job| matches!(job.task, Task::Crossing { .. });
-        let crossings: Vec<&Job> = jobs.iter().filter(crossing).collect();
-        let all: Vec<&Job> = jobs.iter().collect();
+        let crossings: Vec<&Job> = all.iter().copied().filter(crossing).collect();
         progress.stage("modules: finite elements, condensation");
         let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
         let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
-        bench.modules = each(&new, module_key, |job| bench.module(job));
+        bench.modules = each(stop, &new, module_key, |job| bench.module(job));
         let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
         bench
             .modules
             .extend(taken.map(|(key, module)| (key.clone(), module.clone())));
         progress.stage("bridges: assembly");
         let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
-        bench.bridges = each(&loaded, bridge_key, |job| bench.bridge(job, Ends::Supported));
+        bench.bridges = each(stop, &loaded, bridge_key, |job| bench.bridge(job, Ends::Supported));
         progress.stage("damping: bending modes of the free bridge");
-        bench.damping = each(&crossings, damping_key, |job| bench.damping_of(job));
+        bench.damping = each(stop, &crossings, damping_key, |job| bench.damping_of(job));
         progress.stage("solvers: factors");
         let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
-        bench.statics = each(&held, bridge_key, |job| {
+        bench.statics = each(stop, &held, bridge_key, |job| {
             StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?).map_err(text)
         });
-        let (operated, integrated): (Vec<&Job>, Vec<&Job>) = crossings.iter().partition(|job| by_operator(job));
-        let again = operated.iter().copied().filter(|job| verify::asked(job).is_some());
+        let (operated, integrated): (Vec<&Job>, Vec<&Job>) = crossings.iter().partition(|job| job.by_operator());
+        let again = operated.iter().copied().filter(|job| job.verify().is_some());
         let judged: Vec<&Job> = integrated.into_iter().chain(again).collect();
-        bench.crossings = each(&judged, crossing_key, |job| bench.crossing_solver(job));
+        bench.crossings = each(stop, &judged, crossing_key, |job| bench.crossing_solver(job));
         progress.stage("operators: modes and what they leave out");
-        bench.operators = each(&operated, operator_key, |job| bench.operator(job, cache));
-        bench.operated = each(&operated, Self::crew_key, |job| bench.operator_solver(job));
+        bench.operators = each(stop, &operated, operator_key, |job| bench.operator(job, cache));
+        bench.operated = each(stop, &operated, Self::crew_key, |job| bench.operator_solver(job));
         progress.stage("static peaks of creeping loads");
         let creeping: Vec<&Job> = crossings.iter().copied().filter(|job| is_held(job)).collect();
-        bench.creeping = bench.creeping_peaks(&creeping);
+        bench.creeping = bench.creeping_peaks(stop, &creeping);
         bench
     }
 
@@ -259,6 +258,13 @@ impl Bench {
         CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &self.settings(job)?).map_err(text)
     }
 
+    /// The reference solver of a crossing at half its time step, made anew.
+    pub(super) fn crossing_at_half_step(&self, job: &Job) -> Result<CrossingSolver, String> {
+        let mut settings = self.settings(job)?;
+        settings.time_step_s *= 0.5;
+        CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &settings).map_err(text)
+    }
+
     fn settings(&self, job: &Job) -> Result<CrossingSettings, String> {
         Ok(CrossingSettings {
             time_step_s: job.analysis.spec.time_step_s.map_or(0.0, TimeStepSpec::seconds),
@@ -271,15 +277,15 @@ impl Bench {
 
     /// The static peaks of creeping loads; cases of one vehicle on one bridge share what it does at its places, which is let
     /// go before the next vehicle's.
-    fn creeping_peaks(&self, jobs: &[&Job]) -> BTreeMap<CreepingKey, Shared<Vec<f64>>> {
+    fn creeping_peaks(&self, stop: &Stop, jobs: &[&Job]) -> BTreeMap<CreepingKey, Shared<Vec<f64>>> {
         let mut vehicles: BTreeMap<(BridgeKey, Arc<str>), Vec<&Job>> = BTreeMap::new();
         for job in jobs {
             let key = (bridge_key(job), job.vehicle.key.clone());
             vehicles.entry(key).or_default().push(job);
         }
         let peaks = |((bridge, _), jobs): ((BridgeKey, _), Vec<&Job>)| {
-            let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
-            each(&jobs, creeping_key, |job| {
+            let load = guarded(|| Ok::<_, String>(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
+            each(stop, &jobs, creeping_key, |job| {
                 load.as_ref()
                     .map_err(Clone::clone)?
                     .peaks_m(&static_case(job, 0.0))
@@ -323,7 +329,7 @@ impl Bench {
     }
 
     /// What was prepared of each bridge and model, in the order of jobs.
-    pub(super) fn reports(&self, jobs: &[Job]) -> Vec<BridgeReport> {
+    pub(super) fn reports(&self, jobs: &[&Job]) -> Vec<BridgeReport> {
         let mut reports: Vec<BridgeReport> = Vec::new();
         let mut seen = BTreeSet::new();
         for job in jobs {
@@ -338,9 +344,9 @@ impl Bench {
                 blake3: job.bridge.hash.clone(),
                 name: job.bridge.design.name.clone(),
                 model: if model(job) == Model::Full {
-                    "full"
+                    "full".to_owned()
                 } else {
-                    "super-element"
+                    "super-element".to_owned()
                 },
                 modules: job.bridge.design.modules,
                 module_full_dofs: module.as_ref().map(|m| m.full_dofs()),
@@ -380,6 +386,7 @@ fn is_held(job: &Job) -> bool {
 
 /// Makes one thing for each distinct key, in parallel; the first job with a key stands for the others.
 fn each<K: Ord + Send, T: Send + Sync>(
+    stop: &Stop,
     jobs: &[&Job],
     key: impl Fn(&Job) -> K,
     make: impl Fn(&Job) -> Result<T, String> + Sync,
@@ -392,7 +399,14 @@ fn each<K: Ord + Send, T: Send + Sync>(
     let made: Vec<(K, Shared<T>)> = list
         .into_par_iter()
         .with_max_len(1)
-        .map(|(key, job)| (key, guarded(|| make(job)).map(Arc::new)))
+        .map(|(key, job)| {
+            let made = if stop.is_asked() {
+                Err("not prepared: the run was stopped".to_owned())
+            } else {
+                guarded(|| make(job))
+            };
+            (key, made.map(Arc::new))
+        })
         .collect();
     made.into_iter().collect()
 }

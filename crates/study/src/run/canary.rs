@@ -7,6 +7,7 @@
 //! what its modes leave out, lanes on this machine's instructions, contacts that open and close, masses that ride along, and
 //! the reference solver's factors beside them.
 
+use crate::journal::fault;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::rayleigh;
@@ -123,7 +124,10 @@ fn known(solver: Singer) -> Song {
 /// # Errors
 /// [`CanaryError::Off`] with the first number that is not as known; any other where there is no number at all.
 pub fn sing() -> Result<(), CanaryError> {
-    let sung = Piece::known()?.sung()?;
+    let mut sung = Piece::known()?.sung()?;
+    if fault::at("canary").is_err() {
+        sung.iter_mut().for_each(|(_, song)| song.deflection_m *= 1.05);
+    }
     sung.iter().try_for_each(|(solver, song)| judge(*solver, song))
 }
 

@@ -9,20 +9,68 @@ use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::response::{CrossingResponse, Quantity, Record};
 use pontoon_core::vehicle::Vehicle;
 
+/// Why a job failed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Failure {
+    /// In words.
+    pub reason: String,
+    /// Whether half the time step may help.
+    pub half_step_may_help: bool,
+}
+
+impl From<String> for Failure {
+    fn from(reason: String) -> Self {
+        Self {
+            reason,
+            half_step_may_help: false,
+        }
+    }
+}
+
+impl From<AnalysisError> for Failure {
+    fn from(error: AnalysisError) -> Self {
+        Self {
+            half_step_may_help: matches!(
+                error,
+                AnalysisError::NotConverged { .. } | AnalysisError::NotFinite { .. }
+            ),
+            reason: error.to_string(),
+        }
+    }
+}
+
+/// A job's record or why it failed.
+pub(super) type Solved = Result<JobRecord, Failure>;
+
 /// Solves the crossing of a job by the reference solver.
-pub(super) fn solve(job: &Job, record: Record, bench: &Bench) -> Result<JobRecord, String> {
+pub(super) fn solve(job: &Job, record: Record, bench: &Bench) -> Solved {
     let solved = bench.crossing(job)?.solve(&job.vehicle.vehicle, &crossing(job, record));
-    recorded(job, solved.map_err(|e| e.to_string())?, bench)
+    Ok(recorded(job, solved?, bench)?)
+}
+
+/// Solves a crossing that failed once more at half its time step.
+pub(super) fn again_at_half_step(job: &Job, record: Record, bench: &Bench, failure: &Failure) -> Solved {
+    let (vehicle, crossing) = (&job.vehicle.vehicle, crossing(job, record));
+    let again = if job.by_operator() {
+        let mut answers = bench.operated(job)?.solve_all(&[(vehicle, &crossing)], 1);
+        answers.pop().ok_or_else(|| "program error: no answer".to_owned())?
+    } else {
+        bench.crossing_at_half_step(job)?.solve(vehicle, &crossing)
+    };
+    let again = again.map_err(|error| format!("{}; at half the time step: {error}", failure.reason))?;
+    let mut record = recorded(job, again, bench)?;
+    record.summary.retried = Some(format!("at half the time step; at its own: {}", failure.reason));
+    Ok(record)
 }
 
 /// Solves crossings that share a solver by the operator.
-pub(super) fn solve_crew(crew: &[(&Job, Record)], bench: &Bench) -> Result<Vec<Result<JobRecord, String>>, String> {
+pub(super) fn solve_crew(crew: &[(&Job, Record)], bench: &Bench) -> Vec<Solved> {
     let Some((first, _)) = crew.first() else {
-        return Ok(Vec::new());
+        return Vec::new();
     };
     let solver = match bench.operated(first) {
         Ok(solver) => solver,
-        Err(reason) => return Ok(crew.iter().map(|_| Err(reason.clone())).collect()),
+        Err(reason) => return crew.iter().map(|_| Err(reason.clone().into())).collect(),
     };
     let crossings: Vec<Crossing> = crew.iter().map(|(job, record)| crossing(job, record.clone())).collect();
     let asked: Vec<(&Vehicle, &Crossing)> = crew
@@ -35,17 +83,16 @@ pub(super) fn solve_crew(crew: &[(&Job, Record)], bench: &Bench) -> Result<Vec<R
         let tolerance = first.analysis.spec.time_step_tolerance.unwrap_or_default();
         refined(&solver, &asked, tolerance)
     } else {
-        let plain =
-            |answer: Result<CrossingResponse, AnalysisError>| answer.map(|r| (r, None)).map_err(|e| e.to_string());
+        let plain = |answer: Result<CrossingResponse, AnalysisError>| Ok((answer?, None));
         solver.solve_all(&asked, 0).into_iter().map(plain).collect()
     };
-    let record = |((job, _), answer): (&(&Job, Record), Result<Answer, String>)| {
+    let record = |((job, _), answer): (&(&Job, Record), Result<Answer, Failure>)| {
         let (response, time_step_s) = answer?;
         let mut record = recorded(job, response, bench)?;
         record.summary.time_step_s = time_step_s;
         Ok(record)
     };
-    Ok(crew.iter().zip(answers).map(record).collect())
+    crew.iter().zip(answers).map(record).collect()
 }
 
 /// A response and the time step that the program has found for it.
@@ -54,8 +101,8 @@ type Answer = (CrossingResponse, Option<f64>);
 /// Solves crossings at half the time step again and again, each until its peak force has settled: the last halving changed
 /// it by no more than half the tolerance and the one before by no more than the tolerance. One small change alone may be
 /// chance where contacts decide.
-fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: f64) -> Vec<Result<Answer, String>> {
-    let mut answers: Vec<Option<Result<Answer, String>>> = vec![None; asked.len()];
+fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: f64) -> Vec<Result<Answer, Failure>> {
+    let mut answers: Vec<Option<Result<Answer, Failure>>> = vec![None; asked.len()];
     // peak force at the last step and by how much it had changed there
     let mut before = vec![(f64::NAN, f64::NAN); asked.len()];
     let mut open: Vec<usize> = (0..asked.len()).collect();
@@ -72,7 +119,7 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
                     continue;
                 }
                 Err(error) => {
-                    answers[place] = Some(Err(error.to_string()));
+                    answers[place] = Some(Err(error.to_string().into()));
                     continue;
                 }
             };
@@ -84,7 +131,7 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
             } else if refinement == REFINEMENTS {
                 let share = change / peak;
                 let reason = format!("peak force still changes by {share:.1e} of itself at a time step of {h} s");
-                answers[place] = Some(Err(reason));
+                answers[place] = Some(Err(reason.into()));
             } else {
                 before[place] = (peak, change);
                 next.push(place);
@@ -92,7 +139,7 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
         }
         open = next;
     }
-    let lost = || Err("program error: no answer".to_owned());
+    let lost = || Err("program error: no answer".to_owned().into());
     answers.into_iter().map(|answer| answer.unwrap_or_else(lost)).collect()
 }
 

@@ -10,28 +10,37 @@ pub mod canary;
 mod crossing;
 mod cut;
 mod guard;
+mod ledger;
 mod modes;
 mod outcome;
+mod probe;
 mod progress;
 mod record;
 mod statics;
+mod stop;
 mod verify;
+mod watch;
 
 pub use bench::{BridgeReport, OperatorCounts, PreparedModules};
 pub use cache::Cache;
 pub use canary::CanaryError;
 pub use cut::Batch;
-pub use outcome::{Failures, Outcome, PoolError, RunError};
+pub use ledger::Ledger;
+pub use outcome::{Cause, Failures, Outcome, PoolError, Preparation, RunError};
+pub use probe::{Measured, measure};
 pub use progress::{Progress, Silent, Tally};
 pub use record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
+pub use stop::{Stop, Why};
 pub use verify::Verification;
 
 use crate::plan::Job;
 use crate::spec::Study;
+use batch::Untold;
 use bench::Bench;
-use progress::Count;
+use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::time::Instant;
+use watch::Watch;
 
 /// The instructions that crossings by the operator run on here.
 pub fn instruction_path() -> &'static str {
@@ -39,31 +48,42 @@ pub fn instruction_path() -> &'static str {
 }
 
 /// How a run goes about its jobs; no record depends on it.
-#[derive(Debug, Clone, Default)]
-pub struct Setting {
+#[derive(Debug, Default)]
+pub struct Setting<'a> {
     /// Threads; 0: as many as the machine has.
     pub threads: usize,
     /// What is solved at a time.
     pub batch: Batch,
     /// Where operators are kept from run to run; none: nowhere.
     pub cache: Option<Cache>,
+    /// What is recorded of the jobs, and where new records go; none: nothing and nowhere.
+    pub ledger: Option<Ledger<'a>>,
+    /// Jobs are solved one by one, so that it is known which of them a process dies with.
+    pub apart: bool,
+    /// Failed jobs beyond which the run stops; none: it goes on.
+    pub most_failures: Option<usize>,
+    /// Numbers of jobs that are not to be solved, with the reason why they failed.
+    pub passed_over: BTreeMap<usize, String>,
 }
 
 /// Where the records of a batch go, in the order of jobs.
 pub type Sink<'a, E> = dyn FnMut(Vec<JobRecord>) -> Result<(), E> + Send + 'a;
 
-/// Runs jobs of a study, batch by batch in their order. While a batch is solved, `sink` takes the one before it, on the
-/// same pool: no more than the records of two batches are in memory. Neither the records nor the batches depend on the
-/// number of threads.
+/// Runs the jobs of a study that are not recorded yet, batch by batch in their order. While a batch is solved, `sink` takes
+/// the records of all jobs of the one before it, on the same pool: no more than the records of two batches are in memory.
+/// Without a sink nothing but the journal takes records. Neither the records nor the batches depend on the number of
+/// threads, nor on which jobs were recorded before.
 ///
 /// # Errors
-/// [`RunError::Pool`]; [`RunError::Sink`] with what the sink said, which ends the run. A job that fails is a record.
+/// [`RunError::Pool`]; [`RunError::Sink`] with what the sink said, which ends the run; [`RunError::Journal`];
+/// [`RunError::Stopped`]. A job that fails is a record.
 pub fn run<E: StdError + Send + 'static>(
     study: &Study,
     jobs: &[Job],
-    setting: Setting,
+    setting: Setting<'_>,
+    stop: &Stop,
     progress: &dyn Progress,
-    sink: &mut Sink<'_, E>,
+    mut sink: Option<&mut Sink<'_, E>>,
 ) -> Result<Outcome, RunError<E>> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(setting.threads).build();
     let pool = pool.map_err(|cause| PoolError {
@@ -72,31 +92,63 @@ pub fn run<E: StdError + Send + 'static>(
     })?;
     pool.install(|| {
         let start = Instant::now();
-        let bench = Bench::prepare(jobs, &PreparedModules::default(), setting.cache.as_ref(), progress);
+        let watch = Watch::new(jobs.len(), &setting, stop, progress);
+        let missing: Vec<&Job> = (0..)
+            .zip(jobs)
+            .filter(|(at, _)| !watch.knows(*at))
+            .map(|(_, job)| job)
+            .collect();
+        let bench = Bench::prepare(
+            &missing,
+            &PreparedModules::default(),
+            setting.cache.as_ref(),
+            stop,
+            progress,
+        );
+        let preparation = Preparation::of(&bench, &missing);
         let offline_s = start.elapsed().as_secs_f64();
+        if !missing.is_empty() {
+            watch.prepared(&preparation);
+        }
+        drop(missing);
         progress.stage("running jobs");
-        let count = Count::new(jobs.len(), progress);
+        watch.begin_counting();
         let (mut failures, mut verification) = (Failures::default(), Verification::default());
-        let (mut batches, mut solved) = (cut::cut(study, jobs, setting.batch), None);
+        let has_sink = sink.is_some();
+        let (mut batches, mut solved, mut from) = (cut::cut(study, jobs, setting.batch), None, 0);
         loop {
             let (batch, before) = (batches.next(), solved.take());
             let (records, taken) = rayon::join(
-                || batch.map(|batch| batch::solve_batch(study, batch, &bench, &|record| count.done(record))),
-                || before.map_or(Ok(()), &mut *sink),
+                || {
+                    let batch = batch.filter(|_| !stop.is_asked())?;
+                    let records = solve_missing(study, batch, from, &bench, &watch);
+                    Some(if has_sink {
+                        watch.with_known(batch, from, records)
+                    } else {
+                        Ok(records)
+                    })
+                },
+                || match (before, sink.as_mut()) {
+                    (Some(before), Some(sink)) => sink(before),
+                    _ => Ok(()),
+                },
             );
             taken.map_err(RunError::Sink)?;
+            watch.outcome()?;
             let Some(records) = records else { break };
+            let records = records?;
+            from += batch.map_or(0, <[Job]>::len);
             failures.take(&records);
             verification.take(&records);
             solved = Some(records);
         }
+        watch.outcome()?;
         Ok(Outcome {
             jobs: jobs.len(),
+            ran: watch.ran(),
             failures,
             verification,
-            condensations: bench.condensations(),
-            operators: bench.operator_counts(),
-            bridges: bench.reports(jobs),
+            preparation,
             threads: rayon::current_num_threads(),
             offline_s,
             jobs_s: start.elapsed().as_secs_f64() - offline_s,
@@ -104,12 +156,27 @@ pub fn run<E: StdError + Send + 'static>(
     })
 }
 
+/// Solves the jobs of a batch that are not recorded; the batch begins `from`.
+fn solve_missing(study: &Study, batch: &[Job], from: usize, bench: &Bench, watch: &Watch<'_>) -> Vec<JobRecord> {
+    let missing = (from..).zip(batch).filter(|(at, _)| !watch.knows(*at));
+    let (over, missing): (Vec<&Job>, Vec<&Job>) = missing
+        .map(|(_, job)| job)
+        .partition(|job| watch.passes_over(job).is_some());
+    let missing: Vec<(&Study, &Job)> = missing.into_iter().map(|job| (study, job)).collect();
+    let mut records = batch::solve(&missing, watch.apart, bench, watch);
+    if !over.is_empty() && !watch.is_stopped() {
+        records.extend(watch.pass_over(&over));
+        records.sort_by_key(|record| record.job);
+    }
+    records
+}
+
 /// Solves jobs of several studies on the current pool: what any of them share is prepared once, and modules that are
 /// `known` are not prepared again. Leaves a record for each job in their order, and the modules.
 pub(crate) fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<JobRecord>, Prepared) {
-    let alone: Vec<Job> = jobs.iter().map(|(_, job)| (*job).clone()).collect();
-    let bench = Bench::prepare(&alone, known, None, &Silent);
-    let records = batch::solve(jobs, &bench, &|_| ());
+    let alone: Vec<&Job> = jobs.iter().map(|(_, job)| *job).collect();
+    let bench = Bench::prepare(&alone, known, None, &Stop::default(), &Silent);
+    let records = batch::solve(jobs, false, &bench, &Untold);
     let prepared = Prepared {
         modules: bench.modules(),
         condensations: bench.condensations(),

@@ -2,30 +2,71 @@
 //!
 //! Knows counts, times and the first reasons of failure. Keeps no record.
 
-use super::bench::{BridgeReport, OperatorCounts};
+use super::bench::{Bench, BridgeReport, OperatorCounts};
+use super::progress::Tally;
 use super::record::JobRecord;
+use super::stop::Why;
 use super::verify::Verification;
+use crate::journal::JournalError;
+use crate::plan::Job;
+use serde::{Deserialize, Serialize};
 use std::error::Error as StdError;
 use thiserror::Error;
+
+/// Causes that are told apart.
+const CAUSES_KEPT: usize = 100;
 
 /// Reasons that are kept of jobs that failed; all are in the table of jobs.
 const FAILURES_KEPT: usize = 10;
 
-/// What a run leaves behind beside its records.
-#[derive(Debug)]
-pub struct Outcome {
-    /// Jobs that ran.
-    pub jobs: usize,
-    /// Those that failed.
-    pub failures: Failures,
-    /// Those solved again by the reference solver.
-    pub verification: Verification,
+/// What jobs share, as it was prepared.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Preparation {
     /// Modules condensed.
     pub condensations: usize,
     /// Where operators came from.
     pub operators: OperatorCounts,
     /// What was prepared of each bridge.
     pub bridges: Vec<BridgeReport>,
+}
+
+impl Preparation {
+    /// What a bench holds for jobs.
+    pub(super) fn of(bench: &Bench, jobs: &[&Job]) -> Self {
+        Self {
+            condensations: bench.condensations(),
+            operators: bench.operator_counts(),
+            bridges: bench.reports(jobs),
+        }
+    }
+
+    /// Takes what another run prepared.
+    pub fn add(&mut self, other: Self) {
+        self.condensations += other.condensations;
+        self.operators.built += other.operators.built;
+        self.operators.from_cache += other.operators.from_cache;
+        self.operators.replaced += other.operators.replaced;
+        for bridge in other.bridges {
+            if !self.bridges.contains(&bridge) {
+                self.bridges.push(bridge);
+            }
+        }
+    }
+}
+
+/// What a run leaves behind beside its records.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Jobs asked for.
+    pub jobs: usize,
+    /// Those that ran, the others being recorded before.
+    pub ran: usize,
+    /// Those that failed.
+    pub failures: Failures,
+    /// Those solved again by the reference solver.
+    pub verification: Verification,
+    /// What jobs share, as it was prepared for those that ran.
+    pub preparation: Preparation,
     /// Threads used.
     pub threads: usize,
     /// Wall time of what jobs share: finite elements, condensation, assembly, factors, static peaks [s].
@@ -41,6 +82,20 @@ pub struct Failures {
     pub count: usize,
     /// The first of them in the order of jobs with why they failed, ten at most.
     pub first: Vec<(usize, String)>,
+    /// Causes, the most frequent first.
+    pub causes: Vec<Cause>,
+}
+
+/// Jobs that failed for the same cause: their reasons differ in numbers alone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cause {
+    /// How many.
+    pub count: usize,
+    /// The first of them.
+    pub job: usize,
+    /// Its reason.
+    pub reason: String,
+    words: String,
 }
 
 impl Failures {
@@ -52,8 +107,35 @@ impl Failures {
             if self.first.len() < FAILURES_KEPT {
                 self.first.push((record.job, reason.clone()));
             }
+            let words = words(reason);
+            match self.causes.iter().position(|cause| cause.words == words) {
+                Some(known) => self.causes[known].count += 1,
+                None if self.causes.len() < CAUSES_KEPT => self.causes.push(Cause {
+                    count: 1,
+                    job: record.job,
+                    reason: reason.clone(),
+                    words,
+                }),
+                None => {}
+            }
+        }
+        self.causes.sort_by_key(|cause| std::cmp::Reverse(cause.count));
+    }
+}
+
+/// A reason without its numbers.
+fn words(reason: &str) -> String {
+    let numeric = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
+    let mut words = String::new();
+    for word in reason.split_whitespace() {
+        let word = word.trim_matches(|c: char| matches!(c, '(' | ')' | ',' | ';' | ':'));
+        // 0.1, -3, 1.5e-7
+        if !word.starts_with(numeric) {
+            words.push_str(word);
+            words.push(' ');
         }
     }
+    words
 }
 
 /// Why a run could not begin.
@@ -75,4 +157,43 @@ pub enum RunError<E: StdError + 'static> {
     /// Its records were not taken.
     #[error(transparent)]
     Sink(E),
+    /// The journal was not written or could not be read.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// It was asked to stop.
+    #[error("stopped after {} of {} jobs", tally.done, tally.total)]
+    Stopped {
+        /// Why.
+        why: Why,
+        /// How far it came.
+        tally: Tally,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_that_differ_in_numbers_are_one_cause() {
+        let record = |job, reason: &str| JobRecord {
+            job,
+            reason: Some(reason.to_owned()),
+            ..JobRecord::default()
+        };
+        let mut failures = Failures::default();
+        failures.take(&[
+            record(1, "response not finite at t = 1.250000 s"),
+            record(
+                2,
+                "contact not settled at t = 0.5 s in connector 3 (joint 2, y = -1.4 m) after 6 bisections",
+            ),
+            record(
+                3,
+                "contact not settled at t = 1.5e-3 s in connector 11 (joint 8, y = 1.4 m) after 6 bisections",
+            ),
+        ]);
+        let causes: Vec<(usize, usize)> = failures.causes.iter().map(|c| (c.count, c.job)).collect();
+        assert_eq!((failures.count, causes), (3, vec![(2, 2), (1, 1)]));
+    }
 }

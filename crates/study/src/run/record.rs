@@ -9,9 +9,10 @@ use pontoon_core::response::{ForcePeaks, Peak};
 use serde::{Deserialize, Serialize};
 
 /// All rows of one job.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct JobRecord {
-    /// The job's number.
+    /// The job's number: no part of what is kept of it, as a study that grows numbers its jobs anew.
+    #[serde(skip)]
     pub job: usize,
     /// Why it failed; null where it did not.
     pub reason: Option<String>,
@@ -71,6 +72,8 @@ pub struct Summary {
     pub min_contact_force_n: Option<f64>,
     /// Time step that the program has found for the job, where it was to find one [s].
     pub time_step_s: Option<f64>,
+    /// Why it failed at its own time step, of a job that came to its end at half of it.
+    pub retried: Option<String>,
     /// Time steps.
     pub steps: Option<usize>,
     /// Newton solutions.
@@ -183,6 +186,14 @@ pub struct HistoryRows {
     pub time_s: Vec<f64>,
     /// Quantity, position and a value for each time.
     pub series: Vec<(String, usize, Vec<f64>)>,
+}
+
+impl HistoryRows {
+    /// Bytes of its numbers.
+    pub(super) fn bytes(&self) -> usize {
+        let values: usize = self.series.iter().map(|(.., values)| values.len()).sum();
+        8 * (values + self.time_s.len())
+    }
 }
 
 impl JobRecord {
@@ -308,7 +319,7 @@ mod tests {
             time_s: Some(1.0 / 3.0),
         };
         let record = JobRecord {
-            job: 3,
+            job: 0,
             reason: None,
             summary: Summary {
                 peak_deflection_m: Some(1e-300),
@@ -329,7 +340,10 @@ mod tests {
             },
             modes: Vec::new(),
         };
-        let text = serde_json::to_string(&record).unwrap();
-        assert_eq!(serde_json::from_str::<JobRecord>(&text).unwrap(), record);
+        let bytes = postcard::to_allocvec(&record).unwrap();
+        assert_eq!(postcard::from_bytes::<JobRecord>(&bytes).unwrap(), record);
+        // whatever its number was
+        let numbered = JobRecord { job: 3, ..record };
+        assert_eq!(postcard::to_allocvec(&numbered).unwrap(), bytes);
     }
 }

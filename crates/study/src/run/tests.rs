@@ -29,7 +29,7 @@ fn seven() -> (Study, Vec<Job>) {
     )
 }
 
-fn by(threads: usize, most_jobs: usize) -> Setting {
+fn by(threads: usize, most_jobs: usize) -> Setting<'static> {
     let batch = Batch {
         most_jobs,
         ..Batch::default()
@@ -37,18 +37,18 @@ fn by(threads: usize, most_jobs: usize) -> Setting {
     Setting {
         threads,
         batch,
-        cache: None,
+        ..Setting::default()
     }
 }
 
 /// The batches that a run hands on.
-fn batches(setting: Setting, (study, jobs): &(Study, Vec<Job>)) -> Vec<Vec<JobRecord>> {
+fn batches(setting: Setting<'_>, (study, jobs): &(Study, Vec<Job>)) -> Vec<Vec<JobRecord>> {
     let mut taken = Vec::new();
     let mut sink = |records| {
         taken.push(records);
         Ok::<(), std::io::Error>(())
     };
-    let outcome = run(study, jobs, setting, &Silent, &mut sink).unwrap();
+    let outcome = run(study, jobs, setting, &Stop::default(), &Silent, Some(&mut sink)).unwrap();
     assert_eq!((outcome.jobs, outcome.failures.count), (jobs.len(), 0));
     taken
 }
@@ -89,7 +89,7 @@ fn a_sink_that_fails_ends_the_run() {
                 Ok(())
             }
         };
-        let error = run(&study, &jobs, by(threads, 1), &told, &mut sink).unwrap_err();
+        let error = run(&study, &jobs, by(threads, 1), &Stop::default(), &told, Some(&mut sink)).unwrap_err();
         assert!(
             matches!(&error, RunError::Sink(e) if e.to_string() == "no space"),
             "{error}"

@@ -2,12 +2,10 @@
 //!
 //! Knows which jobs are solved again and what a deviation is. Does not know tables.
 
-use super::batch::by_operator;
 use super::bench::Bench;
 use super::record::{JobRecord, Summary};
 use super::{crossing, guard};
 use crate::plan::Job;
-use crate::spec::VerifySpec;
 use pontoon_core::response::Record;
 use serde::Serialize;
 
@@ -27,15 +25,9 @@ pub struct Verification {
     pub worst_tension: f64,
 }
 
-/// How a job is verified; none where it is not.
-pub(super) fn asked(job: &Job) -> Option<VerifySpec> {
-    let verify = job.analysis.spec.verify.filter(|verify| verify.takes(job.number));
-    verify.filter(|_| by_operator(job))
-}
-
 /// Solves a job again by the reference solver, where that is asked for, and notes how far the operator is off.
 pub(super) fn judge(job: &Job, record: &mut JobRecord, bench: &Bench) {
-    let (Some(verify), None) = (asked(job), &record.reason) else {
+    let (Some(verify), None) = (job.verify(), &record.reason) else {
         return;
     };
     let again = guard::guarded(|| crossing::solve(job, Record::default(), bench));

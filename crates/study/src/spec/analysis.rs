@@ -207,6 +207,10 @@ pub struct AnalysisSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 12))]
     pub bisection_limit: Option<usize>,
+    /// Time steps beyond which a crossing is not run but fails; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 10_000_000))]
+    pub step_limit: Option<usize>,
     /// Damping of a crossing; 5 % at the bridge's own first two vertical bending modes where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<DampingSpec>,
@@ -235,6 +239,7 @@ impl AnalysisSpec {
             ("spectral_radius", self.spectral_radius.is_some()),
             ("newton_limit", self.newton_limit.is_some()),
             ("bisection_limit", self.bisection_limit.is_some()),
+            ("step_limit", self.step_limit.is_some()),
             ("damping", self.damping.is_some()),
         ];
         let modes = [("count", self.count.is_some()), ("supports", self.supports.is_some())];
@@ -266,6 +271,9 @@ impl AnalysisSpec {
         within("spectral_radius", *self.spectral_radius.get_or_insert(0.9), 0.0, 1.0)?;
         whole("newton_limit", *self.newton_limit.get_or_insert(30), 1, 1000)?;
         whole("bisection_limit", *self.bisection_limit.get_or_insert(8), 0, 12)?;
+        if let Some(limit) = self.step_limit {
+            whole("step_limit", limit, 1, 10_000_000)?;
+        }
         let damping = self.damping.get_or_insert_default();
         within("damping.ratio", damping.ratio, 0.0, 0.99)?;
         if let Some([first, second]) = damping.frequencies_hz {

@@ -110,7 +110,10 @@ pub struct BridgeFile {
 /// # Errors
 /// [`Refusal`].
 pub fn read_bridge(file: &Path) -> Result<BridgeFile, Refusal> {
-    let document = read(file)?;
+    bridge_of(file, read(file)?)
+}
+
+fn bridge_of(file: &Path, document: Value) -> Result<BridgeFile, Refusal> {
     let design: BridgeDesign = typed(file, "", &document)?;
     design.check().map_err(|e| Refusal::of(file, "", e))?;
     Ok(BridgeFile {
@@ -148,7 +151,6 @@ impl Study {
         };
         let document = read(&file)?;
         let spec: StudySpec = typed(&file, "", &document)?;
-        check_name(&file, &spec.name)?;
         let bridge_path = file.parent().unwrap_or(Path::new("")).join(&spec.bridge);
         if !bridge_path.is_file() {
             let found = format!("'{}', which is no file", spec.bridge);
@@ -160,6 +162,21 @@ impl Study {
             ));
         }
         let bridge = read_bridge(&bridge_path)?;
+        Self::checked(file, document, spec, bridge)
+    }
+
+    /// The study of documents that were read before; `file` stands for both in messages.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn of_documents(file: &Path, document: Value, bridge: Value) -> Result<Self, Refusal> {
+        let spec: StudySpec = typed(file, "", &document)?;
+        let bridge = bridge_of(file, bridge)?;
+        Self::checked(file.to_owned(), document, spec, bridge)
+    }
+
+    fn checked(file: PathBuf, document: Value, spec: StudySpec, bridge: BridgeFile) -> Result<Self, Refusal> {
+        check_name(&file, &spec.name)?;
         let vehicle = filled_vehicle(&spec.vehicle).and_then(|v| v.check(bridge.design.module.breadth_m).map(|_| v));
         let vehicle = vehicle.map_err(|e| Refusal::of(&file, "vehicle", e))?;
         let analysis = spec
@@ -189,6 +206,16 @@ impl Study {
     /// Number of points of all designs, equal ones counted as often as they occur.
     pub fn points(&self) -> usize {
         self.blocks.iter().map(Block::len).sum()
+    }
+
+    /// Seeds of its designs, in the order of the file.
+    pub fn seeds(&self) -> Vec<u64> {
+        let drawn = self
+            .spec
+            .design
+            .iter()
+            .flat_map(|design| [&design.latin_hypercube, &design.sobol]);
+        drawn.flatten().map(|sample| sample.seed).collect()
     }
 
     /// The columns that the study's axes make: their names as written, each once, in the order of the file.

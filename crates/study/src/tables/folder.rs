@@ -2,9 +2,13 @@
 //!
 //! Knows temporary names, syncing and renaming. Does not know what a file holds.
 
+use super::table::TableName;
+use super::{manifest, writer};
+use crate::journal::fault::{self, Watched};
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
 /// A file of the results could not be written.
@@ -15,6 +19,24 @@ pub struct FolderError {
     pub path: PathBuf,
     /// What the system said.
     pub cause: io::Error,
+}
+
+/// The files of a run's results.
+#[derive(Debug, Clone, Copy)]
+pub struct OwnFiles;
+
+impl OwnFiles {
+    /// The ones that a folder holds, the manifest first: without it the others are no results.
+    pub fn in_folder(folder: &Path) -> Vec<PathBuf> {
+        let tables = TableName::ALL.map(TableName::file);
+        let names = [manifest::FILE, writer::SUMMARY]
+            .into_iter()
+            .chain(tables.iter().map(String::as_str));
+        names
+            .map(|name| folder.join(name))
+            .filter(|path| path.exists())
+            .collect()
+    }
 }
 
 /// A folder that can be written to.
@@ -55,9 +77,9 @@ impl Folder {
     ///
     /// # Errors
     /// [`FolderError`]; the file of that name is then as it was.
-    pub fn write(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), FolderError> {
-        let mut partial = self.begin(name)?;
-        content(&mut partial.file).map_err(|cause| partial.error(cause))?;
+    pub fn write(&self, name: &str, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FolderError> {
+        let partial = self.begin(name)?;
+        content(&mut partial.watched()?).map_err(|cause| partial.error(cause))?;
         partial.place()
     }
 
@@ -73,6 +95,7 @@ impl Folder {
                 partial,
                 path,
                 placed: false,
+                failure: Arc::default(),
             }),
             Err(cause) => Err(FolderError { path, cause }),
         }
@@ -100,6 +123,7 @@ pub(super) struct Partial {
     partial: PathBuf,
     path: PathBuf,
     placed: bool,
+    failure: Arc<OnceLock<(io::ErrorKind, String)>>,
 }
 
 impl Partial {
@@ -107,14 +131,26 @@ impl Partial {
     ///
     /// # Errors
     /// [`FolderError`].
-    pub(super) fn file(&self) -> Result<File, FolderError> {
-        self.file.try_clone().map_err(|cause| self.error(cause))
+    pub(super) fn watched(&self) -> Result<Watched, FolderError> {
+        let file = self.file.try_clone().map_err(|cause| self.error(cause))?;
+        Ok(Watched {
+            place: "tables.write",
+            file,
+            failure: Arc::clone(&self.failure),
+        })
     }
 
     /// The error of this file.
     pub(super) fn error(&self, cause: io::Error) -> FolderError {
         let path = self.path.clone();
-        FolderError { path, cause }
+        let said = self
+            .failure
+            .get()
+            .map(|(kind, text)| io::Error::new(*kind, text.clone()));
+        FolderError {
+            path,
+            cause: said.unwrap_or(cause),
+        }
     }
 
     /// Syncs what was written, so that placing it can hardly fail any more, and leaves its blake3 hash.
@@ -122,7 +158,10 @@ impl Partial {
     /// # Errors
     /// [`FolderError`].
     pub(super) fn sync(&self) -> Result<String, FolderError> {
-        let synced = self.file.sync_all().and_then(|()| hash_of(&self.partial));
+        let synced = fault::at("tables.sync")
+            .and_then(|()| self.file.sync_all())
+            .and_then(|()| fault::at("tables.synced"))
+            .and_then(|()| hash_of(&self.partial));
         synced.map_err(|cause| self.error(cause))
     }
 
@@ -133,8 +172,10 @@ impl Partial {
     pub(super) fn place(mut self) -> Result<(), FolderError> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let placed = self.file.sync_all().and_then(|()| {
+            fault::at("tables.rename")?;
             fs::rename(&self.partial, &self.path)?;
             self.placed = true;
+            fault::at("tables.renamed")?;
             File::open(folder)?.sync_all()
         });
         placed.map_err(|cause| self.error(cause))
@@ -151,7 +192,7 @@ impl Drop for Partial {
 }
 
 /// The blake3 hash of a file's bytes.
-pub(super) fn hash_of(path: &Path) -> io::Result<String> {
+pub(crate) fn hash_of(path: &Path) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     io::copy(&mut File::open(path)?, &mut hasher)?;
     Ok(hasher.finalize().to_hex().to_string())
@@ -160,7 +201,6 @@ pub(super) fn hash_of(path: &Path) -> io::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write;
 
     #[test]
     fn a_file_that_fails_half_way_leaves_the_old_one() {

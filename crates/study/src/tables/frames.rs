@@ -14,7 +14,7 @@ use serde_json::Value;
 pub(super) const FIRST_OUTCOMES: [&str; 2] = ["peak_deflection_m", "structural_mass_kg"];
 
 /// The columns of a study's axes: the short names of its kind, then every path.
-pub(super) fn axis_names(study: &Study) -> Vec<String> {
+pub(crate) fn axis_names(study: &Study) -> Vec<String> {
     let short: &[&str] = match study.spec.analysis.kind {
         Kind::Modes => &[],
         Kind::Crossing => &[
@@ -115,7 +115,9 @@ fn jobs(layout: &Layout, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<Da
             .iter()
             .map(|r| Some(if r.reason.is_none() { "ok" } else { "failed" })),
     );
-    c.word("reason", records.iter().map(|r| r.reason.as_deref()));
+    let reason = |r: &'_ JobRecord| r.reason.clone().or_else(|| r.summary.retried.clone());
+    let reasons: Vec<Option<String>> = records.iter().map(reason).collect();
+    c.word("reason", reasons.iter().map(Option::as_deref));
     for (name, of) in &layout.axes {
         let values: Vec<Value> = jobs.iter().map(|job| job.typed_column(name)).collect();
         c.axis(name, *of, &values);

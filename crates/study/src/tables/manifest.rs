@@ -2,15 +2,18 @@
 //!
 //! Knows the clock and the machine's name. Does not know the tables' content.
 
+use super::folder::hash_of;
+use super::parquet::Provenance;
 use crate::plan::Job;
 use crate::refusal::Refusal;
 use crate::run::{BridgeReport, OperatorCounts, Outcome, Verification};
 use crate::spec::{ModelSpec, Study};
+use crate::sweep::SessionNote;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Name of the manifest's file.
 pub(super) const FILE: &str = "manifest.json";
@@ -23,6 +26,11 @@ impl Moment {
     /// Now.
     pub fn now() -> Self {
         Self(SystemTime::now())
+    }
+
+    /// A number of milliseconds since 1970.
+    pub fn of_unix_ms(unix_ms: u64) -> Self {
+        Self(UNIX_EPOCH + Duration::from_millis(unix_ms))
     }
 
     /// As `2005-01-31T12:00:00Z`.
@@ -56,6 +64,8 @@ fn civil(days: u64) -> (u64, u64, u64) {
 pub struct Manifest {
     /// Version of the program.
     pub version: &'static str,
+    /// Commit of its sources, where it was built from one.
+    pub commit: Option<String>,
     /// Name of the study.
     pub name: String,
     /// The study's document.
@@ -66,6 +76,8 @@ pub struct Manifest {
     pub bridge: Value,
     /// Hash of the bridge's document on one line.
     pub bridge_blake3: String,
+    /// Seeds of the designs, in the order of the study's file.
+    pub seeds: Vec<u64>,
     /// Jobs.
     pub jobs: usize,
     /// Jobs that failed.
@@ -84,12 +96,16 @@ pub struct Manifest {
     pub bridges: Vec<BridgeReport>,
     /// Jobs solved again by the reference solver, and how far the operator is off; null where none was.
     pub verification: Option<Verification>,
-    /// Instructions that crossings by the operator ran on.
-    pub instruction_path: &'static str,
+    /// Instructions that crossings by the operator ran on; several, with `; ` between them, where shards of such were merged.
+    pub instruction_path: String,
     /// Name of the machine.
     pub host: String,
     /// Threads used.
     pub threads: usize,
+    /// Processes that worked on the study before this one.
+    pub sessions: Vec<SessionNote>,
+    /// Jobs that this process ran, the others being recorded before.
+    pub ran: usize,
     /// When the run began (UTC).
     pub started: String,
     /// When the last job was done (UTC).
@@ -104,17 +120,27 @@ pub struct Manifest {
 
 impl Manifest {
     /// The manifest of a run.
-    pub fn new(study: &Study, jobs: &[Job], outcome: &Outcome, started: Moment, finished: Moment) -> Self {
+    pub fn new(
+        study: &Study,
+        jobs: &[Job],
+        outcome: &Outcome,
+        started: Moment,
+        finished: Moment,
+        provenance: &Provenance,
+    ) -> Self {
+        let preparation = &outcome.preparation;
         let condensed = jobs
             .iter()
             .filter(|job| job.analysis.spec.model == ModelSpec::SuperElement);
         Self {
             version: crate::VERSION,
+            commit: provenance.commit.clone(),
             name: study.spec.name.clone(),
             study: study.document.clone(),
             study_blake3: study.text_and_hash().1,
             bridge: study.bridge.document.clone(),
             bridge_blake3: study.bridge_text_and_hash().1,
+            seeds: study.seeds(),
             jobs: jobs.len(),
             failed: outcome.failures.count,
             merged: study.points() - jobs.len(),
@@ -123,12 +149,14 @@ impl Manifest {
                 .map(|job| &job.bridge.module_key)
                 .collect::<BTreeSet<_>>()
                 .len(),
-            condensations: outcome.condensations,
-            operators: outcome.operators,
-            bridges: outcome.bridges.clone(),
+            condensations: preparation.condensations,
+            operators: preparation.operators,
+            bridges: preparation.bridges.clone(),
             verification: Some(outcome.verification).filter(|v| v.jobs > 0),
-            instruction_path: crate::run::instruction_path(),
-            host: host(),
+            instruction_path: provenance.instruction_paths.join("; "),
+            sessions: Vec::new(),
+            ran: outcome.ran,
+            host: crate::journal::host(),
             threads: outcome.threads,
             started: started.text(),
             finished: finished.text(),
@@ -143,6 +171,28 @@ impl Manifest {
         let value = crate::spec::to_value(self);
         format!("{value:#}\n")
     }
+}
+
+/// Whether a folder holds the whole results of a study's jobs, as this program would write them.
+pub(super) fn is_whole(folder: &Path, study: &Study, jobs: usize, tables: &[String], provenance: &Provenance) -> bool {
+    let told = std::fs::read(folder.join(FILE)).ok();
+    let Some(told) = told.and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok()) else {
+        return false;
+    };
+    let now = [
+        ("version", crate::VERSION.into()),
+        ("commit", provenance.commit.clone().into()),
+        ("instruction_path", provenance.instruction_paths.join("; ").into()),
+        ("study_blake3", study.text_and_hash().1.into()),
+        ("bridge_blake3", study.bridge_text_and_hash().1.into()),
+        ("jobs", Value::from(jobs)),
+    ];
+    let hashes = told["tables"].as_object();
+    let whole =
+        |name: &String| hash_of(&folder.join(name)).is_ok_and(|hash| told["tables"][name].as_str() == Some(&hash));
+    now.iter().all(|(key, value)| told[*key] == *value)
+        && hashes.is_some_and(|hashes| hashes.len() == tables.len())
+        && tables.iter().all(whole)
 }
 
 /// Refuses a folder that holds the results of a study of another name.
@@ -168,20 +218,9 @@ pub fn check_own(folder: &Path, name: &str) -> Result<(), Refusal> {
     }
 }
 
-/// The machine's name, where the system tells it.
-fn host() -> String {
-    let told = std::fs::read_to_string("/proc/sys/kernel/hostname")
-        .ok()
-        .or_else(|| std::env::var("HOSTNAME").ok());
-    told.map(|name| name.trim().to_owned())
-        .filter(|name| !name.is_empty())
-        .unwrap_or_else(|| "unknown".to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     #[test]
     fn moments_are_written_in_the_calendar() {

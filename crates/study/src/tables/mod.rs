@@ -14,12 +14,16 @@ mod summary;
 mod table;
 mod writer;
 
-pub use folder::{Folder, FolderError};
+pub use folder::{Folder, FolderError, OwnFiles};
 pub use manifest::{Manifest, Moment, check_own};
+pub use parquet::Provenance;
 pub use results::{Results, ResultsError};
 pub use summary::{Cell, SummaryTable};
 pub use table::{Kind, Table, TableName};
 pub use writer::Writer;
+
+pub(crate) use folder::hash_of;
+pub(crate) use frames::axis_names;
 
 #[cfg(test)]
 mod tests;

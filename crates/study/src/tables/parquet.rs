@@ -3,17 +3,26 @@
 //! Knows what a file says of where it comes from and how it grows. Does not know its columns.
 
 use super::folder::{Folder, FolderError, Partial};
+use crate::journal::fault::Watched;
 use crate::plan::Job;
 use crate::spec::Study;
 use polars::prelude::{BatchedWriter, DataFrame, KeyValueMetadata, ParquetWriter, PolarsResult};
-use std::fs::File;
 use std::io::{self, BufWriter};
 
 /// Most rows of a row group, the table library's own number: what a reader takes at a time.
 const ROW_GROUP: usize = 1 << 18;
 
+/// What a program's tables carry of it and of where their numbers were computed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Provenance {
+    /// Commit of the program's sources, where it was built from one.
+    pub commit: Option<String>,
+    /// Instructions that crossings by the operator ran on; more than one where shards of such were merged.
+    pub instruction_paths: Vec<String>,
+}
+
 /// What every table of a study carries: nothing of it changes from run to run.
-pub(super) fn provenance(study: &Study, jobs: &[Job]) -> KeyValueMetadata {
+pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> KeyValueMetadata {
     let (study_text, study_hash) = study.text_and_hash();
     let (bridge_text, bridge_hash) = study.bridge_text_and_hash();
     let mut hashes: Vec<&str> = Vec::new();
@@ -23,9 +32,13 @@ pub(super) fn provenance(study: &Study, jobs: &[Job]) -> KeyValueMetadata {
             hashes.push(&job.bridge.hash);
         }
     }
+    let seeds: Vec<String> = study.seeds().iter().map(ToString::to_string).collect();
     let pairs = [
         ("pontoon.version", crate::VERSION.to_owned()),
-        ("pontoon.instruction_path", crate::run::instruction_path().to_owned()),
+        ("pontoon.commit", of.commit.clone().unwrap_or_default()),
+        ("pontoon.instruction_path", of.instruction_paths.join("; ")),
+        ("pontoon.jobs", jobs.len().to_string()),
+        ("pontoon.seeds", seeds.join(" ")),
         ("pontoon.study", study_text),
         ("pontoon.study_blake3", study_hash),
         ("pontoon.bridge", bridge_text),
@@ -38,7 +51,7 @@ pub(super) fn provenance(study: &Study, jobs: &[Job]) -> KeyValueMetadata {
 /// A table under way: rows are appended, a part after the other, and nothing of them stays in memory.
 pub(super) struct TableFile {
     partial: Partial,
-    writer: BatchedWriter<BufWriter<File>>,
+    writer: BatchedWriter<BufWriter<Watched>>,
 }
 
 impl TableFile {
@@ -47,12 +60,12 @@ impl TableFile {
         folder: &Folder,
         name: &str,
         empty: PolarsResult<DataFrame>,
-        provenance: &KeyValueMetadata,
+        metadata: &KeyValueMetadata,
     ) -> Result<Self, FolderError> {
         let partial = folder.begin(name)?;
-        let writer = ParquetWriter::new(BufWriter::new(partial.file()?))
+        let writer = ParquetWriter::new(BufWriter::new(partial.watched()?))
             .set_parallel(false)
-            .with_key_value_metadata(Some(provenance.clone()));
+            .with_key_value_metadata(Some(metadata.clone()));
         let writer = empty.and_then(|empty| writer.batched(empty.schema()));
         match writer {
             Ok(writer) => Ok(Self { partial, writer }),

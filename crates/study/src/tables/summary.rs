@@ -28,8 +28,8 @@ pub struct SummaryTable<'a> {
 /// What the rows hold beside the axes, in the order of jobs.
 #[derive(Debug, Clone)]
 enum Outcomes {
-    /// The peaks of each job.
-    Peaks(Vec<[Option<f64>; 4]>),
+    /// The peaks of each job; not a number where there is none.
+    Peaks(Vec<[f64; 4]>),
     /// Of each mode its job, number, frequency [Hz] and shape.
     Modes(Vec<(usize, usize, f64, String)>),
 }
@@ -72,12 +72,13 @@ impl<'a> Lines<'a> {
         match &mut self.outcomes {
             Outcomes::Peaks(peaks) => peaks.extend(records.iter().map(|record| {
                 let s = &record.summary;
-                [
+                let peaks = [
                     s.peak_deflection_m,
                     s.peak_uplift_m,
                     s.peak_compression_n,
                     s.peak_tension_n,
-                ]
+                ];
+                peaks.map(|peak| peak.unwrap_or(f64::NAN))
             })),
             Outcomes::Modes(modes) => {
                 for (job, record) in (self.taken..).zip(records) {
@@ -114,17 +115,19 @@ impl<'a> Lines<'a> {
 
 /// Places of jobs: combinations of `others` in the order of their first job, `against` increasing.
 fn against_speed(jobs: &[Job], others: &[String], against: &[String]) -> Vec<usize> {
-    // a hash stands for the combination, which may be long and of which there may be as many as jobs
-    let mut groups: HashMap<blake3::Hash, usize> = HashMap::new();
-    let mut keys: Vec<(usize, f64)> = Vec::with_capacity(jobs.len());
+    // half a hash stands for the combination, which may be long and of which there may be as many as jobs
+    let mut groups: HashMap<[u8; 16], u32> = HashMap::new();
+    let mut keys: Vec<(u32, f64)> = Vec::with_capacity(jobs.len());
     for job in jobs {
         let of_group: Vec<Cell> = others.iter().map(|name| job.column(name)).collect();
-        let next = groups.len();
-        let text = Value::from(of_group).to_string();
-        let group = *groups.entry(blake3::hash(text.as_bytes())).or_insert(next);
+        let next = u32::try_from(groups.len()).unwrap_or(u32::MAX);
+        let mut hash = [0; 16];
+        hash.copy_from_slice(&blake3::hash(Value::from(of_group).to_string().as_bytes()).as_bytes()[..16]);
+        let group = *groups.entry(hash).or_insert(next);
         let speed = against.first().and_then(|name| job.column(name).as_f64());
         keys.push((group, speed.unwrap_or_default()));
     }
+    drop(groups);
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by(|&a, &b| {
         let (a, b) = (keys[a], keys[b]);

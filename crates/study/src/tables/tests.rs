@@ -4,7 +4,7 @@ use super::frames::Layout;
 use super::*;
 use crate::modes::ModeRow;
 use crate::plan::{Job, Jobs};
-use crate::run::{Batch, JobRecord, Outcome, Setting, Silent, run};
+use crate::run::{Batch, JobRecord, Outcome, Setting, Silent, Stop, run};
 use crate::spec::{Kind, Study};
 use polars::prelude::{DataFrame, DataType, ParquetReader, SerReader};
 use serde_json::{Value, json};
@@ -50,18 +50,33 @@ fn records(study: &Study, jobs: &[Job]) -> (Vec<JobRecord>, Outcome) {
         all.extend(records);
         Ok::<(), std::io::Error>(())
     };
-    let outcome = run(study, jobs, Setting::default(), &Silent, &mut sink).unwrap();
+    let outcome = run(
+        study,
+        jobs,
+        Setting::default(),
+        &Stop::default(),
+        &Silent,
+        Some(&mut sink),
+    )
+    .unwrap();
     let place = all.len() - 2;
     all[place] = JobRecord::failed(&jobs[place], "why".to_owned());
     (all, outcome)
 }
 
 fn begun<'a>(of: &'a (Study, Vec<Job>), folder: &'a Folder) -> Writer<'a> {
-    Writer::begin(&of.0, &of.1, folder).unwrap()
+    Writer::begin(&of.0, &of.1, folder, &Provenance::default()).unwrap()
 }
 
 fn manifest((study, jobs): &(Study, Vec<Job>), outcome: &Outcome) -> Manifest {
-    Manifest::new(study, jobs, outcome, Moment::now(), Moment::now())
+    Manifest::new(
+        study,
+        jobs,
+        outcome,
+        Moment::now(),
+        Moment::now(),
+        &Provenance::default(),
+    )
 }
 
 fn read(folder: &Folder, name: TableName) -> DataFrame {
@@ -173,10 +188,11 @@ fn batches_on_one_and_three_threads_write_the_same_bytes() {
             Setting {
                 threads,
                 batch,
-                cache: None,
+                ..Setting::default()
             },
+            &Stop::default(),
             &Silent,
-            &mut sink,
+            Some(&mut sink),
         )
         .unwrap();
         let manifest = manifest(&of, &outcome);

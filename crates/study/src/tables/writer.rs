@@ -5,25 +5,26 @@
 use super::folder::{Folder, FolderError};
 use super::frames::Layout;
 use super::manifest::{self, Manifest};
-use super::parquet::{TableFile, provenance};
+use super::parquet::{Provenance, TableFile, metadata};
 use super::summary::{Lines, SummaryTable};
 use super::table::TableName;
 use crate::plan::Job;
 use crate::run::JobRecord;
 use crate::spec::Study;
-use std::io::Write;
 
 /// Name of the summary's file.
-const SUMMARY: &str = "summary.csv";
+pub(super) const SUMMARY: &str = "summary.csv";
 
 /// The tables of a run under way. Until they are finished the folder keeps what it held before.
 pub struct Writer<'a> {
-    folder: &'a Folder,
+    folder: Folder,
     jobs: &'a [Job],
     layout: Layout,
     files: Vec<(TableName, TableFile)>,
     lines: Lines<'a>,
     taken: usize,
+    /// Whether the tables are there already.
+    whole: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -31,20 +32,42 @@ impl<'a> Writer<'a> {
     ///
     /// # Errors
     /// [`FolderError`] with the file that could not be begun.
-    pub fn begin(study: &Study, jobs: &'a [Job], folder: &'a Folder) -> Result<Self, FolderError> {
+    pub fn begin(
+        study: &Study,
+        jobs: &'a [Job],
+        folder: &Folder,
+        provenance: &Provenance,
+    ) -> Result<Self, FolderError> {
         let layout = Layout::new(study, jobs);
-        let provenance = provenance(study, jobs);
+        let metadata = metadata(study, jobs, provenance);
         let file = |name: TableName| {
             let empty = layout.frame(name, &[], &[]);
-            Ok((name, TableFile::begin(folder, &name.file(), empty, &provenance)?))
+            Ok((name, TableFile::begin(folder, &name.file(), empty, &metadata)?))
         };
         Ok(Self {
-            folder,
+            folder: folder.clone(),
             jobs,
             files: layout.tables().map(file).collect::<Result<_, FolderError>>()?,
             layout,
             lines: Lines::new(study, jobs),
             taken: 0,
+            whole: false,
+        })
+    }
+
+    /// The same of a study whose tables the folder holds already: nothing but the summary is written. None where they are not
+    /// what this program would write.
+    pub fn of_whole(study: &Study, jobs: &'a [Job], folder: &Folder, provenance: &Provenance) -> Option<Self> {
+        let layout = Layout::new(study, jobs);
+        let names: Vec<String> = layout.tables().map(TableName::file).collect();
+        manifest::is_whole(folder.path(), study, jobs.len(), &names, provenance).then(|| Self {
+            folder: folder.clone(),
+            jobs,
+            layout,
+            files: Vec::new(),
+            lines: Lines::new(study, jobs),
+            taken: 0,
+            whole: true,
         })
     }
 
@@ -68,6 +91,10 @@ impl<'a> Writer<'a> {
     /// [`FolderError`] with the file that could not be written.
     pub fn finish(self, mut manifest: Manifest) -> Result<SummaryTable<'a>, FolderError> {
         let summary = self.lines.summary();
+        if self.whole {
+            self.folder.write(SUMMARY, |file| summary.write_csv(file))?;
+            return Ok(summary);
+        }
         let mut ended = Vec::new();
         for (name, file) in self.files {
             let (partial, hash) = file.end()?;

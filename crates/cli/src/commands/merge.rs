@@ -1,0 +1,26 @@
+//! `pontoon merge`: shards to the results of the whole study.
+
+use super::run::answer;
+use crate::Ending;
+use crate::args::{Common, MergeArguments};
+use crate::progress::Shown;
+use crate::signals::Heard;
+use crate::watching::Watching;
+use anyhow::Result;
+use pontoon_study::sweep::{Merged, SweepSetting, merge as merge_shards};
+
+/// Puts shards together.
+pub fn merge(arguments: &MergeArguments, common: Common) -> Result<Ending> {
+    let heard = Heard::listen()?;
+    let merged = Merged::of(&arguments.folders)?;
+    let setting = SweepSetting {
+        out: arguments.out.clone(),
+        any_instructions: arguments.any_instructions,
+        commit: crate::COMMIT.map(str::to_owned),
+        ..SweepSetting::default()
+    };
+    let watching = Watching::new(Shown::fitting(common.quiet), &heard, None);
+    let swept = merge_shards(&merged, &arguments.folders, &setting, &heard.stop, &watching);
+    watching.finish();
+    answer(&merged.study, &swept?, &arguments.out, None, common)
+}

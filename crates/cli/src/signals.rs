@@ -1,0 +1,78 @@
+//! Interrupts and questions from outside.
+//!
+//! Knows what SIGINT, SIGTERM and SIGUSR1 ask of a run. Does not know how a run stops.
+
+use crate::words;
+use pontoon_study::journal::Writer;
+use pontoon_study::run::{Stop, Tally, Why};
+use std::process::exit;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+/// Exit status of a run that was interrupted.
+const INTERRUPTED: i32 = 130;
+
+/// What signals act on.
+#[derive(Debug, Default)]
+pub struct Heard {
+    /// The run is to stop.
+    pub stop: Stop,
+    journal: Mutex<Weak<Writer>>,
+    tally: Mutex<Option<Tally>>,
+}
+
+impl Heard {
+    /// Listens from now on.
+    ///
+    /// # Errors
+    /// What the system says.
+    #[cfg(unix)]
+    pub fn listen() -> std::io::Result<Arc<Self>> {
+        use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+        let heard = Arc::new(Self::default());
+        let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
+        let own = Arc::clone(&heard);
+        std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
+            for signal in signals.forever() {
+                if signal == SIGUSR1 {
+                    own.answer();
+                } else if own.stop.is_asked() {
+                    exit(INTERRUPTED);
+                } else {
+                    own.stop.ask(Why::Interrupted);
+                    words::note("interrupted: jobs under way are finished; once more stops at once");
+                }
+            }
+        })?;
+        Ok(heard)
+    }
+
+    /// The journal that is being written.
+    pub fn writing(&self, journal: &Arc<Writer>) {
+        *self.journal.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(journal);
+    }
+
+    /// How far the run has come.
+    pub fn count(&self, tally: Tally) {
+        let mut last = self.tally.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.is_none_or(|last| last.done <= tally.done) {
+            *last = Some(tally);
+        }
+    }
+
+    /// Syncs the journal and says how far the run has come.
+    fn answer(&self) {
+        let journal = self.journal.lock().unwrap_or_else(PoisonError::into_inner).upgrade();
+        let synced = match journal.map(|journal| journal.sync()) {
+            None => "no journal yet".to_owned(),
+            Some(Ok(())) => "journal synced".to_owned(),
+            Some(Err(error)) => error.to_string(),
+        };
+        let tally = *self.tally.lock().unwrap_or_else(PoisonError::into_inner);
+        words::note(&match tally {
+            None => format!("preparing, {synced}"),
+            Some(Tally {
+                done, failed, total, ..
+            }) => format!("{done}/{total} jobs done, {failed} failed, {synced}"),
+        });
+    }
+}

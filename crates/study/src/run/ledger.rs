@@ -1,0 +1,110 @@
+//! Records in the journal, and back.
+//!
+//! Knows which jobs are recorded and how a record becomes bytes without loss. Does not know where the journal lies.
+
+use super::outcome::Preparation;
+use super::record::JobRecord;
+use crate::journal::{Book, JobKey, JournalError, NewRecord, Place, Writer};
+use crate::plan::Job;
+
+/// The journal as a run of some jobs sees it.
+#[derive(Debug)]
+pub struct Ledger<'a> {
+    book: &'a Book,
+    /// Of each job, by its place among those of the run, the record that it has; nothing where none has one.
+    known: Vec<Option<Place>>,
+    writer: Option<&'a Writer>,
+    /// Recorded jobs that failed.
+    failed: usize,
+}
+
+impl<'a> Ledger<'a> {
+    /// The records that `jobs` have in a book.
+    pub fn new(book: &'a Book, jobs: &[Job]) -> Self {
+        let mut failed = 0;
+        let known = jobs.iter().map(|job| {
+            let entry = book.find(&job.key())?;
+            failed += usize::from(entry.failed);
+            Some(entry.place)
+        });
+        let known = if book.entries().is_empty() {
+            Vec::new()
+        } else {
+            known.collect()
+        };
+        Self {
+            book,
+            known,
+            writer: None,
+            failed,
+        }
+    }
+
+    /// The same, new records going to a writer.
+    #[must_use]
+    pub fn written_by(mut self, writer: &'a Writer) -> Self {
+        self.writer = Some(writer);
+        self
+    }
+
+    /// Number of jobs that are recorded.
+    pub fn known(&self) -> usize {
+        self.known.iter().flatten().count()
+    }
+
+    /// Of these, the ones that failed.
+    pub fn failed(&self) -> usize {
+        self.failed
+    }
+
+    fn place(&self, at: usize) -> Option<Place> {
+        self.known.get(at).copied().flatten()
+    }
+
+    /// Whether the job at a place is recorded.
+    pub fn knows(&self, at: usize) -> bool {
+        self.place(at).is_some()
+    }
+
+    /// The record of the job at a place, where it has one.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub(crate) fn record(&self, at: usize, job: &Job) -> Result<Option<JobRecord>, JournalError> {
+        let Some(place) = self.place(at) else { return Ok(None) };
+        let left = self.book.record(place)?.left;
+        let damaged = || self.book.damaged(place);
+        let mut record: JobRecord = postcard::from_bytes(&left).map_err(|_| damaged())?;
+        // the study may have grown
+        record.job = job.number;
+        Ok(Some(record))
+    }
+
+    /// Says that jobs are about to be solved together.
+    pub(super) fn started<'j>(&self, jobs: impl Iterator<Item = &'j Job>) -> Result<(), JournalError> {
+        let Some(writer) = self.writer else { return Ok(()) };
+        let keys: Vec<JobKey> = jobs.map(Job::key).collect();
+        writer.started(&keys)
+    }
+
+    /// Keeps what jobs share.
+    pub(super) fn prepared(&self, preparation: &Preparation) -> Result<(), JournalError> {
+        self.writer.map_or(Ok(()), |writer| writer.prepared(preparation))
+    }
+
+    /// Keeps records of jobs.
+    pub(super) fn keep<'j>(&self, records: impl Iterator<Item = (&'j Job, &'j JobRecord)>) -> Result<(), JournalError> {
+        let Some(writer) = self.writer else { return Ok(()) };
+        let encoded: Vec<(JobKey, bool, Vec<u8>)> = records
+            .map(|(job, record)| {
+                let bytes = postcard::to_allocvec(record).unwrap_or_default();
+                (job.key(), record.reason.is_some(), bytes)
+            })
+            .collect();
+        writer.record(encoded.iter().map(|(key, failed, left)| NewRecord {
+            key: *key,
+            failed: *failed,
+            left,
+        }))
+    }
+}

@@ -1,0 +1,60 @@
+//! What a step and a bridge cost on this machine, measured on a few jobs.
+//!
+//! Knows the clock. Leaves no record: whatever becomes of the jobs, they run again when the study does.
+
+use super::PreparedModules;
+use super::batch::{Untold, solve};
+use super::bench::Bench;
+use super::cache::Cache;
+use super::progress::Silent;
+use super::stop::Stop;
+use crate::plan::{Job, module_steps};
+use crate::spec::Study;
+use std::time::Instant;
+
+/// Steps beyond which a job is too long to be tried.
+const MOST_STEPS: usize = 200_000;
+
+/// Jobs that are tried together: as many as lanes may be.
+const TRIED: usize = 8;
+
+/// What was measured on a few jobs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// What a bridge costs before any job of it runs, on all threads [s].
+    pub bridge_s: f64,
+    /// What a job costs of one thread [s].
+    pub job_s: f64,
+    /// Steps times modules of such a job; 0 where it has no steps.
+    pub module_steps: f64,
+    /// Jobs that were tried.
+    pub jobs: usize,
+}
+
+/// Measures what jobs like the first of `jobs` cost: the shortest of those that can be solved beside it are solved on one
+/// thread. None where they are too long, or fail.
+pub fn measure(study: &Study, jobs: &[Job], cache: Option<&Cache>) -> Option<Measured> {
+    let first = jobs.first()?;
+    let alike = |job: &&Job| job.by_operator() == first.by_operator() && Bench::crew_key(job) == Bench::crew_key(first);
+    let mut tried: Vec<&Job> = jobs.iter().filter(alike).collect();
+    tried.sort_by_key(|job| job.steps());
+    tried.truncate(if first.by_operator() { TRIED } else { 1 });
+    if tried.iter().any(|job| job.steps() > MOST_STEPS) {
+        return None;
+    }
+    let (stop, start) = (Stop::default(), Instant::now());
+    let bench = Bench::prepare(&tried, &PreparedModules::default(), cache, &stop, &Silent);
+    let bridge_s = start.elapsed().as_secs_f64();
+    let list: Vec<(&Study, &Job)> = tried.iter().map(|job| (study, *job)).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()?;
+    let start = Instant::now();
+    let records = pool.install(|| solve(&list, false, &bench, &Untold));
+    let job_s = start.elapsed().as_secs_f64() / tried.len() as f64;
+    let failed = records.iter().any(|record| record.reason.is_some());
+    (!failed).then(|| Measured {
+        bridge_s,
+        job_s,
+        module_steps: tried.iter().map(|job| module_steps(job)).sum::<f64>() / tried.len() as f64,
+        jobs: tried.len(),
+    })
+}

@@ -1,0 +1,184 @@
+//! A run's eyes: what is recorded, what is told of jobs as they begin and end, and what makes it stop.
+//!
+//! Knows the journal by way of the ledger and counts jobs. Does not know how jobs are solved.
+
+use super::Setting;
+use super::batch::Told;
+use super::ledger::Ledger;
+use super::outcome::{Preparation, RunError};
+use super::progress::{Progress, Tally};
+use super::record::JobRecord;
+use super::stop::{Stop, Why};
+use crate::journal::{JournalError, fault};
+use crate::plan::Job;
+use std::collections::BTreeMap;
+use std::error::Error as StdError;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// What watches a run.
+pub(super) struct Watch<'a> {
+    ledger: Option<&'a Ledger<'a>>,
+    pub(super) apart: bool,
+    passed_over: &'a BTreeMap<usize, String>,
+    most_failures: Option<usize>,
+    stop: &'a Stop,
+    progress: &'a dyn Progress,
+    /// Jobs in all; done, recorded ones included; failed; run here.
+    total: usize,
+    done: AtomicUsize,
+    failed: AtomicUsize,
+    ran: AtomicUsize,
+    /// Why the journal cannot be written.
+    broken: Mutex<Option<JournalError>>,
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(total: usize, setting: &'a Setting<'a>, stop: &'a Stop, progress: &'a dyn Progress) -> Self {
+        let ledger = setting.ledger.as_ref();
+        Self {
+            ledger,
+            apart: setting.apart,
+            passed_over: &setting.passed_over,
+            most_failures: setting.most_failures,
+            stop,
+            progress,
+            total,
+            done: AtomicUsize::new(ledger.map_or(0, Ledger::known)),
+            failed: AtomicUsize::new(ledger.map_or(0, Ledger::failed)),
+            ran: AtomicUsize::new(0),
+            broken: Mutex::new(None),
+        }
+    }
+
+    /// Whether the job at a place is recorded.
+    pub(super) fn knows(&self, at: usize) -> bool {
+        self.ledger.is_some_and(|ledger| ledger.knows(at))
+    }
+
+    /// Keeps what was prepared.
+    pub(super) fn prepared(&self, preparation: &Preparation) {
+        self.note(self.ledger.map_or(Ok(()), |ledger| ledger.prepared(preparation)));
+    }
+
+    /// Tells how many jobs are done before any runs.
+    pub(super) fn begin_counting(&self) {
+        self.check_failures(self.failed.load(Ordering::Relaxed));
+        self.progress.jobs(self.tally());
+    }
+
+    fn tally(&self) -> Tally {
+        let ran = self.ran.load(Ordering::Relaxed);
+        Tally {
+            done: self.done.load(Ordering::Relaxed),
+            failed: self.failed.load(Ordering::Relaxed),
+            total: self.total,
+            ran,
+        }
+    }
+
+    fn check_failures(&self, failed: usize) {
+        if self.most_failures.is_some_and(|most| failed > most) {
+            self.stop.ask(Why::Failures);
+        }
+    }
+
+    /// Records of jobs of a batch that begins `from`, those that are recorded put between those `solved` now.
+    pub(super) fn with_known(
+        &self,
+        batch: &[Job],
+        from: usize,
+        solved: Vec<JobRecord>,
+    ) -> Result<Vec<JobRecord>, JournalError> {
+        let Some(ledger) = self.ledger else { return Ok(solved) };
+        let (mut all, mut solved) = (Vec::with_capacity(batch.len()), solved.into_iter());
+        for (at, job) in (from..).zip(batch) {
+            match ledger.record(at, job)? {
+                Some(known) => all.push(known),
+                // none where the run was stopped
+                None => all.extend(solved.next()),
+            }
+        }
+        Ok(all)
+    }
+
+    /// Why a job is not to be solved; none where it is.
+    pub(super) fn passes_over(&self, job: &Job) -> Option<String> {
+        let over = |limit: &usize| job.steps() > *limit;
+        let limit = job.analysis.spec.step_limit.filter(over);
+        let too_long = |limit| format!("{} time steps, the limit is {limit}", job.steps());
+        self.passed_over
+            .get(&job.number)
+            .cloned()
+            .or_else(|| limit.map(too_long))
+    }
+
+    /// The failures of jobs that are not to be solved.
+    pub(super) fn pass_over(&self, jobs: &[&Job]) -> Vec<JobRecord> {
+        let failed = |job: &&Job| JobRecord::failed(job, self.passes_over(job).unwrap_or_default());
+        let records: Vec<JobRecord> = jobs.iter().map(failed).collect();
+        self.end(jobs, &records);
+        records
+    }
+
+    /// Whether a stop is asked for.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stop.is_asked()
+    }
+
+    /// Jobs run here.
+    pub(super) fn ran(&self) -> usize {
+        self.ran.load(Ordering::Relaxed)
+    }
+
+    fn note(&self, kept: Result<(), JournalError>) {
+        if let Err(error) = kept {
+            self.stop.ask(Why::Journal);
+            self.broken
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .get_or_insert(error);
+        }
+    }
+
+    /// Whether the run goes on.
+    pub(super) fn outcome<E: StdError + Send + 'static>(&self) -> Result<(), RunError<E>> {
+        if let Some(error) = self.broken.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(RunError::Journal(error));
+        }
+        match self.stop.why() {
+            None => Ok(()),
+            Some(why) => Err(RunError::Stopped {
+                why,
+                tally: self.tally(),
+            }),
+        }
+    }
+}
+
+impl Told for Watch<'_> {
+    fn begin(&self, jobs: &[&Job]) -> bool {
+        if self.stop.is_asked() {
+            return false;
+        }
+        if let Some(ledger) = self.ledger {
+            self.note(ledger.started(jobs.iter().copied()));
+        }
+        for job in jobs {
+            fault::at_job(job.number);
+        }
+        true
+    }
+
+    fn end(&self, jobs: &[&Job], records: &[JobRecord]) {
+        if let Some(ledger) = self.ledger {
+            self.note(ledger.keep(jobs.iter().copied().zip(records)));
+        }
+        let fails = records.iter().filter(|record| record.reason.is_some()).count();
+        let failed = self.failed.fetch_add(fails, Ordering::Relaxed) + fails;
+        self.done.fetch_add(records.len(), Ordering::Relaxed);
+        self.ran.fetch_add(records.len(), Ordering::Relaxed);
+        self.check_failures(failed);
+        self.progress.jobs(self.tally());
+    }
+}

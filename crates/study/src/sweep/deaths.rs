@@ -1,0 +1,105 @@
+//! Jobs that processes died with.
+//!
+//! Knows how to find out whether a job kills its process: what was under way when processes died is solved again as if
+//! nothing had happened; a job that was under way twice is solved in a process of its own, whose death is the job's. A job
+//! whose process died three times is passed over. A kill from outside ends the process that asks, not the one that solves,
+//! and is counted against no job.
+
+use super::bound::{binding, session};
+use super::opened::Opened;
+use super::solving::ending;
+use super::{SweepError, SweepSetting, Watcher};
+use crate::journal::{Book, JobKey, Writer};
+use crate::plan::Job;
+use crate::run::{Ledger, RunError, Setting, Silent, Stop, run};
+use crate::spec::Study;
+use crate::tables::FolderError;
+use std::collections::BTreeMap;
+
+/// Deaths after which a job is solved in a process of its own.
+const SUSPECT: usize = 2;
+
+/// Numbers of jobs that are not to be solved, with the reason.
+pub type PassedOver = BTreeMap<usize, String>;
+
+/// How a process ended that solved jobs apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Apart {
+    /// Its number.
+    pub process: u32,
+    /// Whether it died, that is, did not come to its own end.
+    pub died: bool,
+}
+
+/// Finds out about jobs that processes died with, and tells which ones are passed over.
+pub(super) fn settle(opened: &mut Opened, jobs: &[Job], watcher: &dyn Watcher) -> Result<PassedOver, SweepError> {
+    let mut over = PassedOver::new();
+    let mut before = Vec::new();
+    loop {
+        let suspects: Vec<&Job> = suspects(&opened.book, jobs)
+            .filter(|job| !over.contains_key(&job.number))
+            .collect();
+        let numbers: Vec<usize> = suspects.iter().map(|job| job.number).collect();
+        if numbers.is_empty() || numbers == before {
+            return Ok(over);
+        }
+        let many = numbers.len();
+        watcher.warn(&format!(
+            "{many} jobs were under way when processes died twice: solved one by one in a process of their own"
+        ));
+        let Some(apart) = watcher.solve_apart(&numbers) else {
+            return Ok(over);
+        };
+        opened.read_again()?;
+        if apart.died {
+            let begun: Vec<JobKey> = opened.book.begun_apart(apart.process).copied().collect();
+            for job in suspects.iter().filter(|job| begun.contains(&job.key())) {
+                let reason = "the process died 3 times while this job ran, the last time with no other beside it";
+                over.insert(job.number, reason.to_owned());
+            }
+        }
+        before = numbers;
+    }
+}
+
+/// Jobs that processes died with too often.
+fn suspects<'j>(book: &Book, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
+    let mut deaths: BTreeMap<JobKey, usize> = book.deaths();
+    deaths.retain(|_, times| *times >= SUSPECT);
+    let jobs = if deaths.is_empty() { &[] } else { jobs };
+    jobs.iter().filter(move |job| deaths.contains_key(&job.key()))
+}
+
+/// Solves jobs one by one, for a process that holds the folder and wants to know whether they end this one.
+///
+/// # Errors
+/// [`SweepError`].
+pub fn run_apart(
+    study: &Study,
+    jobs: &[Job],
+    numbers: &[usize],
+    setting: &SweepSetting,
+    stop: &Stop,
+) -> Result<(), SweepError> {
+    let own: Vec<Job> = jobs
+        .iter()
+        .filter(|job| numbers.contains(&job.number))
+        .cloned()
+        .collect();
+    let book = Book::read(&setting.out)?;
+    let ledger = Ledger::new(&book, &own);
+    let asked = session(study, setting, 1, own.len(), ledger.known(), true);
+    let writer = Writer::begin(&setting.out, &binding(study, setting.shard), &asked, ledger.failed())?;
+    let setting = Setting {
+        threads: 1,
+        batch: setting.batch,
+        cache: setting.cache.clone(),
+        ledger: Some(ledger.written_by(&writer)),
+        apart: true,
+        ..Setting::default()
+    };
+    let ran = run(study, &own, setting, stop, &Silent, None).map_err(|e: RunError<FolderError>| SweepError::from(e));
+    let how = ran.as_ref().map_or_else(ToString::to_string, |_| "complete".to_owned());
+    writer.end(&ending(how, 0.0, 0.0))?;
+    ran.map(|_| ())
+}

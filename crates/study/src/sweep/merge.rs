@@ -1,0 +1,272 @@
+//! Shards put together.
+//!
+//! Knows that shards are journals of one study whose records do not contradict each other, and that together they hold every
+//! job. The merged folder is one that the whole study could have been run into: its journal holds the shards' files, and a
+//! study that has grown goes on from there.
+
+use super::bound::study_of;
+use super::opened::{self, instruction_paths, preparations, sessions};
+use super::status::study_of_book;
+use super::{SweepError, SweepSetting, Swept};
+use crate::journal::{Book, FOLDER, JournalError, Lock, fault};
+use crate::plan::{Job, Jobs};
+use crate::refusal::Refusal;
+use crate::run::{JobRecord, Ledger, Progress, Setting, Stop, run};
+use crate::spec::Study;
+use crate::tables::{Folder, Manifest, Moment, Provenance, Writer, hash_of};
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Shards as they were found.
+#[derive(Debug)]
+pub struct Merged {
+    /// The study that they are of.
+    pub study: Study,
+    /// Its jobs.
+    pub jobs: Vec<Job>,
+}
+
+impl Merged {
+    /// The study of shards, from their journals.
+    ///
+    /// # Errors
+    /// [`SweepError::Refused`] of folders that are of different studies.
+    pub fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
+        let mut first: Option<(PathBuf, String)> = None;
+        let mut study = None;
+        for folder in folders {
+            let book = Book::read(folder)?;
+            let (of_folder, session) = study_of_book(&book, folder)?;
+            let hash = of_folder.text_and_hash().1;
+            match &first {
+                None => {
+                    first = Some((folder.clone(), hash));
+                    study = Some(study_of(session, folder)?);
+                }
+                Some((_, known)) if *known == hash => {}
+                Some((other, _)) => {
+                    let allowed = format!("the study of {}", other.display());
+                    return Err(Refusal::new(folder, "", "a shard of another study", allowed).into());
+                }
+            }
+        }
+        let Some(study) = study else {
+            return Err(Refusal::new(Path::new("merge"), "", "no folder", "the folders of all shards").into());
+        };
+        let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
+        Ok(Self { study, jobs })
+    }
+}
+
+/// Puts shards together: their journals into the journal of `setting.out`, their records into its tables.
+///
+/// # Errors
+/// [`SweepError::Refused`] of shards that do not belong together, contradict each other or leave jobs out.
+pub fn merge<'a>(
+    merged: &'a Merged,
+    folders: &[PathBuf],
+    setting: &SweepSetting,
+    stop: &Stop,
+    progress: &dyn Progress,
+) -> Result<Swept<'a>, SweepError> {
+    let Merged { study, jobs } = merged;
+    crate::tables::check_own(&setting.out, &study.spec.name)?;
+    let started = Moment::now();
+    check_distinct(folders, &setting.out)?;
+    // shards stand still while they are read
+    let _locks = folders
+        .iter()
+        .map(|folder| Lock::take(folder))
+        .collect::<Result<Vec<_>, _>>()?;
+    progress.stage("checking shards");
+    let now = super::bound::binding(study, None);
+    let mut books = Vec::new();
+    for folder in folders {
+        let book = Book::read(folder)?;
+        for written in &book.files {
+            let differences = written
+                .binding
+                .as_ref()
+                .map(|then| then.differences(&now))
+                .unwrap_or_default();
+            if !differences.is_empty() {
+                let found = format!("records of another study or program ({})", differences.join("; "));
+                return Err(Refusal::new(
+                    &written.path,
+                    "",
+                    found,
+                    "shards of one study by one version of the program",
+                )
+                .into());
+            }
+        }
+        books.push(book);
+    }
+    let paths: BTreeSet<String> = books.iter().flat_map(instruction_paths).cloned().collect();
+    let paths: Vec<String> = paths.into_iter().collect();
+    if paths.len() > 1 && !setting.any_instructions {
+        let found = format!("shards computed on {}", paths.join(" and "));
+        return Err(Refusal::new(
+            &folders[0],
+            "instruction_path",
+            found,
+            "one path, or --any-instructions",
+        )
+        .into());
+    }
+    check_complete(jobs, &books, folders)?;
+    check_consistent(&books, folders)?;
+    let folder = Folder::create(&setting.out)?;
+    let _lock = Lock::take(&setting.out)?;
+    for then in opened::bindings(&Book::read(&setting.out)?) {
+        let differences = then.differences(&now);
+        if !differences.is_empty() {
+            let found = format!("records of another study ({})", differences.join("; "));
+            return Err(Refusal::new(&setting.out, "", found, "an empty folder, or one of this study").into());
+        }
+    }
+    progress.stage("journals");
+    for source in folders {
+        copy_journal(source, &setting.out)?;
+    }
+    let book = Book::read(&setting.out)?;
+    let ledger = Ledger::new(&book, jobs);
+    if ledger.known() < jobs.len() {
+        let found = format!("{} of {} jobs after the shards were copied", ledger.known(), jobs.len());
+        return Err(Refusal::new(&setting.out, "", found, "all jobs").into());
+    }
+    let provenance = Provenance {
+        commit: setting.commit.clone(),
+        instruction_paths: paths,
+    };
+    let mut tables = Writer::begin(study, jobs, &folder, &provenance)?;
+    let mut sink = |records: Vec<JobRecord>| tables.append(&records);
+    let run_setting = Setting {
+        threads: setting.threads,
+        batch: setting.batch,
+        ledger: Some(ledger),
+        ..Setting::default()
+    };
+    let mut outcome = run(study, jobs, run_setting, stop, progress, Some(&mut sink)).map_err(SweepError::from)?;
+    for before in preparations(&book) {
+        outcome.preparation.add(before);
+    }
+    let mut manifest = Manifest::new(study, jobs, &outcome, started, Moment::now(), &provenance);
+    manifest.sessions = sessions(&book);
+    let summary = tables.finish(manifest)?;
+    Ok(Swept {
+        outcome,
+        summary: Some(summary),
+        jobs: jobs.len(),
+    })
+}
+
+/// Refuses a folder that is given twice.
+fn check_distinct(folders: &[PathBuf], out: &Path) -> Result<(), Refusal> {
+    let real = |folder: &Path| fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
+    let all: Vec<PathBuf> = folders.iter().map(|folder| real(folder)).collect();
+    for (i, folder) in folders.iter().enumerate() {
+        if all[..i].contains(&all[i]) {
+            return Err(Refusal::new(
+                folder,
+                "",
+                "a shard that is given twice",
+                "each shard once",
+            ));
+        }
+        if all[i] == real(out) {
+            return Err(Refusal::new(
+                folder,
+                "",
+                "a shard as the folder of results",
+                "a folder of its own (--out)",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses shards that leave jobs out.
+fn check_complete(jobs: &[Job], books: &[Book], folders: &[PathBuf]) -> Result<(), Refusal> {
+    let mut missing = Vec::new();
+    let mut count = 0;
+    for job in jobs {
+        let key = job.key();
+        if !books.iter().any(|book| book.find(&key).is_some()) {
+            count += 1;
+            if missing.len() < 5 {
+                missing.push(job.number.to_string());
+            }
+        }
+    }
+    if count == 0 {
+        return Ok(());
+    }
+    let found = format!(
+        "{count} of {} jobs in no shard (the first: {})",
+        jobs.len(),
+        missing.join(", ")
+    );
+    let allowed = "shards that are run to their end, all of them";
+    Err(Refusal::new(
+        folders.first().map_or(Path::new(""), PathBuf::as_path),
+        "",
+        found,
+        allowed,
+    ))
+}
+
+/// Refuses shards whose records of one job differ.
+fn check_consistent(books: &[Book], folders: &[PathBuf]) -> Result<(), SweepError> {
+    for (i, book) in books.iter().enumerate() {
+        for entry in book.entries() {
+            for (earlier, other) in books[..i].iter().enumerate() {
+                let Some(same) = other.find(&entry.key) else { continue };
+                if book.record(entry.place)?.left != other.record(same.place)?.left {
+                    let found = format!(
+                        "a record of job key {} that is not the one of {}",
+                        entry.key,
+                        folders[earlier].display()
+                    );
+                    return Err(Refusal::new(&folders[i], "", found, "records of one job that are equal").into());
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Copies the files of a journal that another does not have, each whole or not at all.
+fn copy_journal(from: &Path, to: &Path) -> Result<(), SweepError> {
+    let (from, to) = (from.join(FOLDER), to.join(FOLDER));
+    let error = |path: &Path, cause: io::Error| JournalError::Io {
+        path: path.to_owned(),
+        cause,
+    };
+    fs::create_dir_all(&to).map_err(|cause| error(&to, cause))?;
+    for entry in fs::read_dir(&from).map_err(|cause| error(&from, cause))? {
+        let source = entry.map_err(|cause| error(&from, cause))?.path();
+        let target = to.join(source.file_name().unwrap_or_default());
+        if same_content(&source, &target) {
+            continue;
+        }
+        let partial = target.with_extension("partial");
+        let copied = fault::at("merge.copy")
+            .and_then(|()| fs::copy(&source, &partial))
+            .and_then(|_| File::open(&partial)?.sync_all())
+            .and_then(|()| fault::at("merge.rename"))
+            .and_then(|()| fs::rename(&partial, &target));
+        copied.map_err(|cause| error(&target, cause))?;
+    }
+    File::open(&to)
+        .and_then(|dir| dir.sync_all())
+        .map_err(|cause| error(&to, cause))?;
+    Ok(())
+}
+
+fn same_content(a: &Path, b: &Path) -> bool {
+    let length = |path: &Path| fs::metadata(path).map(|m| m.len()).ok();
+    length(b).is_some() && length(a) == length(b) && hash_of(a).ok() == hash_of(b).ok()
+}

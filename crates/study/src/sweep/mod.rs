@@ -1,0 +1,221 @@
+//! A study run into its folder of results: nothing that is finished is run again, whatever became of the process before.
+//!
+//! Knows the order of things: lock, journal, what is bound to what, jobs, tables, manifest. Does not know how a job is solved
+//! nor how a record is written.
+//!
+//! | module | charter |
+//! |---|---|
+//! | `aside` | old results moved out of the way, under their hash |
+//! | `bound` | what a study's records are bound to; a study from a journal alone |
+//! | `deaths` | jobs that processes died with |
+//! | `forecast` | what a study will take, and what of it is done |
+//! | `merge` | shards put together |
+//! | `opened` | a folder of results taken: lock, journal, whether it is this study's |
+//! | `solving` | what is missing, solved into the journal |
+//! | `status` | what is done, missing, failed; why a job ran or will run |
+
+mod aside;
+mod bound;
+mod deaths;
+mod forecast;
+mod merge;
+mod opened;
+mod solving;
+mod status;
+
+pub use deaths::{Apart, run_apart};
+pub use forecast::{Forecast, Found, forecast};
+pub use merge::{Merged, merge};
+pub use opened::SessionNote;
+pub use status::{Explanation, Standings, explain, standings};
+
+use crate::Refusal;
+use crate::journal::{JournalError, Writer as JournalWriter};
+use crate::plan::{Job, Shard};
+use crate::run::canary::CanaryError;
+use crate::run::{Batch, Cache, JobRecord, Ledger, Outcome, PoolError, Progress, RunError, Stop, Why};
+use crate::spec::Study;
+use crate::tables::{FolderError, Manifest, Moment, Provenance, SummaryTable, Writer};
+use opened::Opened;
+use solving::{Solved, Solving};
+use std::path::PathBuf;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// How a sweep goes about its jobs.
+#[derive(Debug, Clone, Default)]
+pub struct SweepSetting {
+    /// Folder of the results.
+    pub out: PathBuf,
+    /// Threads; 0: as many as the machine has.
+    pub threads: usize,
+    /// What is solved at a time.
+    pub batch: Batch,
+    /// Where operators are kept from run to run; none: nowhere.
+    pub cache: Option<Cache>,
+    /// The share of the jobs that is asked for; none: all. A share leaves a journal and no tables.
+    pub shard: Option<Shard>,
+    /// Older results that this study cannot go on from are moved aside.
+    pub fresh: bool,
+    /// Records of other instruction paths are of use.
+    pub any_instructions: bool,
+    /// Failed jobs beyond which the run stops.
+    pub most_failures: Option<usize>,
+    /// Commit of the program's sources, where it was built from one.
+    pub commit: Option<String>,
+}
+
+/// Why a sweep did not come to its end.
+#[derive(Debug, Error)]
+pub enum SweepError {
+    /// The folder holds what this study cannot go on from.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// The journal.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// A table or the folder could not be written.
+    #[error("results not written: {0}")]
+    Folder(#[from] FolderError),
+    /// No threads.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// This machine or build computes wrongly.
+    #[error(transparent)]
+    Canary(#[from] CanaryError),
+    /// Somebody asked it to stop; the same command goes on from there.
+    #[error("interrupted: {done} of {jobs} jobs are recorded, the same command goes on from there")]
+    Interrupted {
+        /// Recorded jobs.
+        done: usize,
+        /// Jobs asked for.
+        jobs: usize,
+    },
+    /// More jobs failed than may.
+    #[error("stopped: {failed} jobs failed, {done} of {jobs} are recorded")]
+    Failures {
+        /// Failed jobs.
+        failed: usize,
+        /// Recorded jobs.
+        done: usize,
+        /// Jobs asked for.
+        jobs: usize,
+    },
+}
+
+impl From<RunError<FolderError>> for SweepError {
+    fn from(error: RunError<FolderError>) -> Self {
+        match error {
+            RunError::Pool(error) => error.into(),
+            RunError::Sink(error) => error.into(),
+            RunError::Journal(error) => error.into(),
+            RunError::Stopped { why, tally } => match why {
+                Why::Failures => Self::Failures {
+                    failed: tally.failed,
+                    done: tally.done,
+                    jobs: tally.total,
+                },
+                Why::Interrupted | Why::Journal => Self::Interrupted {
+                    done: tally.done,
+                    jobs: tally.total,
+                },
+            },
+        }
+    }
+}
+
+/// What a sweep left beside its files.
+#[derive(Debug)]
+pub struct Swept<'a> {
+    /// Counts and times.
+    pub outcome: Outcome,
+    /// The summary; none of a share.
+    pub summary: Option<SummaryTable<'a>>,
+    /// Jobs of the study.
+    pub jobs: usize,
+}
+
+/// Who is told of a sweep.
+pub trait Watcher: Progress {
+    /// Something that is worth a line: what was set aside.
+    fn note(&self, what: &str);
+
+    /// Something that nobody should miss: what was passed over in the journal.
+    fn warn(&self, what: &str);
+
+    /// The journal's file of this process has begun.
+    fn writing(&self, journal: &Arc<JournalWriter>);
+
+    /// Solves jobs, by their numbers, in a process of their own, see [`run_apart`]; none where that cannot be done.
+    fn solve_apart(&self, jobs: &[usize]) -> Option<Apart>;
+}
+
+/// Runs what is missing of a study, and writes its tables.
+///
+/// # Errors
+/// [`SweepError`].
+pub fn sweep<'a>(
+    study: &Study,
+    jobs: &'a [Job],
+    setting: &SweepSetting,
+    stop: &Stop,
+    watcher: &dyn Watcher,
+) -> Result<Swept<'a>, SweepError> {
+    let started = Moment::now();
+    let mut opened = Opened::take(study, setting, watcher)?;
+    let share = |shard: Shard| shard.deal(jobs).into_iter().map(|at| jobs[at].clone()).collect();
+    let own: Option<Vec<Job>> = setting.shard.map(share);
+    let asked: &[Job] = own.as_deref().unwrap_or(jobs);
+    let passed_over = deaths::settle(&mut opened, asked, watcher)?;
+    let ledger = Ledger::new(&opened.book, asked);
+    let paths = opened.instruction_paths(ledger.known() < asked.len());
+    let solving = Solving {
+        study,
+        jobs: asked,
+        setting,
+        stop,
+        watcher,
+        opened: &opened,
+        passed_over,
+    };
+    if own.is_some() {
+        let solved = solving.solve(ledger, None)?;
+        solved.end()?;
+        return Ok(Swept {
+            outcome: solved.outcome,
+            summary: None,
+            jobs: jobs.len(),
+        });
+    }
+    let provenance = Provenance {
+        commit: setting.commit.clone(),
+        instruction_paths: paths,
+    };
+    let done = ledger.known() == asked.len();
+    let whole = done
+        .then(|| Writer::of_whole(study, jobs, &opened.folder, &provenance))
+        .flatten();
+    let mut tables = match whole {
+        Some(whole) => whole,
+        None => Writer::begin(study, jobs, &opened.folder, &provenance)?,
+    };
+    let mut sink = |records: Vec<JobRecord>| tables.append(&records);
+    let mut solved = solving.solve(ledger, Some(&mut sink))?;
+    // records before tables: whatever becomes of the tables, no job runs again
+    if let Some(writer) = &solved.writer {
+        writer.sync()?;
+    }
+    for before in opened.preparations() {
+        solved.outcome.preparation.add(before);
+    }
+    let mut manifest = Manifest::new(study, jobs, &solved.outcome, started, Moment::now(), &provenance);
+    manifest.sessions = opened.sessions();
+    let summary = tables.finish(manifest)?;
+    solved.end()?;
+    let Solved { outcome, .. } = solved;
+    Ok(Swept {
+        outcome,
+        summary: Some(summary),
+        jobs: jobs.len(),
+    })
+}

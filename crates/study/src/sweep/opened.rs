@@ -1,0 +1,214 @@
+//! A folder of results taken for a study.
+//!
+//! Knows the lock, the journal and what makes a folder another study's. Does not run anything.
+
+use super::aside::set_aside;
+use super::bound::binding;
+use super::{SweepError, SweepSetting, Watcher};
+use crate::journal::{Binding, Book, Damage, Ending, FOLDER, Lock, Session};
+use crate::refusal::Refusal;
+use crate::run::Preparation;
+use crate::spec::Study;
+use crate::tables::{Folder, OwnFiles};
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A folder of results that is this process's own.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub folder: Folder,
+    pub book: Book,
+    pub binding: Binding,
+    _lock: Lock,
+}
+
+/// A process that worked on a study, for the manifest.
+#[derive(Debug, Clone, Serialize)]
+pub struct SessionNote {
+    /// When it began (UTC).
+    pub started: String,
+    /// When it ended (UTC); null where it did not come to its own end.
+    pub finished: Option<String>,
+    /// Name of the machine.
+    pub host: String,
+    /// Threads.
+    pub threads: usize,
+    /// Version of the program.
+    pub version: String,
+    /// Commit of the program's sources, where it was built from one.
+    pub commit: Option<String>,
+    /// The share of the jobs; null where all were asked for.
+    pub shard: Option<String>,
+    /// Records that it left.
+    pub records: usize,
+    /// `complete`, `interrupted`, `died`, or why it could not go on.
+    pub ended: String,
+}
+
+impl Opened {
+    /// Takes the folder: makes it where it is missing, locks it, reads its journal, and refuses what is another study's.
+    pub(super) fn take(study: &Study, setting: &SweepSetting, watcher: &dyn Watcher) -> Result<Self, SweepError> {
+        crate::tables::check_own(&setting.out, &study.spec.name)?;
+        let folder = Folder::create(&setting.out)?;
+        let lock = Lock::take(&setting.out)?;
+        let binding = binding(study, setting.shard);
+        let mut book = Book::read(&setting.out);
+        if setting.fresh {
+            if let Some(to) = set_aside(&setting.out, book.as_ref().ok())? {
+                watcher.note(&format!("older results are now in {}", to.display()));
+            }
+            book = Book::read(&setting.out);
+        }
+        let book = book?;
+        check(&book, &binding, setting)?;
+        if book.files.is_empty() {
+            refuse_without_journal(&setting.out)?;
+        }
+        for (path, damage) in book.damages() {
+            watcher.warn(&words(path, damage));
+        }
+        for written in book.files.iter().filter(|written| written.binding.is_none()) {
+            let path = written.path.display();
+            watcher.warn(&format!("{path}: begins with no whole frame; nothing of it is used"));
+        }
+        Ok(Self {
+            folder,
+            book,
+            binding,
+            _lock: lock,
+        })
+    }
+
+    /// Reads the journal again.
+    pub(super) fn read_again(&mut self) -> Result<(), SweepError> {
+        self.book = Book::read(self.folder.path())?;
+        Ok(())
+    }
+
+    /// Instruction paths that records were computed on, `own` among them where this process computes any.
+    pub(super) fn instruction_paths(&self, own: bool) -> Vec<String> {
+        let own = own.then_some(&self.binding.instruction_path);
+        instruction_paths(&self.book)
+            .chain(own)
+            .cloned()
+            .collect::<BTreeSet<_>>()
+            .into_iter()
+            .collect()
+    }
+
+    /// What jobs share, as earlier processes prepared it.
+    pub(super) fn preparations(&self) -> impl Iterator<Item = Preparation> {
+        preparations(&self.book)
+    }
+
+    /// The processes that worked on the study before.
+    pub(super) fn sessions(&self) -> Vec<SessionNote> {
+        sessions(&self.book)
+    }
+}
+
+/// What the records of a book are bound to.
+pub(super) fn bindings(book: &Book) -> impl Iterator<Item = &Binding> {
+    book.files.iter().filter_map(|written| written.binding.as_ref())
+}
+
+/// Instruction paths that a book's records were computed on.
+pub(super) fn instruction_paths(book: &Book) -> impl Iterator<Item = &String> {
+    let with_records = book.files.iter().filter(|written| written.records > 0);
+    with_records
+        .filter_map(|written| written.binding.as_ref())
+        .map(|binding| &binding.instruction_path)
+}
+
+pub(super) fn preparations(book: &Book) -> impl Iterator<Item = Preparation> {
+    let prepared = book.files.iter().flat_map(|written| &written.prepared);
+    prepared.filter_map(|value| serde_json::from_value(value.clone()).ok())
+}
+
+pub(super) fn sessions(book: &Book) -> Vec<SessionNote> {
+    let note = |(session, ending, shard, records): (&Session, Option<&Ending>, Option<&String>, usize)| SessionNote {
+        started: session.started.clone(),
+        finished: ending.map(|ending| ending.finished.clone()),
+        host: session.host.clone(),
+        threads: session.threads,
+        version: session.version.clone(),
+        commit: session.commit.clone(),
+        shard: shard.cloned(),
+        records,
+        ended: ending.map_or_else(|| "died".to_owned(), |ending| ending.how.clone()),
+    };
+    let known = book.files.iter().filter_map(|written| {
+        let (binding, session) = (written.binding.as_ref()?, written.session.as_ref()?);
+        Some((
+            session,
+            written.ending.as_ref(),
+            binding.shard.as_ref(),
+            written.records,
+        ))
+    });
+    known.map(note).collect()
+}
+
+/// Refuses a journal whose records are of no use to a study.
+fn check(book: &Book, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
+    for written in &book.files {
+        let Some(then) = &written.binding else { continue };
+        let refuse = |key: &str, found: String, allowed: &str| Err(Refusal::new(&written.path, key, found, allowed));
+        let differences = then.differences(now);
+        if !differences.is_empty() {
+            return refuse(
+                "",
+                format!("records of another study ({})", differences.join("; ")),
+                "the study that these results are of with jobs added or left out; --fresh moves them aside and begins anew",
+            );
+        }
+        if let (Some(then), now) = (&then.shard, &now.shard)
+            && setting.shard.is_some()
+            && Some(then) != now.as_ref()
+        {
+            let allowed = format!("{then}, a folder a share");
+            return refuse(
+                "shard",
+                setting.shard.map(|s| s.to_string()).unwrap_or_default(),
+                &allowed,
+            );
+        }
+        if written.records > 0 && then.instruction_path != now.instruction_path && !setting.any_instructions {
+            return refuse(
+                "instruction_path",
+                format!("records computed on {}", then.instruction_path),
+                &format!("{} as this machine has it, or --any-instructions", now.instruction_path),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a folder that holds tables and no journal: they would be replaced by a run that knows nothing of them.
+fn refuse_without_journal(folder: &Path) -> Result<(), Refusal> {
+    let Some(file) = OwnFiles::in_folder(folder).into_iter().next() else {
+        return Ok(());
+    };
+    let found = format!("results without the {FOLDER} that they were made from");
+    Err(Refusal::new(
+        &file,
+        "",
+        found,
+        "a folder without results, or with its journal; --fresh moves them aside and begins anew",
+    ))
+}
+
+fn words(path: &Path, damage: &Damage) -> String {
+    let what = match (damage.tail, damage.zero) {
+        (true, true) => "zeros at its end",
+        (true, false) => "torn at its end",
+        (false, _) => "damaged",
+    };
+    format!(
+        "{}: {what}, {} bytes from byte {} are passed over; jobs that stood there run again",
+        path.display(),
+        damage.bytes,
+        damage.from
+    )
+}

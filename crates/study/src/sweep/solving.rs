@@ -1,0 +1,108 @@
+//! What is missing of a study, solved into its journal.
+//!
+//! Knows when a journal is begun and how it ends, and that a machine proves itself first. Does not know tables.
+
+use super::bound::session;
+use super::deaths::PassedOver;
+use super::opened::Opened;
+use super::{SweepError, SweepSetting, Watcher};
+use crate::journal::{Ending, Writer};
+use crate::plan::Job;
+use crate::run::{Ledger, Outcome, Setting, Sink, Stop, canary, run};
+use crate::spec::Study;
+use crate::tables::{FolderError, Moment};
+use std::sync::Arc;
+
+/// Jobs of a study on the way into its journal.
+pub(super) struct Solving<'a> {
+    pub study: &'a Study,
+    /// Jobs asked for.
+    pub jobs: &'a [Job],
+    pub setting: &'a SweepSetting,
+    pub stop: &'a Stop,
+    pub watcher: &'a dyn Watcher,
+    pub opened: &'a Opened,
+    pub passed_over: PassedOver,
+}
+
+/// What solving left.
+pub(super) struct Solved {
+    pub outcome: Outcome,
+    /// The journal's file of this process; none where nothing was missing.
+    pub writer: Option<Arc<Writer>>,
+}
+
+impl Solving<'_> {
+    /// Solves what is missing; all records pass the sink.
+    pub(super) fn solve(
+        self,
+        ledger: Ledger<'_>,
+        sink: Option<&mut Sink<'_, FolderError>>,
+    ) -> Result<Solved, SweepError> {
+        let (known, failed) = (ledger.known(), ledger.failed());
+        // a share without jobs has a journal too, so that it can be merged
+        let writer = if known < self.jobs.len() || self.opened.book.files.is_empty() {
+            canary::sing()?;
+            let threads = self.setting.threads;
+            let session = session(self.study, self.setting, threads, self.jobs.len(), known, false);
+            let folder = self.opened.folder.path();
+            let writer = Arc::new(Writer::begin(folder, &self.opened.binding, &session, failed)?);
+            self.watcher.writing(&writer);
+            Some(writer)
+        } else {
+            None
+        };
+        let ledger = match &writer {
+            Some(writer) => ledger.written_by(writer),
+            None => ledger,
+        };
+        let setting = Setting {
+            threads: self.setting.threads,
+            batch: self.setting.batch,
+            cache: self.setting.cache.clone(),
+            ledger: Some(ledger),
+            apart: false,
+            most_failures: self.setting.most_failures,
+            passed_over: self.passed_over,
+        };
+        let ran = run(self.study, self.jobs, setting, self.stop, self.watcher, sink).map_err(SweepError::from);
+        match ran {
+            Ok(outcome) => Ok(Solved { outcome, writer }),
+            Err(error) => {
+                if let Some(writer) = &writer {
+                    let how = match &error {
+                        SweepError::Interrupted { .. } => "interrupted".to_owned(),
+                        other => other.to_string(),
+                    };
+                    // the error that ended the run is the one to tell
+                    let _ = writer.end(&ending(how, 0.0, 0.0));
+                }
+                Err(error)
+            }
+        }
+    }
+}
+
+impl Solved {
+    /// Ends the journal's file.
+    pub(super) fn end(&self) -> Result<(), SweepError> {
+        if let Some(writer) = &self.writer {
+            writer.end(&ending(
+                "complete".to_owned(),
+                self.outcome.offline_s,
+                self.outcome.jobs_s,
+            ))?;
+        }
+        Ok(())
+    }
+}
+
+/// A process that comes to its own end now.
+pub(super) fn ending(how: String, offline_s: f64, jobs_s: f64) -> Ending {
+    Ending {
+        finished: Moment::now().text(),
+        how,
+        offline_s,
+        jobs_s,
+    }
+}

@@ -1,0 +1,171 @@
+//! What is done, missing, failed; why a job ran or will run.
+//!
+//! Knows journals from outside, while others write them. Writes nothing.
+
+use super::SweepError;
+use super::bound::study_of;
+use crate::journal::{Book, Session, Standing};
+use crate::plan::{Job, Jobs, Shard};
+use crate::refusal::Refusal;
+use crate::run::Ledger;
+use crate::spec::Study;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
+
+/// Folders of results with how far their runs have come.
+#[derive(Debug, Clone, Serialize)]
+pub struct Standings {
+    /// Each folder.
+    pub folders: Vec<(PathBuf, Standing)>,
+    /// Sums over the folders: jobs asked for, recorded, failed, missing.
+    pub jobs: usize,
+    /// See `jobs`.
+    pub done: usize,
+    /// See `jobs`.
+    pub failed: usize,
+    /// See `jobs`.
+    pub missing: usize,
+    /// Shares of which no folder was given; empty where none is a share.
+    pub shards_missing: Vec<String>,
+}
+
+/// How far the runs of folders have come.
+///
+/// # Errors
+/// [`SweepError::Refused`] of a folder without a journal; [`SweepError::Journal`].
+pub fn standings(folders: &[PathBuf]) -> Result<Standings, SweepError> {
+    let mut all = Standings {
+        folders: Vec::new(),
+        jobs: 0,
+        done: 0,
+        failed: 0,
+        missing: 0,
+        shards_missing: Vec::new(),
+    };
+    for folder in folders {
+        let standing = Standing::of(folder)?.ok_or_else(|| no_journal(folder))?;
+        all.jobs += standing.jobs;
+        all.done += standing.done;
+        all.failed += standing.failed;
+        all.missing += standing.missing;
+        all.folders.push((folder.clone(), standing));
+    }
+    let shards: Vec<Shard> = all
+        .folders
+        .iter()
+        .filter_map(|(_, standing)| standing.shard.as_ref()?.parse().ok())
+        .collect();
+    if let Some(of) = shards.first().map(|shard| shard.of) {
+        let given = |number| shards.contains(&Shard { number, of });
+        all.shards_missing = (0..of).filter(|k| !given(*k)).map(|k| format!("{k}/{of}")).collect();
+    }
+    Ok(all)
+}
+
+fn no_journal(folder: &Path) -> Refusal {
+    Refusal::new(
+        folder,
+        "",
+        "no journal of a run",
+        "a folder that `pontoon run` has written to",
+    )
+}
+
+/// Why a job ran or will run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Explanation {
+    /// The job's number.
+    pub job: usize,
+    /// Its key: jobs of one key leave the same record, in whatever study.
+    pub key: String,
+    /// Its axes.
+    pub axes: Map<String, Value>,
+    /// `ok`, `failed` or `missing`.
+    pub state: &'static str,
+    /// Why it failed.
+    pub reason: Option<String>,
+    /// In a sentence.
+    pub why: String,
+    /// The share of the jobs that it is of, where the folder is of a share.
+    pub shard: Option<String>,
+    /// When its record was written (UTC).
+    pub recorded: Option<String>,
+    /// By which process on which machine.
+    pub by: Option<String>,
+    /// The journal's file that holds its record.
+    pub file: Option<PathBuf>,
+    /// Processes that died while it was under way.
+    pub deaths: usize,
+    /// Length of its crossing in time steps.
+    pub steps: usize,
+}
+
+/// Explains a job of the study that a folder's journal is of.
+///
+/// # Errors
+/// [`SweepError`].
+pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> {
+    let book = Book::read(folder)?;
+    let (study, session) = study_of_book(&book, folder)?;
+    let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
+    let Some(job) = jobs.get(number) else {
+        let allowed = format!("0 to {}", jobs.len().saturating_sub(1));
+        return Err(Refusal::new(folder, "job", number, allowed).into());
+    };
+    let key = job.key();
+    let axes = crate::tables::axis_names(&study);
+    let axes = axes.into_iter().map(|name| (name.clone(), job.column(&name))).collect();
+    let shard: Option<Shard> = book
+        .files
+        .iter()
+        .find_map(|w| w.binding.as_ref()?.shard.as_ref()?.parse().ok());
+    let deaths = book.deaths().get(&key).copied().unwrap_or_default();
+    let mut told = Explanation {
+        job: number,
+        key: key.to_string(),
+        axes,
+        state: "missing",
+        reason: None,
+        why: String::new(),
+        shard: shard.map(|shard| shard.to_string()),
+        recorded: None,
+        by: None,
+        file: None,
+        deaths,
+        steps: job.steps(),
+    };
+    match book.find(&key) {
+        Some(entry) => {
+            let ledger = Ledger::new(&book, std::slice::from_ref(job));
+            let record = ledger.record(0, job)?;
+            let written = book.file_of(entry.place);
+            told.state = if entry.failed { "failed" } else { "ok" };
+            told.reason = record.and_then(|record| record.reason);
+            told.recorded = Some(crate::tables::Moment::of_unix_ms(book.record(entry.place)?.unix_ms).text());
+            told.by = written
+                .session
+                .as_ref()
+                .map(|s| format!("process {} on {}", s.process, s.host));
+            told.file = Some(written.path.clone());
+            told.why = "recorded: it does not run again".to_owned();
+        }
+        None => {
+            let elsewhere = shard.filter(|shard| !shard.deal(&jobs).contains(&number));
+            told.why = match (elsewhere, deaths) {
+                (Some(shard), _) => format!("not of the share {shard}: another one runs it"),
+                (None, 0) => "not recorded: the next run of the study runs it".to_owned(),
+                (None, n) => format!("under way in {n} processes that died: the next run of the study runs it again"),
+            };
+        }
+    }
+    let _ = session;
+    Ok(told)
+}
+
+/// The study of a folder's journal as its last process had it.
+pub(super) fn study_of_book<'a>(book: &'a Book, folder: &Path) -> Result<(Study, &'a Session), SweepError> {
+    let session = book.files.iter().rev().find_map(|written| written.session.as_ref());
+    let session = session.ok_or_else(|| no_journal(folder))?;
+    Ok((study_of(session, folder)?, session))
+}
