@@ -1,0 +1,173 @@
+//! Jobs that a process dies with, that fail, and that fail too often.
+
+use crate::stage::stderr;
+use crate::sweep::{begin, command, finish, run, run_with, sweep, tables};
+use serde_json::json;
+use std::time::Duration;
+
+#[test]
+fn a_job_whose_process_died_three_times_is_marked_and_passed_over() {
+    let stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    // the process dies whenever job 7 begins: first with its crew, then with its crew again, then alone
+    let mut deaths = 0;
+    let output = loop {
+        let output = run_with(&stage, "r", "job.7:1:die");
+        if output.status.code().is_some() {
+            break output;
+        }
+        deaths += 1;
+        assert!(deaths < 5, "it never ends");
+    };
+    let told = stderr(&output);
+    assert_eq!((output.status.code(), deaths), (Some(1), 2), "{told}");
+    assert!(
+        told.contains(
+            "job 7 failed: the process died 3 times while this job ran, the last time with no other beside it"
+        ),
+        "{told}"
+    );
+    let status = stage
+        .table("r/jobs.parquet")
+        .column("status")
+        .unwrap()
+        .str()
+        .unwrap()
+        .iter()
+        .map(|s| s.unwrap() == "ok")
+        .collect::<Vec<_>>();
+    assert_eq!(status.iter().filter(|ok| !**ok).count(), 1);
+    assert!(!status[7]);
+    // the verdict stands, and the other jobs are what they were
+    let again = run(&stage, "r", &[]);
+    assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
+    let numbers = |out: &str| stage.numbers(&format!("{out}/jobs.parquet"), "peak_deflection_m");
+    let (found, whole) = (numbers("r"), numbers("whole"));
+    for (job, (found, whole)) in found.iter().zip(&whole).enumerate() {
+        assert_eq!(*found, whole.filter(|_| job != 7), "job {job}");
+    }
+}
+
+#[test]
+fn a_job_that_was_under_way_when_others_killed_the_process_is_not_marked() {
+    let stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    // the same jobs are under way each time, and none of them is to blame
+    for _ in 0..2 {
+        let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
+        let output = command(&stage, &words)
+            .env("PONTOON_FAULT", "journal.write:3:short")
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    }
+    let output = finish(&stage, "r");
+    assert!(
+        stderr(&output).contains("were under way when processes died twice"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(tables(&stage, "r") == tables(&stage, "whole"));
+}
+
+#[test]
+fn a_kill_of_the_process_that_waits_counts_against_no_job() {
+    let stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
+    for _ in 0..2 {
+        let output = command(&stage, &words)
+            .env("PONTOON_FAULT", "journal.write:3:short")
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    }
+    // killed while another process solves the suspects, again and again
+    for micros in [20_000, 40_000, 60_000, 80_000, 100_000, 120_000] {
+        let mut child = begin(&stage, "r", &[]);
+        std::thread::sleep(Duration::from_micros(micros));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    finish(&stage, "r");
+    assert!(tables(&stage, "r") == tables(&stage, "whole"));
+}
+
+#[test]
+fn failures_are_grouped_by_cause_and_stop_the_run_where_they_are_too_many() {
+    let mut stage = sweep(2, 0.05);
+    // a single Newton solution and no bisection: contacts do not settle, neither at half the step
+    stage.study["analysis"]["newton_limit"] = json!(1);
+    stage.study["analysis"]["bisection_limit"] = json!(0);
+    stage.write();
+    let output = run(&stage, "r", &[]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("jobs failed; by cause:") && told.contains("at half the time step"),
+        "{told}"
+    );
+    let output = run(&stage, "few", &["--max-failures", "3"]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    assert!(
+        told.contains("stopped: ") && told.contains("of 48 are recorded"),
+        "{told}"
+    );
+    assert!(!stage.path("few/manifest.json").exists());
+    // more are allowed: it goes on
+    let output = run(&stage, "few", &["--max-failures", "48"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(tables(&stage, "few") == tables(&stage, "r"));
+}
+
+#[test]
+fn a_job_beyond_the_step_limit_fails_without_running() {
+    let mut stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    let steps = stage.numbers("whole/jobs.parquet", "steps");
+    let most = steps.iter().flatten().copied().fold(0.0, f64::max);
+    stage.study["analysis"]["step_limit"] = json!(most as u64 - 1);
+    stage.write();
+    let output = run(&stage, "r", &[]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains(&format!("failed: {most} time steps, the limit is {}", most - 1.0)),
+        "{told}"
+    );
+    let found = stage.numbers("r/jobs.parquet", "steps");
+    for (found, steps) in found.iter().zip(&steps) {
+        assert_eq!(*found, steps.filter(|steps| *steps < most));
+    }
+}
+
+#[test]
+fn a_job_that_half_the_step_helps_says_so() {
+    let mut stage = sweep(4, 0.05);
+    stage.study["analysis"]["newton_limit"] = json!(2);
+    stage.study["analysis"]["bisection_limit"] = json!(0);
+    stage.write();
+    let output = command(&stage, &["run", "study.json", "--out", "r", "--quiet"])
+        .output()
+        .unwrap();
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{}", stderr(&output));
+    let jobs = stage.table("r/jobs.parquet");
+    let (status, reason) = (
+        jobs.column("status").unwrap().str().unwrap(),
+        jobs.column("reason").unwrap().str().unwrap(),
+    );
+    let helped: Vec<&str> = status
+        .iter()
+        .zip(reason.iter())
+        .filter(|(s, _)| *s == Some("ok"))
+        .filter_map(|(_, r)| r)
+        .collect();
+    assert!(!helped.is_empty(), "no job was helped: the test has lost its case");
+    assert!(
+        helped
+            .iter()
+            .all(|r| r.starts_with("at half the time step; at its own: contact not settled")),
+        "{helped:?}"
+    );
+}

@@ -1,0 +1,116 @@
+//! Shares of a study on several machines, or one after the other on one.
+
+use crate::stage::{Stage, is_refused, stderr};
+use crate::sweep::{begin, command, finish, run, run_with, same_tables, status, sweep, tables};
+use serde_json::json;
+use std::process::Output;
+use std::time::Duration;
+
+fn folders(of: usize) -> Vec<String> {
+    (0..of).map(|k| format!("{k}-of-{of}")).collect()
+}
+
+fn merge(stage: &Stage, folders: &[String], out: &str) -> Output {
+    let folders: Vec<&str> = folders.iter().map(String::as_str).collect();
+    command(stage, &[&["merge", "--out", out, "--quiet"], &folders[..]].concat())
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn any_number_of_shards_and_threads_makes_the_same_tables_interrupted_or_not() {
+    let stage = sweep(10, 0.05);
+    finish(&stage, "whole");
+    let expected = tables(&stage, "whole");
+    for threads in ["1", "2", "3"] {
+        let output = run(&stage, threads, &["--threads", threads]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        same_tables(&stage, threads, &expected);
+    }
+    for of in [1, 2, 5] {
+        let folders = folders(of);
+        for (k, folder) in folders.iter().enumerate() {
+            let shard = format!("{k}/{of}");
+            if k % 2 == 0 {
+                let mut child = begin(&stage, folder, &["--shard", &shard]);
+                std::thread::sleep(Duration::from_millis(60));
+                child.kill().unwrap();
+                child.wait().unwrap();
+            }
+            let threads = (1 + k % 3).to_string();
+            let output = run(&stage, folder, &["--shard", &shard, "--threads", &threads]);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        }
+        let names: Vec<&str> = folders.iter().map(String::as_str).collect();
+        let told = status(&stage, &names);
+        assert_eq!((told["jobs"].as_u64(), told["done"].as_u64()), (Some(240), Some(240)));
+        assert_eq!(told["shards_missing"], json!([]));
+        let share = told["folders"][0]["jobs"].as_u64().unwrap();
+        assert!(share.abs_diff(240 / of as u64) <= 12, "{share} jobs of {of} shards");
+        let out = format!("merged-{of}");
+        let output = merge(&stage, &folders, &out);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        same_tables(&stage, &out, &expected);
+        // a merged folder is one that the study was run into
+        finish(&stage, &out);
+        same_tables(&stage, &out, &expected);
+    }
+}
+
+/// Both halves of a study, into `s0` and `s1`.
+fn run_both(stage: &Stage) {
+    for shard in ["0/2", "1/2"] {
+        let output = run(stage, &format!("s{}", &shard[..1]), &["--shard", shard]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn shards_of_a_study_that_has_grown_are_merged() {
+    let mut stage = sweep(3, 0.05);
+    run_both(&stage);
+    // numbers move, and jobs from one share to the other
+    stage.study["design"][0]["grid"]["gap_tension_m"] = json!({ "linspace": [0.0, 0.03, 5] });
+    stage.write();
+    run_both(&stage);
+    finish(&stage, "whole");
+    let output = merge(&stage, &["s0".to_owned(), "s1".to_owned()], "m");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    same_tables(&stage, "m", &tables(&stage, "whole"));
+}
+
+#[test]
+fn shards_that_do_not_belong_together_are_refused() {
+    let mut stage = sweep(2, 0.05);
+    run_both(&stage);
+    let names = |list: &[&str]| list.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    is_refused(&merge(&stage, &names(&["s0"]), "m"), &["in no shard", "all of them"]);
+    is_refused(
+        &merge(&stage, &names(&["s0", "nowhere"]), "m"),
+        &["nowhere: found no journal"],
+    );
+    is_refused(
+        &merge(&stage, &names(&["s0", "s0"]), "m"),
+        &["s0: found a shard that is given twice"],
+    );
+    is_refused(
+        &merge(&stage, &names(&["s0", "s1"]), "s1"),
+        &["s1: found a shard as the folder of results"],
+    );
+    // a share of another study
+    stage.study["analysis"]["time_step_s"] = json!(0.04);
+    stage.write();
+    let output = run(&stage, "other", &["--shard", "1/2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    is_refused(
+        &merge(&stage, &names(&["s0", "other"]), "m"),
+        &["other: found a shard of another study"],
+    );
+    assert!(!stage.path("m").exists());
+    // a folder is a share's own
+    let output = run(&stage, "other", &["--shard", "0/2"]);
+    is_refused(&output, &["shard: found 0/2", "allowed: 1/2"]);
+    // a shard that is not done
+    let _ = run_with(&stage, "half", "journal.write:4:die");
+    is_refused(&merge(&stage, &names(&["half", "other"]), "m"), &["in no shard"]);
+}
