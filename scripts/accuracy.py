@@ -144,15 +144,16 @@ def main():
         cases = drawn(options.jobs, options.seed, "nonlinear")
         operator = run(folder, "operator", cases, {}, histories=True)
         reference = run(folder, "reference", cases, {"solver": "reference"}, histories=True)
+        half = run(folder, "half", cases, {"time_step_s": 0.005})
         fine = run(folder, "fine", cases, {"time_step_s": 0.0025})
         finest = run(folder, "finest", cases, {"time_step_s": 0.000625})
         auto = run(folder, "auto", cases, {"time_step_s": "auto", "time_step_tolerance": 0.02})
-        off, off_fine = deviations(operator, reference), deviations(operator, fine)
+        off, off_fine, off_half = deviations(operator, reference), deviations(operator, fine), deviations(half, fine)
         peak = lambda t: [max(c, p) for c, p in zip(t["jobs"]["peak_compression_n"], t["jobs"]["peak_tension_n"])]
         off_auto = [100 * abs(a - b) / b for a, b in zip(peak(auto), peak(finest))]
         beyond = lambda o: {j for n, m in (("deflection", 0.5), ("compression", 2.0), ("tension", 10.0))
                             for j, x in enumerate(o[n]) if x > m}
-        suspects = sorted(beyond(off) | beyond(off_fine) | {j for j, x in enumerate(off_auto) if x > 2})
+        suspects = sorted(beyond(off) | beyond(off_fine) | beyond(off_half) | {j for j, x in enumerate(off_auto) if x > 2})
         moved = nudged(folder, cases, suspects, reference)
         table = Table()
         table.forces(f"{options.jobs} random crossings", off, moved)
@@ -173,6 +174,7 @@ def main():
         most = max([*off["deflection"], *(j[0] for j in off["joints"])])
         table.row(f"{len(linear)} linear crossings: deflection, all joints", "0.2 %", f"worst {most:.3f} %", most <= 0.2)
         table.forces("time step 10 against 2.5 ms", off_fine, moved)
+        table.forces("time step 5 against 2.5 ms", off_half, moved)
         chaotic = [j for j in suspects if off_auto[j] > 2 and max(moved[j][1:]) > 0.5 * off_auto[j]]
         median, most = worst(x for j, x in enumerate(off_auto) if j not in chaotic)
         apart = f"; apart: {', '.join(f'job {j} {off_auto[j]:.1f} %' for j in chaotic)}" if chaotic else ""
