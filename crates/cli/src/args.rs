@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Parametric studies of the hydroelastic response of floating ribbon bridges.
 ///
-/// Exit status: 0 all good; 1 done, but something fell short (a failed job, a check); 2 input refused; 3 could not go on.
+/// Exit status: 0 all good; 1 done, but something fell short (a failed job, a check); 2 input refused; 3 could not go on; 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(
     name = "pontoon",
@@ -136,11 +136,21 @@ pub struct RunArguments {
     #[arg(long)]
     pub any_instructions: bool,
     /// Jobs to be solved one by one into the journal of a folder that another process holds.
-    #[arg(long, hide = true, value_delimiter = ',')]
-    pub apart: Vec<usize>,
+    #[arg(long, hide = true, value_parser = apart, value_name = "HASH:JOB,...")]
+    pub apart: Option<(String, Vec<usize>)>,
     /// Holds the results against a reference file (or the folder that holds reference.json) once they are there.
     #[arg(long, value_name = "REFERENCE")]
     pub with: Option<PathBuf>,
+}
+
+/// Hash of a study and numbers of its jobs.
+fn apart(text: &str) -> Result<(String, Vec<usize>), String> {
+    let parts = text.split_once(':').ok_or("HASH:JOB,...")?;
+    let numbers = parts
+        .1
+        .split(',')
+        .map(|number| number.parse().map_err(|_| "HASH:JOB,..."));
+    Ok((parts.0.to_owned(), numbers.collect::<Result<_, _>>()?))
 }
 
 /// What `status` takes.

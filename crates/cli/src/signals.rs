@@ -5,6 +5,7 @@
 use crate::words;
 use pontoon_study::journal::Writer;
 use pontoon_study::run::{Stop, Tally, Why};
+use pontoon_study::sweep::ended_now;
 use std::process::exit;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
@@ -31,13 +32,16 @@ impl Heard {
         let heard = Arc::new(Self::default());
         let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
         let own = Arc::clone(&heard);
+        let mut interrupted = false;
         std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
             for signal in signals.forever() {
                 if signal == SIGUSR1 {
                     own.answer();
-                } else if own.stop.is_asked() {
+                } else if interrupted {
+                    own.end_at_once();
                     exit(INTERRUPTED);
                 } else {
+                    interrupted = true;
                     own.stop.ask(Why::Interrupted);
                     words::note("interrupted: jobs under way are finished; once more stops at once");
                 }
@@ -56,6 +60,14 @@ impl Heard {
         let mut last = self.tally.lock().unwrap_or_else(PoisonError::into_inner);
         if last.is_none_or(|last| last.done <= tally.done) {
             *last = Some(tally);
+        }
+    }
+
+    /// Says in the journal that this was no death.
+    fn end_at_once(&self) {
+        let journal = self.journal.lock().unwrap_or_else(PoisonError::into_inner).upgrade();
+        if let Some(journal) = journal {
+            journal.end_at_once(&ended_now("interrupted"));
         }
     }
 

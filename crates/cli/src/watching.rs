@@ -7,10 +7,18 @@ use crate::signals::Heard;
 use crate::words;
 use pontoon_study::journal::Writer;
 use pontoon_study::run::{Progress, Tally};
-use pontoon_study::sweep::{Apart, Watcher};
+use pontoon_study::sweep::{Apart, ApartEnd, Watcher};
+use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
+use std::time::Duration;
+
+/// Time between two looks whether a process has ended.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(10);
+
+/// The signal that no process can answer.
+const KILLED: i32 = 9;
 
 /// Who is told of a sweep.
 pub struct Watching<'a> {
@@ -58,24 +66,37 @@ impl Watcher for Watching<'_> {
         self.heard.writing(journal);
     }
 
-    fn solve_apart(&self, jobs: &[usize]) -> Option<Apart> {
-        let (study, out) = self.again.as_ref()?;
+    fn solve_apart(&self, study: &str, jobs: &[usize]) -> Option<Apart> {
+        let (file, out) = self.again.as_ref()?;
         let numbers: Vec<String> = jobs.iter().map(ToString::to_string).collect();
         // its standard input tells it when this process is gone
         let mut child = Command::new(std::env::current_exe().ok()?)
-            .args(["run", "--quiet", "--apart", &numbers.join(",")])
+            .args(["run", "--quiet", "--apart", &format!("{study}:{}", numbers.join(","))])
             .arg("--out")
             .arg(out)
-            .arg(study)
+            .arg(file)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .spawn()
             .ok()?;
-        let (process, input) = (child.id(), child.stdin.take());
-        let ended = child.wait().ok()?;
+        let process = child.id();
+        let mut input = child.stdin.take();
+        let ended = loop {
+            if let Some(ended) = child.try_wait().ok()? {
+                break ended;
+            }
+            if self.heard.stop.is_asked() {
+                input = None;
+            }
+            std::thread::sleep(BETWEEN_LOOKS);
+        };
         drop(input);
         // a process that ends by itself has a status
-        let died = ended.code().is_none();
-        Some(Apart { process, died })
+        let end = match (ended.code(), ended.signal()) {
+            (None, Some(KILLED)) => ApartEnd::Killed,
+            (None, _) => ApartEnd::Died,
+            (Some(_), _) => ApartEnd::Own,
+        };
+        Some(Apart { process, end })
     }
 }

@@ -33,9 +33,9 @@ pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     }
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let setting = setting(arguments, &study);
-    if !arguments.apart.is_empty() {
+    if let Some((of, numbers)) = &arguments.apart {
         end_with_standard_input();
-        run_apart(&study, &jobs, &arguments.apart, &setting, &heard.stop)?;
+        run_apart(&study, &jobs, (of, numbers), &setting, &heard.stop)?;
         return Ok(Ending::Good);
     }
     let again = Some((arguments.study.clone(), setting.out.clone()));

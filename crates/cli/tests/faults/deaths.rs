@@ -93,6 +93,91 @@ fn a_kill_of_the_process_that_waits_counts_against_no_job() {
     assert!(tables(&stage, "r") == tables(&stage, "whole"));
 }
 
+/// A sweep of jobs that take long, of which two processes died, and a third that solves the suspects apart.
+fn apart_at_work() -> (crate::stage::Stage, std::process::Child) {
+    let mut stage = sweep(2, 0.0005);
+    stage.study["analysis"]["solver"] = json!("reference");
+    stage.write();
+    let words = ["run", "study.json", "--out", "r", "--quiet"];
+    for _ in 0..2 {
+        let output = command(&stage, &words)
+            .env("PONTOON_FAULT", "job.1:1:die")
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    }
+    let child = begin(&stage, "r", &[]);
+    let began = std::time::Instant::now();
+    while std::fs::read_dir(stage.path("r/journal")).unwrap().count() < 3 {
+        assert!(began.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    (stage, child)
+}
+
+#[test]
+fn status_knows_nothing_of_jobs_solved_apart_but_that_they_are_done() {
+    let (stage, mut child) = apart_at_work();
+    let told = crate::sweep::status(&stage, &["r"]);
+    assert_eq!(
+        (&told["jobs"], &told["folders"][0]["state"]),
+        (&json!(48), &json!("running"))
+    );
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let told = crate::sweep::status(&stage, &["r"]);
+    assert_eq!(told["jobs"], 48);
+    finish(&stage, "r");
+    assert_eq!(crate::sweep::status(&stage, &["r"])["folders"][0]["state"], "complete");
+}
+
+#[test]
+fn an_interrupt_ends_a_run_that_waits_for_jobs_solved_apart() {
+    let (stage, child) = apart_at_work();
+    let asked = std::time::Instant::now();
+    let sent = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(asked.elapsed() < Duration::from_secs(3), "{:?}", asked.elapsed());
+    let lines = stderr(&output)
+        .lines()
+        .filter(|line| line.contains("process of their own"))
+        .count();
+    assert_eq!(lines, 1, "{}", stderr(&output));
+    finish(&stage, "r");
+}
+
+#[test]
+fn a_study_changed_while_jobs_are_solved_apart_is_not_taken_for_the_old_one() {
+    let mut stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
+    for _ in 0..2 {
+        let output = command(&stage, &words)
+            .env("PONTOON_FAULT", "journal.write:3:short")
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    }
+    let old = stage.study.clone();
+    stage.study["analysis"]["time_step_s"] = json!(0.04);
+    stage.write();
+    let apart = format!("{}:1,2", "0".repeat(64));
+    let output = command(&stage, &["run", "study.json", "--out", "r", "--apart", &apart])
+        .stdin(std::process::Stdio::piped())
+        .output();
+    // its standard input may end before it has said so
+    assert!(matches!(output.unwrap().status.code(), Some(2 | 3)));
+    stage.study = old;
+    stage.write();
+    finish(&stage, "r");
+    assert!(tables(&stage, "r") == tables(&stage, "whole"));
+}
+
 #[test]
 fn failures_are_grouped_by_cause_and_stop_the_run_where_they_are_too_many() {
     let mut stage = sweep(2, 0.05);
@@ -115,6 +200,11 @@ fn failures_are_grouped_by_cause_and_stop_the_run_where_they_are_too_many() {
         "{told}"
     );
     assert!(!stage.path("few/manifest.json").exists());
+    // a share says so each time it is asked for
+    for _ in 0..2 {
+        let output = run(&stage, "share", &["--shard", "0/1"]);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    }
     // more are allowed: it goes on
     let output = run(&stage, "few", &["--max-failures", "48"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));

@@ -26,7 +26,12 @@ fn a_process_that_dies_at_any_place_loses_nothing() {
     let expected = tables(&stage, "whole");
     for (place, passages) in PLACES {
         for passage in passages {
-            for how in ["die", "short"] {
+            let ways: &[&str] = if matches!(place, "journal.begin" | "journal.write" | "tables.write") {
+                &["die", "short"]
+            } else {
+                &["die"]
+            };
+            for how in ways {
                 let out = format!("{place}-{passage}-{how}");
                 let fault = format!("{place}:{passage}:{how}");
                 let output = run_with(&stage, &out, &fault);

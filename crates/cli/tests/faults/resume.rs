@@ -30,6 +30,62 @@ fn a_study_that_has_grown_runs_the_new_jobs_alone() {
     assert_eq!(ran(&output), 0);
     finish(&stage, "small");
     same_tables(&stage, "r", &tables(&stage, "small"));
+    let told = crate::sweep::status(&stage, &["r"]);
+    assert_eq!((&told["jobs"], &told["missing"]), (&json!(24), &json!(0)));
+    is_refused(
+        &command(&stage, &["explain", "r", "24"]).output().unwrap(),
+        &["job: found 24", "0 to 23"],
+    );
+}
+
+#[test]
+fn a_bit_flipped_in_the_beginning_of_a_journal_costs_nothing() {
+    let stage = sweep(2, 0.05);
+    finish(&stage, "r");
+    let path = fs::read_dir(stage.path("r/journal"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    let bytes = fs::read(&path).unwrap();
+    let length = |at: usize| 16 + u32::from_le_bytes(bytes[at + 4..at + 8].try_into().unwrap()) as usize;
+    // binding, session, and the same once more
+    for at in [3, 100, length(0) - 1, length(0) + 6, length(0) + length(length(0)) - 1] {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 4;
+        fs::write(&path, &flipped).unwrap();
+        fs::remove_file(stage.path("r/progress.json")).unwrap();
+        assert_eq!(crate::sweep::status(&stage, &["r"])["done"], 48, "byte {at}");
+        let output = command(
+            &stage,
+            &["run", "study.json", "--out", "r", "--quiet", "--format", "json"],
+        )
+        .output()
+        .unwrap();
+        assert_eq!(
+            (output.status.code(), ran(&output)),
+            (Some(0), 0),
+            "byte {at}: {}",
+            stderr(&output)
+        );
+        fs::write(stage.path("r/progress.json"), "").unwrap();
+    }
+}
+
+#[test]
+fn a_study_of_another_name_is_refused_and_moved_aside_on_demand() {
+    let mut stage = sweep(2, 0.05);
+    finish(&stage, "r");
+    stage.study["name"] = json!("other");
+    stage.write();
+    is_refused(&run(&stage, "r", &[]), &["r/manifest.json: name: ", "--fresh"]);
+    let output = run(&stage, "r", &["--fresh"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    is_refused(
+        &command(&stage, &["status", "study.json"]).output().unwrap(),
+        &["study.json: found a file"],
+    );
 }
 
 #[test]

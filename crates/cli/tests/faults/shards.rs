@@ -80,6 +80,74 @@ fn shards_of_a_study_that_has_grown_are_merged() {
 }
 
 #[test]
+fn shards_of_a_study_that_has_shrunk_or_grown_in_one_share_alone_are_merged() {
+    let mut stage = sweep(3, 0.05);
+    run_both(&stage);
+    let both = ["s0".to_owned(), "s1".to_owned()];
+    // nothing is missing of the smaller study, and it is the one that is merged
+    stage.study["design"][0]["grid"]["gap_tension_m"] = json!([0.0, 0.03]);
+    stage.write();
+    run_both(&stage);
+    finish(&stage, "small");
+    let output = merge(&stage, &both, "m");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    same_tables(&stage, "m", &tables(&stage, "small"));
+    // one job more is of one share
+    let more = json!({ "cases": [{ "speed_m_s": 9, "load_n": 1e5 }] });
+    stage.study["design"].as_array_mut().unwrap().push(more);
+    stage.write();
+    run_both(&stage);
+    finish(&stage, "more");
+    let output = merge(&stage, &both, "more-merged");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    same_tables(&stage, "more-merged", &tables(&stage, "more"));
+    // into the folder of the smaller study too
+    let output = merge(&stage, &both, "m");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    same_tables(&stage, "m", &tables(&stage, "more"));
+    let told = status(&stage, &["m"]);
+    assert_eq!(
+        (&told["jobs"], &told["folders"][0]["shard"]),
+        (&json!(49), &serde_json::Value::Null)
+    );
+    assert_eq!(told["folders"][0]["state"], "complete");
+    std::fs::remove_file(stage.path("m/progress.json")).unwrap();
+    assert_eq!(status(&stage, &["m"]), told);
+    // an older record in the folder of the results counts like a shard's
+    stage.study["design"][1] =
+        json!({ "cases": [{ "speed_m_s": 9, "load_n": 1e5 }, { "speed_m_s": 8, "load_n": 1e5 }] });
+    stage.write();
+    run_both(&stage);
+    let output = command(&stage, &["explain", "m", "49"]).output().unwrap();
+    is_refused(&output, &["job: found 49", "0 to 48"]);
+    let output = run(&stage, "s0", &["--shard", "1/2"]);
+    is_refused(&output, &["shard: found 1/2", "0/2"]);
+}
+
+#[test]
+fn many_shards_need_few_open_files() {
+    let stage = sweep(2, 0.05);
+    let folders = folders(24);
+    for (k, folder) in folders.iter().enumerate() {
+        let output = run(&stage, folder, &["--shard", &format!("{k}/24")]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    finish(&stage, "whole");
+    let program = env!("CARGO_BIN_EXE_pontoon");
+    let line = format!(
+        "ulimit -n 64 && exec {program} merge --quiet --out m {}",
+        folders.join(" ")
+    );
+    let output = std::process::Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(stage.path(""))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    same_tables(&stage, "m", &tables(&stage, "whole"));
+}
+
+#[test]
 fn shards_that_do_not_belong_together_are_refused() {
     let mut stage = sweep(2, 0.05);
     run_both(&stage);

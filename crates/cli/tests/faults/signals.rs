@@ -77,4 +77,6 @@ fn a_second_interrupt_ends_the_run_at_once() {
     let output = ended(child);
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(asked.elapsed() < Duration::from_secs(2));
+    // which is no death of the jobs that were under way
+    assert_eq!(status(&stage, &["r"])["folders"][0]["state"], "interrupted");
 }

@@ -9,12 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Bytes of a record before what the job left: key, whether it failed, time.
 pub(super) const RECORD_HEAD: usize = 16 + 1 + 8;
-
-/// Files that are kept open: a system lets a process have some thousand.
-const KEPT_OPEN: usize = 128;
 
 /// Where a record stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,8 +38,6 @@ pub struct Entry {
 pub struct Written {
     /// The file.
     pub path: PathBuf,
-    /// Kept open, of the first files.
-    file: Option<File>,
     /// What its records are bound to; none where its beginning is damaged, and then nothing of it is used.
     pub binding: Option<Binding>,
     /// Who wrote it.
@@ -74,6 +70,8 @@ pub struct Book {
     pub files: Vec<Written>,
     /// Its records by key, each key once.
     entries: Vec<Entry>,
+    /// The file that was read last: a system lets a process have few open.
+    open: Mutex<Option<(u32, Arc<File>)>>,
 }
 
 impl Book {
@@ -113,11 +111,6 @@ impl Book {
         let number = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let mut frames = Frames::open(&path, 0).map_err(error)?;
         let mut written = Written {
-            file: if self.files.len() < KEPT_OPEN {
-                Some(File::open(&path).map_err(error)?)
-            } else {
-                None
-            },
             path: path.clone(),
             binding: None,
             session: None,
@@ -127,22 +120,26 @@ impl Book {
             begun: BTreeSet::new(),
             prepared: Vec::new(),
         };
-        let mut first = true;
+        let mut recorded = false;
         while let Some(frame) = frames.next().map_err(error)? {
-            if frame.kind == kind::BINDING && first {
+            // it stands there twice, so that a file outlives damage to its beginning
+            if frame.kind == kind::BINDING && written.binding.is_none() && !recorded {
                 let document: Value = serde_json::from_slice(frame.payload).unwrap_or_default();
                 match document["form"].as_u64() {
                     Some(found) if found != u64::from(FORM) => return Err(JournalError::Form { path, found }),
                     _ => written.binding = serde_json::from_value(document).ok(),
                 }
             }
-            first = false;
+            recorded |= frame.kind == kind::RECORD;
             if written.binding.is_none() {
                 // bound to who knows what: its jobs run again
                 continue;
             }
             match frame.kind {
-                kind::SESSION => written.session = serde_json::from_slice(frame.payload).ok(),
+                kind::SESSION => {
+                    let session = serde_json::from_slice(frame.payload).ok();
+                    written.session = written.session.take().or(session);
+                }
                 kind::RECORD => {
                     if let Some((key, failed)) = record_head(frame.payload) {
                         written.records += 1;
@@ -191,10 +188,9 @@ impl Book {
     /// [`JournalError::Damaged`], [`JournalError::Io`].
     pub fn record(&self, place: Place) -> Result<Record, JournalError> {
         let written = &self.files[place.file as usize];
-        let read = match &written.file {
-            Some(file) => read_at(file, place.at, place.length),
-            None => File::open(&written.path).and_then(|file| read_at(&file, place.at, place.length)),
-        };
+        let read = self
+            .opened(place.file)
+            .and_then(|file| read_at(&file, place.at, place.length));
         let mut payload = read.map_err(|cause| match cause.kind() {
             io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof => JournalError::Damaged {
                 path: written.path.clone(),
@@ -208,6 +204,28 @@ impl Book {
             unix_ms: u64::from_le_bytes(time),
             left: payload.split_off(RECORD_HEAD),
         })
+    }
+
+    /// A file, open to be read.
+    fn opened(&self, number: u32) -> io::Result<Arc<File>> {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((kept, file)) = open.as_ref()
+            && *kept == number
+        {
+            return Ok(Arc::clone(file));
+        }
+        let file = Arc::new(File::open(&self.files[number as usize].path)?);
+        *open = Some((number, Arc::clone(&file)));
+        Ok(file)
+    }
+
+    /// What the last process was bound to that worked on the study, and who it was; those that solved jobs apart left out.
+    pub fn newest(&self) -> Option<(&Binding, &Session)> {
+        let known = |written: &'_ &Written| written.session.as_ref().is_some_and(|session| !session.apart);
+        let newest = self.files.iter().rev().filter(known);
+        newest
+            .filter_map(|written| written.binding.as_ref().zip(written.session.as_ref()))
+            .next()
     }
 
     /// The error of a record that cannot be understood.
@@ -238,6 +256,15 @@ impl Book {
             }
         }
         deaths
+    }
+
+    /// The same without the last file: that of a process that is at work.
+    pub fn deaths_before(&self, key: &JobKey) -> usize {
+        let before = &self.files[..self.files.len().saturating_sub(1)];
+        before
+            .iter()
+            .filter(|written| written.ending.is_none() && written.begun.contains(key))
+            .count()
     }
 
     /// Jobs that a process had begun apart and not recorded.

@@ -30,6 +30,8 @@ pub use lock::Lock;
 pub use progress::Standing;
 pub use writer::{NewRecord, Writer};
 
+pub(crate) use writer::study_hash;
+
 pub(crate) use frame::LONGEST;
 
 use std::io;
@@ -43,7 +45,7 @@ pub const FORM: u32 = 1;
 pub const FOLDER: &str = "journal";
 
 /// How the name of a journal's file ends.
-const EXTENSION: &str = "pontoon";
+pub(crate) const EXTENSION: &str = "pontoon";
 
 mod kind {
     pub(super) const BINDING: u32 = 1;
@@ -136,6 +138,3 @@ pub(crate) fn host() -> String {
         .filter(|name| !name.is_empty())
         .unwrap_or_else(|| "unknown".to_owned())
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,14 +1,13 @@
-//! How far a run has come, for those who ask from outside: a small file beside the journal, replaced every second.
+//! How far a run has come, for those who ask from outside: a small file beside the journal, replaced at every sync.
 //!
 //! Knows counts and up to which byte of the journal they hold; what was written since is counted by its frames. Nothing else
 //! hangs on it: where it is missing or does not fit the journal, the journal is read.
 
 use super::book::record_head;
 use super::frame::Frames;
-use super::{Book, EXTENSION, FOLDER, JournalError, Lock, kind};
+use super::{EXTENSION, Ending, FOLDER, Lock, kind};
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::io;
 use std::path::Path;
 
 /// Name of the file.
@@ -32,6 +31,8 @@ pub(super) struct Counts {
     pub bytes: u64,
     /// How many files the journal had.
     pub files: usize,
+    /// Hash of the study's document.
+    pub study_blake3: String,
     /// How the run ended; none where it has not.
     pub ended: Option<String>,
 }
@@ -66,55 +67,51 @@ pub struct Standing {
     pub missing: usize,
     /// Whether a process is at work in the folder.
     pub running: bool,
-    /// `complete`, `running`, `interrupted`, `died`, or why the last run could not go on.
+    /// `complete`, `running`, `interrupted`, `died`, `without tables`, or why the last run could not go on.
     pub state: String,
 }
 
 impl Standing {
-    /// How far the run of a folder has come; none where there is no journal.
-    ///
-    /// # Errors
-    /// [`JournalError`].
-    pub fn of(folder: &Path) -> Result<Option<Self>, JournalError> {
-        let running = Lock::is_held(folder);
+    /// How far the run of a folder has come by what is told beside its journal; none where that is missing or does not fit.
+    pub fn told(folder: &Path) -> Option<Self> {
         let journal = folder.join(FOLDER);
-        let files = match fs::read_dir(&journal) {
-            Ok(listed) => listed
-                .filter_map(Result::ok)
-                .filter(|entry| entry.path().extension().is_some_and(|e| e == EXTENSION))
-                .count(),
-            Err(cause) if cause.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(cause) => return Err(JournalError::io(&journal, cause)),
-        };
-        let told = fs::read(folder.join(FILE)).ok();
-        let told: Option<Told> = told.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        let told = told.filter(|told| told.crc32 == Told::checksum(&told.counts) && told.counts.files == files);
-        let counts = match told.map(|told| since(told.counts, &journal)) {
-            Some(Some(counts)) => counts,
-            _ => match counted(folder)? {
-                Some(counts) => counts,
-                None => return Ok(None),
-            },
-        };
-        let missing = counts.jobs.saturating_sub(counts.done);
-        // a share leaves no tables
-        let whole = missing == 0 && (counts.shard.is_some() || folder.join(MANIFEST).exists());
-        let state = match (running, &counts.ended) {
-            (true, _) => "running".to_owned(),
-            _ if whole => "complete".to_owned(),
-            (false, Some(ended)) => ended.clone(),
-            (false, None) => "died".to_owned(),
-        };
-        Ok(Some(Self {
+        let files = fs::read_dir(&journal).ok()?.filter_map(Result::ok);
+        let files = files
+            .filter(|entry| entry.path().extension().is_some_and(|e| e == EXTENSION))
+            .count();
+        let told: Told = serde_json::from_slice(&fs::read(folder.join(FILE)).ok()?).ok()?;
+        let fits = told.crc32 == Told::checksum(&told.counts) && told.counts.files == files;
+        let counts = fits.then(|| since(told.counts, &journal)).flatten()?;
+        let (jobs, done, failed) = (counts.jobs, counts.done, counts.failed);
+        let standing = Self {
             study: counts.study,
             shard: counts.shard,
-            jobs: counts.jobs,
-            done: counts.done,
-            failed: counts.failed,
-            missing,
-            running,
-            state,
-        }))
+            jobs,
+            done,
+            failed,
+            missing: jobs.saturating_sub(done),
+            running: false,
+            state: String::new(),
+        };
+        Some(standing.with_state(folder, &counts.study_blake3, counts.ended.as_deref()))
+    }
+
+    /// The same with its state: how the last process ended, unless it is still at work or nothing is missing any more.
+    pub fn with_state(mut self, folder: &Path, study_blake3: &str, ended: Option<&str>) -> Self {
+        self.running = Lock::is_held(folder);
+        // a share leaves no tables; a whole run's are of the study that its manifest names
+        let manifest = || fs::read(folder.join(MANIFEST)).ok();
+        let manifest = || serde_json::from_slice::<serde_json::Value>(&manifest()?).ok();
+        let whole = self.shard.is_some() || manifest().is_some_and(|told| told["study_blake3"] == study_blake3);
+        self.state = match ended {
+            _ if self.running => "running",
+            _ if self.missing == 0 && whole => "complete",
+            Some("complete") => "without tables",
+            Some(ended) => ended,
+            None => "died",
+        }
+        .to_owned();
+        self
     }
 }
 
@@ -126,36 +123,20 @@ fn since(mut counts: Counts, journal: &Path) -> Option<Counts> {
     }
     let mut frames = Frames::open(&path, counts.bytes).ok()?;
     while let Some(frame) = frames.next().ok()? {
-        if frame.kind == kind::RECORD {
-            let (_, failed) = record_head(frame.payload)?;
-            counts.done += 1;
-            counts.failed += usize::from(failed);
+        match frame.kind {
+            kind::RECORD => {
+                let (_, failed) = record_head(frame.payload)?;
+                counts.done += 1;
+                counts.failed += usize::from(failed);
+            }
+            kind::ENDING => {
+                let ending: Ending = serde_json::from_slice(frame.payload).ok()?;
+                counts.ended = Some(ending.how);
+            }
+            _ => {}
         }
     }
     Some(counts)
-}
-
-/// Counts of the whole journal.
-fn counted(folder: &Path) -> Result<Option<Counts>, JournalError> {
-    let book = Book::read(folder)?;
-    let Some((binding, session)) = book
-        .files
-        .iter()
-        .rev()
-        .find_map(|written| written.binding.as_ref().zip(written.session.as_ref()))
-    else {
-        return Ok(None);
-    };
-    let ended = book.files.last().and_then(|written| written.ending.as_ref());
-    Ok(Some(Counts {
-        study: binding.name.clone(),
-        shard: binding.shard.clone(),
-        jobs: session.jobs,
-        done: book.entries().len().min(session.jobs),
-        failed: book.entries().iter().filter(|entry| entry.failed).count(),
-        ended: ended.map(|ending| ending.how.clone()),
-        ..Counts::default()
-    }))
 }
 
 /// Replaces the file; where that fails the journal tells the same, more slowly.

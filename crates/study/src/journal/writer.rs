@@ -8,7 +8,7 @@ use super::progress::{self, Counts};
 use super::{Binding, EXTENSION, Ending, FOLDER, JobKey, JournalError, Session, fault, kind};
 use serde::Serialize;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -30,6 +30,8 @@ struct Shared {
     path: PathBuf,
     state: Mutex<State>,
     wake: Condvar,
+    /// One sync at a time: the system tells of a failed one only once.
+    syncs: Mutex<()>,
 }
 
 #[derive(Debug)]
@@ -38,8 +40,9 @@ struct State {
     counts: Counts,
     /// Bytes on the disk for sure.
     synced: u64,
-    /// Counts that were told.
+    /// Counts that were told; none are told of jobs solved apart.
     told: Counts,
+    apart: bool,
     broken: Option<String>,
     closing: bool,
 }
@@ -68,8 +71,10 @@ impl Writer {
         let files = fs::read_dir(&journal).map_err(error)?.count();
         let (path, file) = create(&journal)?;
         let mut bytes = Vec::new();
-        frame::append(&mut bytes, kind::BINDING, &json(binding));
-        frame::append(&mut bytes, kind::SESSION, &json(session));
+        for _ in 0..2 {
+            frame::append(&mut bytes, kind::BINDING, &json(binding));
+            frame::append(&mut bytes, kind::SESSION, &json(session));
+        }
         let begun = fault::write_all("journal.begin", &file, &bytes)
             .and_then(|()| fault::at("journal.begin.sync"))
             .and_then(|()| file.sync_all())
@@ -89,9 +94,12 @@ impl Writer {
                 .unwrap_or_default(),
             bytes: bytes.len() as u64,
             files: files + 1,
+            study_blake3: study_hash(session),
             ended: None,
         };
-        progress::replace(folder, &counts);
+        if !session.apart {
+            progress::replace(folder, &counts);
+        }
         let shared = Arc::new(Shared {
             folder: folder.to_owned(),
             path,
@@ -100,10 +108,12 @@ impl Writer {
                 synced: counts.bytes,
                 told: counts.clone(),
                 counts,
+                apart: session.apart,
                 broken: None,
                 closing: false,
             }),
             wake: Condvar::new(),
+            syncs: Mutex::new(()),
         });
         let own = Arc::clone(&shared);
         let syncing = std::thread::Builder::new()
@@ -168,8 +178,8 @@ impl Writer {
     /// # Errors
     /// [`JournalError`], after which nothing more is written.
     pub fn sync(&self) -> Result<(), JournalError> {
-        let state = self.shared.sync(self.shared.lock());
-        self.shared.whole(&state)
+        self.shared.sync();
+        self.shared.whole(&self.shared.lock())
     }
 
     /// Says how the process came to its end, and ends the file.
@@ -180,6 +190,15 @@ impl Writer {
         self.one(kind::ENDING, &json(ending))?;
         self.shared.lock().counts.ended = Some(ending.how.clone());
         self.sync()
+    }
+
+    /// The same of a process that is to end at once: nothing is waited for, and nothing is told.
+    pub fn end_at_once(&self, ending: &Ending) {
+        if let Ok(mut state) = self.shared.state.try_lock() {
+            let mut bytes = Vec::new();
+            frame::append(&mut bytes, kind::ENDING, &json(ending));
+            let _ = state.file.write_all(&bytes);
+        }
     }
 }
 
@@ -224,14 +243,17 @@ impl Shared {
     }
 
     /// Syncs what was written so far. A sync that failed may have lost what it was to save: nothing is written after it.
-    fn sync<'a>(&'a self, state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
-        if state.broken.is_some() || state.counts == state.told {
-            return state;
-        }
-        let (counts, file) = (state.counts.clone(), state.file.try_clone());
-        let due = counts.bytes > state.synced;
+    fn sync(&self) {
+        let _one = self.syncs.lock().unwrap_or_else(PoisonError::into_inner);
+        let (counts, file, due, apart) = {
+            let state = self.lock();
+            if state.broken.is_some() || state.counts == state.told {
+                return;
+            }
+            let due = state.counts.bytes > state.synced;
+            (state.counts.clone(), state.file.try_clone(), due, state.apart)
+        };
         // jobs go on while the disk works
-        drop(state);
         let synced = match file {
             Ok(file) if due => fault::at("journal.sync")
                 .and_then(|()| file.sync_data())
@@ -239,30 +261,36 @@ impl Shared {
             Ok(_) => Ok(()),
             Err(cause) => Err(cause),
         };
+        if synced.is_ok() && !apart {
+            progress::replace(&self.folder, &counts);
+        }
         let mut state = self.lock();
         match synced {
             Ok(()) => {
                 state.synced = state.synced.max(counts.bytes);
-                progress::replace(&self.folder, &counts);
                 state.told = counts;
             }
             Err(cause) => state.broken = Some(format!("sync: {cause}")),
         }
-        state
     }
 
     fn keep_syncing(&self) {
         let mut state = self.lock();
-        loop {
-            if state.closing {
-                drop(self.sync(state));
-                return;
-            }
+        while !state.closing {
             let waited = self.wake.wait_timeout(state, BETWEEN_SYNCS);
-            state = waited.map_or_else(|poisoned| poisoned.into_inner().0, |(state, _)| state);
-            state = self.sync(state);
+            drop(waited);
+            self.sync();
+            state = self.lock();
         }
+        drop(state);
+        self.sync();
     }
+}
+
+/// The hash of the document of the study that a session works on.
+pub(crate) fn study_hash(session: &Session) -> String {
+    let text = crate::document::canonical_text(&session.study);
+    blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
 /// A new file whose name sorts after those of files begun before.
@@ -271,7 +299,9 @@ fn create(journal: &Path) -> Result<(PathBuf, File), JournalError> {
         .duration_since(UNIX_EPOCH)
         .unwrap_or_default()
         .as_nanos();
-    let mut number = u64::try_from(now).unwrap_or(u64::MAX);
+    let mut number = u64::try_from(now)
+        .unwrap_or(u64::MAX)
+        .max(greatest(journal).map_or(0, |number| number + 1));
     loop {
         let name = format!("{number:016x}-{:08x}.{EXTENSION}", std::process::id());
         let path = journal.join(name);
@@ -281,6 +311,16 @@ fn create(journal: &Path) -> Result<(PathBuf, File), JournalError> {
             Err(cause) => return Err(JournalError::io(&path, cause)),
         }
     }
+}
+
+/// The greatest number of the files that are there: clocks step back, and machines do not agree on the time.
+fn greatest(journal: &Path) -> Option<u64> {
+    let names = fs::read_dir(journal)
+        .ok()?
+        .filter_map(Result::ok)
+        .map(|entry| entry.file_name());
+    let number = |name: std::ffi::OsString| u64::from_str_radix(name.to_str()?.get(..16)?, 16).ok();
+    names.filter_map(number).max()
 }
 
 fn json(value: &impl Serialize) -> Vec<u8> {

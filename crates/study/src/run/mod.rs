@@ -143,6 +143,10 @@ pub fn run<E: StdError + Send + 'static>(
             solved = Some(records);
         }
         watch.outcome()?;
+        if !has_sink {
+            // nobody has read the records that were there before
+            failures.count += watch.failed_before();
+        }
         Ok(Outcome {
             jobs: jobs.len(),
             ran: watch.ran(),

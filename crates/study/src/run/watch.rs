@@ -56,6 +56,11 @@ impl<'a> Watch<'a> {
         self.ledger.is_some_and(|ledger| ledger.knows(at))
     }
 
+    /// Recorded jobs that had failed.
+    pub(super) fn failed_before(&self) -> usize {
+        self.ledger.map_or(0, Ledger::failed)
+    }
+
     /// Keeps what was prepared.
     pub(super) fn prepared(&self, preparation: &Preparation) {
         self.note(self.ledger.map_or(Ok(()), |ledger| ledger.prepared(preparation)));

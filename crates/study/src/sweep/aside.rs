@@ -28,6 +28,12 @@ pub(super) fn set_aside(folder: &Path, book: Option<&Book>) -> Result<Option<Pat
         cause,
     };
     fs::create_dir_all(&to).map_err(|cause| error(&to, cause))?;
+    // the new entries first, so that nothing is moved into what may be gone
+    for dir in [folder, &folder.join(ASIDE)] {
+        fs::File::open(dir)
+            .and_then(|dir| dir.sync_all())
+            .map_err(|cause| error(dir, cause))?;
+    }
     for path in list {
         let target = to.join(path.file_name().unwrap_or_default());
         crate::journal::fault::at("aside.rename")

@@ -20,7 +20,7 @@ pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
     Binding {
         form: FORM,
         name: spec.name.clone(),
-        numerics: format!("{} {SOURCES}", crate::VERSION),
+        numerics: format!("{} {SOURCES} {}", crate::VERSION, env!("PONTOON_RUN_SOURCES")),
         instruction_path: instruction_path().to_owned(),
         shard: shard.map(|shard| shard.to_string()),
         bridge: to_value(&study.bridge.design),

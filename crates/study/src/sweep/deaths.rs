@@ -11,10 +11,11 @@ use super::solving::ending;
 use super::{SweepError, SweepSetting, Watcher};
 use crate::journal::{Book, JobKey, Writer};
 use crate::plan::Job;
+use crate::refusal::Refusal;
 use crate::run::{Ledger, RunError, Setting, Silent, Stop, run};
 use crate::spec::Study;
 use crate::tables::FolderError;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Deaths after which a job is solved in a process of its own.
 const SUSPECT: usize = 2;
@@ -27,39 +28,67 @@ pub type PassedOver = BTreeMap<usize, String>;
 pub struct Apart {
     /// Its number.
     pub process: u32,
-    /// Whether it died, that is, did not come to its own end.
-    pub died: bool,
+    /// How.
+    pub end: ApartEnd,
+}
+
+/// How a process ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ApartEnd {
+    /// By itself.
+    Own,
+    /// It died of what it did.
+    Died,
+    /// It was killed, by a person or for want of memory.
+    Killed,
 }
 
 /// Finds out about jobs that processes died with, and tells which ones are passed over.
-pub(super) fn settle(opened: &mut Opened, jobs: &[Job], watcher: &dyn Watcher) -> Result<PassedOver, SweepError> {
-    let mut over = PassedOver::new();
-    let mut before = Vec::new();
+pub(super) fn settle(
+    opened: &mut Opened,
+    study: &Study,
+    jobs: &[Job],
+    stop: &Stop,
+    watcher: &dyn Watcher,
+) -> Result<PassedOver, SweepError> {
+    let (mut over, mut killed, mut before) = (PassedOver::new(), BTreeSet::new(), Vec::new());
     loop {
         let suspects: Vec<&Job> = suspects(&opened.book, jobs)
             .filter(|job| !over.contains_key(&job.number))
             .collect();
         let numbers: Vec<usize> = suspects.iter().map(|job| job.number).collect();
-        if numbers.is_empty() || numbers == before {
+        if numbers.is_empty() || numbers == before || stop.is_asked() {
             return Ok(over);
         }
         let many = numbers.len();
         watcher.warn(&format!(
             "{many} jobs were under way when processes died twice: solved one by one in a process of their own"
         ));
-        let Some(apart) = watcher.solve_apart(&numbers) else {
+        let Some(apart) = watcher.solve_apart(&hash_of(study), &numbers) else {
             return Ok(over);
         };
         opened.read_again()?;
-        if apart.died {
-            let begun: Vec<JobKey> = opened.book.begun_apart(apart.process).copied().collect();
-            for job in suspects.iter().filter(|job| begun.contains(&job.key())) {
-                let reason = "the process died 3 times while this job ran, the last time with no other beside it";
-                over.insert(job.number, reason.to_owned());
-            }
-        }
         before = numbers;
+        if apart.end == ApartEnd::Own {
+            continue;
+        }
+        let begun: Vec<JobKey> = opened.book.begun_apart(apart.process).copied().collect();
+        for job in suspects.iter().filter(|job| begun.contains(&job.key())) {
+            // one kill may be anybody's
+            if apart.end == ApartEnd::Killed && killed.insert(job.number) {
+                before.clear();
+                continue;
+            }
+            let reason = "the process died 3 times while this job ran, the last time with no other beside it";
+            over.insert(job.number, reason.to_owned());
+        }
     }
+}
+
+/// What tells a study and its bridge from any other.
+pub(super) fn hash_of(study: &Study) -> String {
+    let both = study.text_and_hash().1 + &study.bridge_text_and_hash().1;
+    blake3::hash(both.as_bytes()).to_hex().to_string()
 }
 
 /// Jobs that processes died with too often.
@@ -73,14 +102,18 @@ fn suspects<'j>(book: &Book, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
 /// Solves jobs one by one, for a process that holds the folder and wants to know whether they end this one.
 ///
 /// # Errors
-/// [`SweepError`].
+/// [`SweepError::Refused`] where the study is not the one of that hash any more; any other [`SweepError`].
 pub fn run_apart(
     study: &Study,
     jobs: &[Job],
-    numbers: &[usize],
+    (of, numbers): (&str, &[usize]),
     setting: &SweepSetting,
     stop: &Stop,
 ) -> Result<(), SweepError> {
+    if hash_of(study) != of {
+        let allowed = "the study of the process that asks";
+        return Err(Refusal::new(&study.file, "", "a study that was changed meanwhile", allowed).into());
+    }
     let own: Vec<Job> = jobs
         .iter()
         .filter(|job| numbers.contains(&job.number))

@@ -4,14 +4,16 @@
 //! job. The merged folder is one that the whole study could have been run into: its journal holds the shards' files, and a
 //! study that has grown goes on from there.
 
-use super::bound::study_of;
-use super::opened::{self, instruction_paths, preparations, sessions};
+use super::bound::{binding, session};
+use super::deaths::hash_of as hash_of_study;
+use super::opened::{check_folder, instruction_paths, preparations, sessions, tell_damage};
+use super::solving::ending;
 use super::status::study_of_book;
-use super::{SweepError, SweepSetting, Swept};
-use crate::journal::{Book, FOLDER, JournalError, Lock, fault};
+use super::{SweepError, SweepSetting, Swept, Watcher};
+use crate::journal::{Book, EXTENSION, FOLDER, JournalError, Lock, Writer as JournalWriter, fault};
 use crate::plan::{Job, Jobs};
 use crate::refusal::Refusal;
-use crate::run::{JobRecord, Ledger, Progress, Setting, Stop, run};
+use crate::run::{JobRecord, Ledger, Setting, Stop, run};
 use crate::spec::Study;
 use crate::tables::{Folder, Manifest, Moment, Provenance, Writer, hash_of};
 use std::collections::BTreeSet;
@@ -37,13 +39,14 @@ impl Merged {
         let mut first: Option<(PathBuf, String)> = None;
         let mut study = None;
         for folder in folders {
+            check_folder(folder)?;
             let book = Book::read(folder)?;
-            let (of_folder, session) = study_of_book(&book, folder)?;
-            let hash = of_folder.text_and_hash().1;
+            let (of_folder, ..) = study_of_book(&book, folder)?;
+            let hash = hash_of_study(&of_folder);
             match &first {
                 None => {
                     first = Some((folder.clone(), hash));
-                    study = Some(study_of(session, folder)?);
+                    study = Some(of_folder);
                 }
                 Some((_, known)) if *known == hash => {}
                 Some((other, _)) => {
@@ -69,39 +72,36 @@ pub fn merge<'a>(
     folders: &[PathBuf],
     setting: &SweepSetting,
     stop: &Stop,
-    progress: &dyn Progress,
+    watcher: &dyn Watcher,
 ) -> Result<Swept<'a>, SweepError> {
     let Merged { study, jobs } = merged;
     crate::tables::check_own(&setting.out, &study.spec.name)?;
     let started = Moment::now();
     check_distinct(folders, &setting.out)?;
+    check_folder(&setting.out)?;
     // shards stand still while they are read
     let _locks = folders
         .iter()
         .map(|folder| Lock::take(folder))
         .collect::<Result<Vec<_>, _>>()?;
-    progress.stage("checking shards");
-    let now = super::bound::binding(study, None);
+    watcher.stage("checking shards");
+    let now = binding(study, None);
+    // what the folder of the results holds already counts like a shard
+    let old = setting.out.join(FOLDER).exists().then(|| setting.out.clone());
+    let folders: Vec<PathBuf> = old.into_iter().chain(folders.iter().cloned()).collect();
     let mut books = Vec::new();
-    for folder in folders {
+    for folder in &folders {
         let book = Book::read(folder)?;
         for written in &book.files {
-            let differences = written
-                .binding
-                .as_ref()
-                .map(|then| then.differences(&now))
-                .unwrap_or_default();
+            let differences = written.binding.as_ref().map(|then| then.differences(&now));
+            let differences = differences.unwrap_or_default();
             if !differences.is_empty() {
                 let found = format!("records of another study or program ({})", differences.join("; "));
-                return Err(Refusal::new(
-                    &written.path,
-                    "",
-                    found,
-                    "shards of one study by one version of the program",
-                )
-                .into());
+                let allowed = "shards of one study by one version of the program";
+                return Err(Refusal::new(&written.path, "", found, allowed).into());
             }
         }
+        tell_damage(&book, |what| watcher.warn(what));
         books.push(book);
     }
     let paths: BTreeSet<String> = books.iter().flat_map(instruction_paths).cloned().collect();
@@ -116,19 +116,13 @@ pub fn merge<'a>(
         )
         .into());
     }
+    let folders = folders.as_slice();
     check_complete(jobs, &books, folders)?;
     check_consistent(&books, folders)?;
     let folder = Folder::create(&setting.out)?;
     let _lock = Lock::take(&setting.out)?;
-    for then in opened::bindings(&Book::read(&setting.out)?) {
-        let differences = then.differences(&now);
-        if !differences.is_empty() {
-            let found = format!("records of another study ({})", differences.join("; "));
-            return Err(Refusal::new(&setting.out, "", found, "an empty folder, or one of this study").into());
-        }
-    }
-    progress.stage("journals");
-    for source in folders {
+    watcher.stage("journals");
+    for source in folders.iter().filter(|source| **source != setting.out) {
         copy_journal(source, &setting.out)?;
     }
     let book = Book::read(&setting.out)?;
@@ -149,12 +143,19 @@ pub fn merge<'a>(
         ledger: Some(ledger),
         ..Setting::default()
     };
-    let mut outcome = run(study, jobs, run_setting, stop, progress, Some(&mut sink)).map_err(SweepError::from)?;
+    let mut outcome = run(study, jobs, run_setting, stop, watcher, Some(&mut sink)).map_err(SweepError::from)?;
     for before in preparations(&book) {
         outcome.preparation.add(before);
     }
     let mut manifest = Manifest::new(study, jobs, &outcome, started, Moment::now(), &provenance);
     manifest.sessions = sessions(&book);
+    // the journal's last word is the whole study's
+    let asked = session(study, setting, setting.threads, jobs.len(), jobs.len(), false);
+    let last = Book::newest(&book).filter(|(then, of)| then.shard.is_none() && of.study == asked.study);
+    if last.is_none() {
+        let writer = JournalWriter::begin(&setting.out, &now, &asked, outcome.failures.count)?;
+        writer.end(&ending("complete".to_owned(), 0.0, 0.0))?;
+    }
     let summary = tables.finish(manifest)?;
     Ok(Swept {
         outcome,
@@ -248,6 +249,9 @@ fn copy_journal(from: &Path, to: &Path) -> Result<(), SweepError> {
     fs::create_dir_all(&to).map_err(|cause| error(&to, cause))?;
     for entry in fs::read_dir(&from).map_err(|cause| error(&from, cause))? {
         let source = entry.map_err(|cause| error(&from, cause))?.path();
+        if source.extension().is_none_or(|e| e != EXTENSION) {
+            continue;
+        }
         let target = to.join(source.file_name().unwrap_or_default());
         if same_content(&source, &target) {
             continue;

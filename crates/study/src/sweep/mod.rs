@@ -23,10 +23,11 @@ mod opened;
 mod solving;
 mod status;
 
-pub use deaths::{Apart, run_apart};
+pub use deaths::{Apart, ApartEnd, run_apart};
 pub use forecast::{Forecast, Found, forecast};
 pub use merge::{Merged, merge};
 pub use opened::SessionNote;
+pub use solving::ended_now;
 pub use status::{Explanation, Standings, explain, standings};
 
 use crate::Refusal;
@@ -55,7 +56,7 @@ pub struct SweepSetting {
     pub cache: Option<Cache>,
     /// The share of the jobs that is asked for; none: all. A share leaves a journal and no tables.
     pub shard: Option<Shard>,
-    /// Older results that this study cannot go on from are moved aside.
+    /// Results that the folder holds are moved aside, whatever they are.
     pub fresh: bool,
     /// Records of other instruction paths are of use.
     pub any_instructions: bool,
@@ -75,7 +76,7 @@ pub enum SweepError {
     #[error(transparent)]
     Journal(#[from] JournalError),
     /// A table or the folder could not be written.
-    #[error("results not written: {0}")]
+    #[error("results not written")]
     Folder(#[from] FolderError),
     /// No threads.
     #[error(transparent)]
@@ -146,8 +147,9 @@ pub trait Watcher: Progress {
     /// The journal's file of this process has begun.
     fn writing(&self, journal: &Arc<JournalWriter>);
 
-    /// Solves jobs, by their numbers, in a process of their own, see [`run_apart`]; none where that cannot be done.
-    fn solve_apart(&self, jobs: &[usize]) -> Option<Apart>;
+    /// Solves jobs of a study of that hash, by their numbers, in a process of their own, see [`run_apart`]; none where that
+    /// cannot be done. A stop that is asked for ends the process.
+    fn solve_apart(&self, study: &str, jobs: &[usize]) -> Option<Apart>;
 }
 
 /// Runs what is missing of a study, and writes its tables.
@@ -166,8 +168,12 @@ pub fn sweep<'a>(
     let share = |shard: Shard| shard.deal(jobs).into_iter().map(|at| jobs[at].clone()).collect();
     let own: Option<Vec<Job>> = setting.shard.map(share);
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);
-    let passed_over = deaths::settle(&mut opened, asked, watcher)?;
+    let passed_over = deaths::settle(&mut opened, study, asked, stop, watcher)?;
     let ledger = Ledger::new(&opened.book, asked);
+    opened::tell_damage(&opened.book, |what| match ledger.known() < asked.len() {
+        true => watcher.warn(what),
+        false => watcher.note(what),
+    });
     let paths = opened.instruction_paths(ledger.known() < asked.len());
     let solving = Solving {
         study,

@@ -49,7 +49,10 @@ pub struct SessionNote {
 impl Opened {
     /// Takes the folder: makes it where it is missing, locks it, reads its journal, and refuses what is another study's.
     pub(super) fn take(study: &Study, setting: &SweepSetting, watcher: &dyn Watcher) -> Result<Self, SweepError> {
-        crate::tables::check_own(&setting.out, &study.spec.name)?;
+        check_folder(&setting.out)?;
+        if !setting.fresh {
+            crate::tables::check_own(&setting.out, &study.spec.name)?;
+        }
         let folder = Folder::create(&setting.out)?;
         let lock = Lock::take(&setting.out)?;
         let binding = binding(study, setting.shard);
@@ -65,18 +68,20 @@ impl Opened {
         if book.files.is_empty() {
             refuse_without_journal(&setting.out)?;
         }
-        for (path, damage) in book.damages() {
-            watcher.warn(&words(path, damage));
-        }
-        for written in book.files.iter().filter(|written| written.binding.is_none()) {
-            let path = written.path.display();
-            watcher.warn(&format!("{path}: begins with no whole frame; nothing of it is used"));
-        }
         Ok(Self {
             folder,
             book,
             binding,
             _lock: lock,
+        })
+    }
+
+    /// Whether the last process that worked here had this study and was asked for the same.
+    pub(super) fn is_of(&self, study: &Study) -> bool {
+        self.book.newest().is_some_and(|(then, session)| {
+            then.shard == self.binding.shard
+                && session.study == study.document
+                && session.bridge == study.bridge.document
         })
     }
 
@@ -150,6 +155,25 @@ pub(super) fn sessions(book: &Book) -> Vec<SessionNote> {
     known.map(note).collect()
 }
 
+/// Refuses what is there and is no folder.
+pub(super) fn check_folder(path: &Path) -> Result<(), Refusal> {
+    if path.exists() && !path.is_dir() {
+        return Err(Refusal::new(path, "", "a file", "a folder of results"));
+    }
+    Ok(())
+}
+
+/// Tells what was passed over in a journal.
+pub(super) fn tell_damage(book: &Book, tell: impl Fn(&str)) {
+    for (path, damage) in book.damages() {
+        tell(&words(path, damage));
+    }
+    for written in book.files.iter().filter(|written| written.binding.is_none()) {
+        let path = written.path.display();
+        tell(&format!("{path}: begins with no whole frame; nothing of it is used"));
+    }
+}
+
 /// Refuses a journal whose records are of no use to a study.
 fn check(book: &Book, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
     for written in &book.files {
@@ -206,7 +230,7 @@ fn words(path: &Path, damage: &Damage) -> String {
         (false, _) => "damaged",
     };
     format!(
-        "{}: {what}, {} bytes from byte {} are passed over; jobs that stood there run again",
+        "{}: {what}, {} bytes from byte {} are passed over; jobs that stood there alone run again",
         path.display(),
         damage.bytes,
         damage.from

@@ -40,9 +40,12 @@ impl Solving<'_> {
         sink: Option<&mut Sink<'_, FolderError>>,
     ) -> Result<Solved, SweepError> {
         let (known, failed) = (ledger.known(), ledger.failed());
-        // a share without jobs has a journal too, so that it can be merged
-        let writer = if known < self.jobs.len() || self.opened.book.files.is_empty() {
+        let missing = known < self.jobs.len();
+        if missing {
             canary::sing()?;
+        }
+        // a study that has shrunk, and a share without jobs, have their word in the journal too
+        let writer = if missing || !self.opened.is_of(self.study) {
             let threads = self.setting.threads;
             let session = session(self.study, self.setting, threads, self.jobs.len(), known, false);
             let folder = self.opened.folder.path();
@@ -97,7 +100,12 @@ impl Solved {
     }
 }
 
-/// A process that comes to its own end now.
+/// A process that comes to its own end now, and how.
+pub fn ended_now(how: &str) -> Ending {
+    ending(how.to_owned(), 0.0, 0.0)
+}
+
+/// The same with what it took.
 pub(super) fn ending(how: String, offline_s: f64, jobs_s: f64) -> Ending {
     Ending {
         finished: Moment::now().text(),

@@ -4,7 +4,8 @@
 
 use super::SweepError;
 use super::bound::study_of;
-use crate::journal::{Book, Session, Standing};
+use super::opened::check_folder;
+use crate::journal::{Binding, Book, Lock, Session, Standing, study_hash};
 use crate::plan::{Job, Jobs, Shard};
 use crate::refusal::Refusal;
 use crate::run::Ledger;
@@ -44,7 +45,10 @@ pub fn standings(folders: &[PathBuf]) -> Result<Standings, SweepError> {
         shards_missing: Vec::new(),
     };
     for folder in folders {
-        let standing = Standing::of(folder)?.ok_or_else(|| no_journal(folder))?;
+        let standing = match Standing::told(folder) {
+            Some(told) => told,
+            None => counted(folder)?,
+        };
         all.jobs += standing.jobs;
         all.done += standing.done;
         all.failed += standing.failed;
@@ -56,11 +60,44 @@ pub fn standings(folders: &[PathBuf]) -> Result<Standings, SweepError> {
         .iter()
         .filter_map(|(_, standing)| standing.shard.as_ref()?.parse().ok())
         .collect();
-    if let Some(of) = shards.first().map(|shard| shard.of) {
+    let only_shares = shards.len() == all.folders.len();
+    if let Some(of) = shards.first().map(|shard| shard.of).filter(|_| only_shares) {
         let given = |number| shards.contains(&Shard { number, of });
         all.shards_missing = (0..of).filter(|k| !given(*k)).map(|k| format!("{k}/{of}")).collect();
     }
     Ok(all)
+}
+
+/// How far a run has come by its journal and study alone.
+fn counted(folder: &Path) -> Result<Standing, SweepError> {
+    check_folder(folder)?;
+    let book = Book::read(folder)?;
+    let (study, binding, session) = study_of_book(&book, folder)?;
+    let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
+    let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
+    let share = |shard: Shard| shard.deal(&jobs).into_iter().map(|at| jobs[at].clone()).collect();
+    let own: Option<Vec<Job>> = shard.map(share);
+    let asked = own.as_deref().unwrap_or(&jobs);
+    let ledger = Ledger::new(&book, asked);
+    let ended = book
+        .files
+        .iter()
+        .rev()
+        .find(|w| w.session.as_ref().is_some_and(|s| !s.apart));
+    let ended = ended
+        .and_then(|written| written.ending.as_ref())
+        .map(|ending| ending.how.as_str());
+    let standing = Standing {
+        study: study.spec.name.clone(),
+        shard: binding.shard.clone(),
+        jobs: asked.len(),
+        done: ledger.known(),
+        failed: ledger.failed(),
+        missing: asked.len() - ledger.known(),
+        running: false,
+        state: String::new(),
+    };
+    Ok(standing.with_state(folder, &study_hash(session), ended))
 }
 
 fn no_journal(folder: &Path) -> Refusal {
@@ -106,8 +143,9 @@ pub struct Explanation {
 /// # Errors
 /// [`SweepError`].
 pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> {
+    check_folder(folder)?;
     let book = Book::read(folder)?;
-    let (study, session) = study_of_book(&book, folder)?;
+    let (study, binding, _) = study_of_book(&book, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let Some(job) = jobs.get(number) else {
         let allowed = format!("0 to {}", jobs.len().saturating_sub(1));
@@ -116,11 +154,13 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
     let key = job.key();
     let axes = crate::tables::axis_names(&study);
     let axes = axes.into_iter().map(|name| (name.clone(), job.column(&name))).collect();
-    let shard: Option<Shard> = book
-        .files
-        .iter()
-        .find_map(|w| w.binding.as_ref()?.shard.as_ref()?.parse().ok());
-    let deaths = book.deaths().get(&key).copied().unwrap_or_default();
+    let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
+    let running = Lock::is_held(folder);
+    let deaths = if running {
+        book.deaths_before(&key)
+    } else {
+        book.deaths().get(&key).copied().unwrap_or_default()
+    };
     let mut told = Explanation {
         job: number,
         key: key.to_string(),
@@ -154,18 +194,20 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
             let elsewhere = shard.filter(|shard| !shard.deal(&jobs).contains(&number));
             told.why = match (elsewhere, deaths) {
                 (Some(shard), _) => format!("not of the share {shard}: another one runs it"),
+                (None, _) if running => "not recorded: a process is at work here and will come to it".to_owned(),
                 (None, 0) => "not recorded: the next run of the study runs it".to_owned(),
                 (None, n) => format!("under way in {n} processes that died: the next run of the study runs it again"),
             };
         }
     }
-    let _ = session;
     Ok(told)
 }
 
-/// The study of a folder's journal as its last process had it.
-pub(super) fn study_of_book<'a>(book: &'a Book, folder: &Path) -> Result<(Study, &'a Session), SweepError> {
-    let session = book.files.iter().rev().find_map(|written| written.session.as_ref());
-    let session = session.ok_or_else(|| no_journal(folder))?;
-    Ok((study_of(session, folder)?, session))
+/// The study of a folder's journal as its last process had it, and that process.
+pub(super) fn study_of_book<'a>(
+    book: &'a Book,
+    folder: &Path,
+) -> Result<(Study, &'a Binding, &'a Session), SweepError> {
+    let (binding, session) = book.newest().ok_or_else(|| no_journal(folder))?;
+    Ok((study_of(session, folder)?, binding, session))
 }

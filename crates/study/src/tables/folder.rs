@@ -101,6 +101,25 @@ impl Folder {
         }
     }
 
+    /// Removes what runs that died had begun; that something of it stays where removing fails changes nothing.
+    pub(super) fn remove_partials(&self) {
+        for name in TableName::ALL.map(TableName::file) {
+            let _ = fs::remove_file(self.partial(&name));
+        }
+    }
+
+    /// Brings removed and renamed files to the disk.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub(super) fn sync(&self) -> Result<(), FolderError> {
+        let synced = File::open(&self.path).and_then(|folder| folder.sync_all());
+        synced.map_err(|cause| FolderError {
+            path: self.path.clone(),
+            cause,
+        })
+    }
+
     /// Removes a file that an earlier run left, whole or begun, and this one does not write.
     ///
     /// # Errors

@@ -206,7 +206,7 @@ pub fn check_own(folder: &Path, name: &str) -> Result<(), Refusal> {
         .and_then(|bytes| serde_json::from_slice(&bytes).ok());
     match manifest.as_ref().and_then(|manifest| manifest["name"].as_str()) {
         Some(other) if other != name => {
-            let allowed = format!("a folder without results, or with those of '{name}'");
+            let allowed = format!("a folder without results, or with those of '{name}'; --fresh moves them aside");
             Err(Refusal::new(
                 &file,
                 "name",

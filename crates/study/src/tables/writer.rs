@@ -60,6 +60,7 @@ impl<'a> Writer<'a> {
     pub fn of_whole(study: &Study, jobs: &'a [Job], folder: &Folder, provenance: &Provenance) -> Option<Self> {
         let layout = Layout::new(study, jobs);
         let names: Vec<String> = layout.tables().map(TableName::file).collect();
+        folder.remove_partials();
         manifest::is_whole(folder.path(), study, jobs.len(), &names, provenance).then(|| Self {
             folder: folder.clone(),
             jobs,
@@ -108,6 +109,7 @@ impl<'a> Writer<'a> {
                 self.folder.remove(&name)?;
             }
         }
+        self.folder.sync()?;
         ended.into_iter().try_for_each(|partial| partial.place())?;
         self.folder.write(SUMMARY, |file| summary.write_csv(file))?;
         self.folder

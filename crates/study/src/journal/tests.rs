@@ -1,1 +1,0 @@
-//! Tests of journals as a whole.
