@@ -1,0 +1,10 @@
+//! Any bytes as a reference: `pontoon_fuzz::reference`.
+#![no_main]
+
+use std::sync::LazyLock;
+use tempfile::TempDir;
+
+/// The folder of this process.
+static FOLDER: LazyLock<TempDir> = LazyLock::new(pontoon_fuzz::folder);
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| pontoon_fuzz::reference(FOLDER.path(), bytes));
