@@ -236,38 +236,42 @@ mod tests {
     use super::*;
     use crate::module::{LongitudinalWalls, Material, MeshDesign, TransverseWalls};
 
+    fn module(along: usize, between: usize, over: usize, walls: &[f64]) -> ModuleDesign {
+        ModuleDesign {
+            length_m: 6.0,
+            breadth_m: 8.0,
+            depth_m: 1.0,
+            deck_thickness_m: 0.003,
+            bottom_thickness_m: 0.003,
+            side_thickness_m: 0.003,
+            end_thickness_m: 0.003,
+            longitudinal_walls: LongitudinalWalls {
+                thickness_m: 0.002,
+                y_m: walls.to_vec(),
+            },
+            transverse_walls: TransverseWalls {
+                thickness_m: 0.002,
+                x_m: walls.iter().map(|w| 1.0 + w.abs()).collect(),
+            },
+            stiffeners: crate::module::Stiffeners::default(),
+            material: Material {
+                youngs_modulus_pa: 2e11,
+                poissons_ratio: 0.3,
+                density_kg_m3: 7850.0,
+            },
+            mesh: MeshDesign {
+                elements_along: along,
+                elements_between_lines: between,
+                elements_over_depth: over,
+            },
+        }
+    }
+
     #[test]
     fn a_mesh_has_the_size_that_was_counted() {
         for (along, between, over, walls) in [(1, 1, 1, vec![]), (4, 2, 3, vec![0.5, 1.5]), (3, 1, 2, vec![0.0, -4.0])]
         {
-            let design = ModuleDesign {
-                length_m: 6.0,
-                breadth_m: 8.0,
-                depth_m: 1.0,
-                deck_thickness_m: 0.003,
-                bottom_thickness_m: 0.003,
-                side_thickness_m: 0.003,
-                end_thickness_m: 0.003,
-                longitudinal_walls: LongitudinalWalls {
-                    thickness_m: 0.002,
-                    y_m: walls.clone(),
-                },
-                transverse_walls: TransverseWalls {
-                    thickness_m: 0.002,
-                    x_m: walls.iter().map(|w| 1.0 + w.abs()).collect(),
-                },
-                stiffeners: crate::module::Stiffeners::default(),
-                material: Material {
-                    youngs_modulus_pa: 2e11,
-                    poissons_ratio: 0.3,
-                    density_kg_m3: 7850.0,
-                },
-                mesh: MeshDesign {
-                    elements_along: along,
-                    elements_between_lines: between,
-                    elements_over_depth: over,
-                },
-            };
+            let design = module(along, between, over, &walls);
             let made = mesh_module(&design, &[1.25]);
             let size = mesh_size(&design, &[1.25]);
             assert_eq!(size.dofs, made.mesh.dofs());
@@ -275,6 +279,25 @@ mod tests {
                 (size.lines_along, size.lines_across),
                 (made.grid.x.len(), made.grid.y.len())
             );
+        }
+    }
+
+    #[test]
+    fn a_module_whose_ends_are_one_place_is_refused() {
+        let module = module(1, 1, 1, &[]);
+        assert_eq!(module.check(), Ok(()));
+        for (key, length_m, breadth_m, depth_m) in [
+            ("length_m", 1e-6, 8.0, 1.0),
+            ("breadth_m", 6.0, 2e-6, 1.0),
+            ("depth_m", 6.0, 8.0, 1e-300),
+        ] {
+            let flat = ModuleDesign {
+                length_m,
+                breadth_m,
+                depth_m,
+                ..module.clone()
+            };
+            assert_eq!(flat.check().unwrap_err().key, key);
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows which numbers describe the box and refuses those that cannot. Does not know water, hinges or connectors.
 
-use crate::input::{InvalidInput, apart, not_negative, positive, within};
+use crate::input::{InvalidInput, SAME_PLACE_M, apart, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -114,9 +114,20 @@ impl ModuleDesign {
     /// # Errors
     /// [`InvalidInput`] with the key's path.
     pub fn check(&self) -> Result<(), InvalidInput> {
-        positive("length_m", self.length_m)?;
-        positive("breadth_m", self.breadth_m)?;
-        positive("depth_m", self.depth_m)?;
+        for (key, side_m) in [
+            ("length_m", self.length_m),
+            ("breadth_m", self.breadth_m),
+            ("depth_m", self.depth_m),
+        ] {
+            // of a shorter side both ends, or the centre line and an end, would be one place
+            if positive(key, side_m)? <= 4.0 * SAME_PLACE_M {
+                return Err(InvalidInput::new(
+                    key,
+                    side_m,
+                    format!("a number above {}", 4.0 * SAME_PLACE_M),
+                ));
+            }
+        }
         positive("deck_thickness_m", self.deck_thickness_m)?;
         positive("bottom_thickness_m", self.bottom_thickness_m)?;
         positive("side_thickness_m", self.side_thickness_m)?;
