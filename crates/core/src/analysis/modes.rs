@@ -4,7 +4,7 @@
 
 use super::AnalysisError;
 use crate::bridge::Bridge;
-use crate::fem::{EigenPairs, SymmetricMatrix, lowest_modes};
+use crate::fem::{EigenPairs, SparseRow, SymmetricMatrix, lowest_modes};
 pub use crate::scheme::Rayleigh;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -64,6 +64,36 @@ pub fn modes(bridge: &Bridge, count: usize) -> Result<(Vec<Mode>, EigenPairs), A
         })
         .collect();
     Ok((modes, pairs))
+}
+
+/// Corners of a module in the order of [`shapes`].
+pub const CORNERS: usize = 8;
+
+/// A named mode and the motion of the corners of the modules.
+pub type Shape = (Mode, Vec<[f64; 3]>);
+
+/// The lowest `count` modes as [`modes`] finds them, each with the motion `[along, across, up]` of the corners of its
+/// modules: module after module, of each the bottom's corners and then the deck's, in the order left end at -y, right end
+/// at -y, right end at +y, left end at +y. The largest component of a shape is 1. Verified by `tests/tests/shapes.rs`.
+///
+/// # Errors
+/// [`AnalysisError::Factor`].
+pub fn shapes(bridge: &Bridge, count: usize) -> Result<Vec<Shape>, AnalysisError> {
+    let (modes, pairs) = modes(bridge, count)?;
+    let of = |(j, mode): (usize, Mode)| {
+        let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
+        let motion = |rows: &[SparseRow; 3]| [0, 1, 2].map(|direction: usize| rows[direction].dot(&shape));
+        let mut corners: Vec<[f64; 3]> = bridge.corners.iter().map(motion).collect();
+        let largest = corners
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, &x| if x.abs() > f64::abs(most) { x } else { most });
+        if largest != 0.0 {
+            corners.iter_mut().flatten().for_each(|x| *x /= largest);
+        }
+        (mode, corners)
+    };
+    Ok(modes.into_iter().enumerate().map(of).collect())
 }
 
 /// Motions that nothing restores share one eigenvalue, so that any mixture of them is a mode: where there are three they

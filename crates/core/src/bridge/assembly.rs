@@ -43,6 +43,8 @@ pub struct Bridge {
     pub(crate) deck_corners: Vec<SparseRow>,
     /// See `deck_corners`.
     pub(crate) bottom_corners: Vec<SparseRow>,
+    /// Motion along, across and up of each module's eight corners, see [`crate::analysis::modes::shapes`].
+    pub(crate) corners: Vec<[SparseRow; 3]>,
     /// Roll of the module ends [rad per unit dof].
     pub(crate) rolls: Vec<SparseRow>,
     /// z across the deck at each line along, for telling shapes apart (the bottom's plates carry the water, and shapes of
@@ -122,6 +124,15 @@ impl Bridge {
                 .map(|((j, ix), iy)| of(j, if deck { grid.deck(ix, iy) } else { grid.bottom(ix, iy) }, Z))
                 .collect()
         };
+        let corners = (0..design.modules)
+            .flat_map(|j| {
+                let around = [(0, 0), (nx - 1, 0), (nx - 1, ny - 1), (0, ny - 1)];
+                let bottom = around.map(|(ix, iy)| grid.bottom(ix, iy));
+                let deck = around.map(|(ix, iy)| grid.deck(ix, iy));
+                bottom.into_iter().chain(deck).map(move |node| (j, node))
+            })
+            .map(|(j, node)| [X, Y, Z].map(|direction| of(j, node, direction)))
+            .collect();
         let rolls = all_ends()
             .map(|(j, ix)| {
                 let (right, left) = (of(j, grid.deck(ix, 0), Z), of(j, grid.deck(ix, ny - 1), Z));
@@ -170,6 +181,7 @@ impl Bridge {
             edges,
             deck_corners: corner(true),
             bottom_corners: corner(false),
+            corners,
             rolls,
             sections,
             hinge_lines,
