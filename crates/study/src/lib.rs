@@ -13,6 +13,7 @@
 //! | [`sweep`] | a study run into its folder: journal, resume, shards, tables |
 //! | [`reference`] | the reference file: checks with their source |
 //! | [`compare`] | results held against a reference, or against older results |
+//! | [`report`] | what a page tells of results |
 //! | [`calibrate`] | a bridge's numbers identified from the checks of references |
 //! | [`modes`] | natural frequencies of a bridge file |
 //! | [`schema`] | the JSON Schema of what a person writes |
@@ -28,6 +29,7 @@ pub mod modes;
 pub mod plan;
 pub mod reference;
 pub mod refusal;
+pub mod report;
 pub mod run;
 pub mod schema;
 pub mod spec;

@@ -188,6 +188,34 @@ pub(crate) fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -
     (records, prepared)
 }
 
+/// Solves crossings of a study once more with all their histories, some at a time, and hands their records on: no record is
+/// kept. What they share is taken from `cache` where it is there.
+pub(crate) fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: impl FnMut(&Job, JobRecord)) {
+    let mut whole: BTreeMap<usize, Study> = BTreeMap::new();
+    for job in jobs {
+        let modules = job.bridge.design.modules;
+        whole.entry(modules).or_insert_with(|| {
+            let mut study = study.clone();
+            study.spec.record.histories.positions = (1..=modules + 1).collect();
+            study.spec.record.histories.joints = (2..=modules).collect();
+            study
+        });
+    }
+    let bench = Bench::prepare(jobs, &PreparedModules::default(), cache, &Stop::default(), &Silent);
+    for some in jobs.chunks(REPLAYED_TOGETHER) {
+        let pairs: Vec<(&Study, &Job)> = some
+            .iter()
+            .filter_map(|job| Some((whole.get(&job.bridge.design.modules)?, *job)))
+            .collect();
+        for (job, record) in some.iter().zip(batch::solve(&pairs, false, &bench, &Untold)) {
+            take(job, record);
+        }
+    }
+}
+
+/// Crossings whose whole histories are in memory together.
+const REPLAYED_TOGETHER: usize = 64;
+
 /// What a run prepared.
 pub(crate) struct Prepared {
     /// The modules.

@@ -23,6 +23,9 @@ pub struct StudySpec {
     /// Name of the study and of its folder of results: letters, digits, `_`, `-` and `.`, not beginning with `.`.
     #[schemars(regex(pattern = r"^[A-Za-z0-9_-][A-Za-z0-9_.-]*$"))]
     pub name: String,
+    /// What the study asks, in a sentence, for whoever reads its report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub question: Option<String>,
     /// Path of the bridge file, relative to the study file.
     pub bridge: String,
     /// The vehicle; a single footprint of 3.35 m on two tracks where absent.

@@ -11,6 +11,7 @@
 //! | `forecast` | what a study will take, and what of it is done |
 //! | `merge` | shards put together |
 //! | `opened` | a folder of results taken: lock, journal, whether it is this study's |
+//! | `so_far` | what a journal holds of a study that is not done |
 //! | `solving` | what is missing, solved into the journal |
 //! | `status` | what is done, missing, failed; why a job ran or will run |
 
@@ -20,6 +21,7 @@ mod deaths;
 mod forecast;
 mod merge;
 mod opened;
+mod so_far;
 mod solving;
 mod status;
 
@@ -27,6 +29,7 @@ pub use deaths::{Apart, ApartEnd, run_apart};
 pub use forecast::{Forecast, Found, forecast};
 pub use merge::{Merged, merge};
 pub use opened::SessionNote;
+pub use so_far::{SoFar, so_far};
 pub use solving::ended_now;
 pub use status::{Explanation, Standings, explain, standings};
 

@@ -46,6 +46,8 @@ pub struct Results {
     pub study: Value,
     /// The bridge's document, before the axes.
     pub bridge: Value,
+    /// What its manifest says; null of a run that has just ended, or has not.
+    pub manifest: Value,
     tables: BTreeMap<TableName, Table>,
     jobs: Table,
     row_of_job: HashMap<u64, usize>,
@@ -126,13 +128,10 @@ impl Results {
                 &format!("{} rows of jobs where {count:?} ran", jobs.rows()),
             ));
         }
-        Ok(Self::new(
-            name,
-            folder,
-            (manifest["study"].clone(), manifest["bridge"].clone()),
-            jobs,
-            tables,
-        ))
+        let documents = (manifest["study"].clone(), manifest["bridge"].clone());
+        let mut results = Self::new(name, folder, documents, jobs, tables);
+        results.manifest = manifest;
+        Ok(results)
     }
 
     /// The tables of a run that has just ended.
@@ -166,6 +165,7 @@ impl Results {
             place: place.to_owned(),
             study,
             bridge,
+            manifest: Value::Null,
             tables,
             jobs,
             row_of_job,

@@ -165,6 +165,22 @@ impl Table {
         }
     }
 
+    /// The numbers of a column; none where it holds others or is not there.
+    pub fn numbers(&self, column: &str) -> Option<&[Option<f64>]> {
+        match self.cells(column)? {
+            Cells::Numbers(list) => Some(list),
+            _ => None,
+        }
+    }
+
+    /// The words of a column; none where it holds others or is not there.
+    pub fn word_cells(&self, column: &str) -> Option<&[Option<String>]> {
+        match self.cells(column)? {
+            Cells::Words(list) => Some(list),
+            _ => None,
+        }
+    }
+
     /// A cell; null where it is empty or not there.
     pub fn cell(&self, column: &str, row: usize) -> Value {
         let cell = self.cells(column).and_then(|cells| match cells {

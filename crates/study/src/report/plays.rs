@@ -1,0 +1,221 @@
+//! Crossings that a page can play: solved once more with the motion of every position and the force of every joint.
+//!
+//! Knows which jobs are worth it and how many frames an eye needs. Does not know how a crossing is solved.
+
+use super::cells::Measure;
+use super::packed::{Packed, Scaled};
+use super::rows::severest;
+use crate::plan::{Job, Task};
+use crate::run::{Cache, HistoryRows, JobRecord, replay};
+use crate::spec::{ModelSpec, Study};
+use crate::tables::Table;
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Frames of a crossing, evenly spaced, beside those of its peaks.
+const FRAMES: usize = 320;
+
+/// Crossings by the reference solver that are solved again: each takes as long as hundreds by the operator.
+const MOST_INTEGRATED: usize = 4;
+
+/// Time steps beyond which a crossing is too long to be solved again.
+const MOST_STEPS: usize = 400_000;
+
+/// Axle of a vehicle, as a page draws it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AxlePatch {
+    /// Distance of the patch's centre behind the vehicle's front [m].
+    pub behind_front_m: f64,
+    /// Share of the weight.
+    pub share: f64,
+    /// Length of the patch [m].
+    pub patch_length_m: f64,
+}
+
+/// A crossing to be played.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Play {
+    /// The job.
+    pub job: u32,
+    /// Number of frames.
+    pub frames: usize,
+    /// Time of each frame [s].
+    pub time_s: Packed,
+    /// Place of the vehicle's front [m].
+    pub front_x_m: Packed,
+    /// Its axles.
+    pub axles: Vec<AxlePatch>,
+    /// Its weight [N].
+    pub load_n: f64,
+    /// Deflection of each position, frame after frame, positive downward [m].
+    pub deflection_m: Scaled,
+    /// Force of each joint, its connectors added, tension positive [N].
+    pub force_n: Scaled,
+    /// State of each joint: 0 open, 1 in compression, 2 in tension, by the sum of its connectors.
+    pub state: Packed,
+}
+
+/// Crossings to be played, and what a reader must know of them.
+#[derive(Debug, Default)]
+pub(super) struct Played {
+    pub plays: Vec<Play>,
+    pub notes: Vec<String>,
+}
+
+/// Plays of at most `most` of the jobs in `rows` of the table of jobs.
+pub(super) fn plays(
+    study: &Study,
+    all: &[Job],
+    jobs: &Table,
+    (measures, rows): (&[Measure], &[usize]),
+    most: usize,
+    cache: Option<&Cache>,
+) -> Played {
+    let crossing = |row: &usize| {
+        let job = all.get(super::job(jobs, *row) as usize)?;
+        (matches!(job.task, Task::Crossing { .. }) && !super::failed(jobs, *row)).then_some((*row, job))
+    };
+    let able: Vec<(usize, &Job)> = rows.iter().filter_map(crossing).collect();
+    let light = |job: &Job| job.steps() <= MOST_STEPS && job.analysis.spec.model == ModelSpec::SuperElement;
+    let fit: Vec<(usize, &Job)> = able.iter().copied().filter(|(_, job)| light(job)).collect();
+    let mut chosen: BTreeSet<usize> = choose(jobs, measures, &fit, most);
+    let mut integrated = 0;
+    chosen.retain(|&at| {
+        integrated += usize::from(!fit[at].1.by_operator());
+        fit[at].1.by_operator() || integrated <= MOST_INTEGRATED
+    });
+    let mut played = Played::default();
+    if chosen.len() < able.len() && most > 0 {
+        played.notes.push(format!(
+            "{} of {} crossings can be played: the ones with the largest values and an even sample; full models and very long crossings cannot.",
+            chosen.len(),
+            able.len()
+        ));
+    }
+    let list: Vec<&Job> = chosen.iter().map(|&at| fit[at].1).collect();
+    let mut furthest = 0.0_f64;
+    replay(study, &list, cache, |job, record| {
+        let row = fit
+            .iter()
+            .find(|(_, other)| other.number == job.number)
+            .map(|(row, _)| *row);
+        let told = row.and_then(|row| jobs.number("peak_deflection_m", row));
+        if let (Some(told), Some(now)) = (told, record.summary.peak_deflection_m)
+            && told > 0.0
+        {
+            furthest = furthest.max((now - told).abs() / told);
+        }
+        played.plays.extend(play(job, &record));
+    });
+    if furthest > 0.0 {
+        played.notes.push(format!(
+            "Crossings that are played here were solved again by this program ({}); their peak deflections are up to {:.1e} of themselves off the tables'.",
+            crate::VERSION,
+            furthest
+        ));
+    }
+    played
+}
+
+/// Places in `fit` of the jobs to be played: all where they are few, else those with the largest values and an even sample.
+fn choose(jobs: &Table, measures: &[Measure], fit: &[(usize, &Job)], most: usize) -> BTreeSet<usize> {
+    if fit.len() <= most {
+        return (0..fit.len()).collect();
+    }
+    let mut chosen = BTreeSet::new();
+    let each = most.div_ceil(8);
+    for measure in measures.iter().take(4) {
+        let severe = severest(jobs, measure.name, each);
+        chosen.extend(
+            severe
+                .iter()
+                .filter_map(|row| fit.iter().position(|(other, _)| other == row)),
+        );
+    }
+    let left = most.saturating_sub(chosen.len());
+    chosen.extend((0..left).map(|i| i * fit.len() / left));
+    chosen.into_iter().take(most).collect()
+}
+
+/// The frames of a record; none where it failed this time.
+fn play(job: &Job, record: &JobRecord) -> Option<Play> {
+    let Task::Crossing { speed_m_s } = job.task else {
+        return None;
+    };
+    let histories = &record.histories;
+    let of = |quantity: &str| -> Vec<&Vec<f64>> {
+        let named = histories.series.iter().filter(|(name, ..)| name == quantity);
+        named.map(|(.., values)| values).collect()
+    };
+    let (deflections, forces) = (of("deflection_m"), of("force_n"));
+    let frames = frames(histories);
+    if frames.is_empty() || deflections.is_empty() {
+        return None;
+    }
+    let flat = |lines: &[&Vec<f64>]| -> Vec<f64> {
+        frames
+            .iter()
+            .flat_map(|&frame| lines.iter().map(move |line| line[frame]))
+            .collect()
+    };
+    let force = flat(&forces);
+    let state = |force: &f64| match *force {
+        f if f < 0.0 => 1,
+        f if f > 0.0 => 2,
+        _ => 0,
+    };
+    let time = |frame: &usize| histories.time_s[*frame];
+    let axles = job
+        .vehicle
+        .vehicle
+        .patches
+        .iter()
+        .fold(Vec::<AxlePatch>::new(), |mut axles, patch| {
+            if axles.len() == patch.axle {
+                axles.push(AxlePatch {
+                    behind_front_m: -patch.ahead_m,
+                    share: 0.0,
+                    patch_length_m: patch.length_m,
+                });
+            }
+            if let Some(axle) = axles.last_mut() {
+                axle.share += patch.share;
+            }
+            axles
+        });
+    Some(Play {
+        job: u32::try_from(job.number).unwrap_or(u32::MAX),
+        frames: frames.len(),
+        time_s: Packed::numbers(frames.iter().map(|frame| Some(time(frame)))),
+        front_x_m: Packed::numbers(frames.iter().map(|frame| Some(speed_m_s * time(frame)))),
+        axles,
+        load_n: job.load_n,
+        deflection_m: Scaled::new(&flat(&deflections)),
+        state: Packed::U8(force.iter().map(state).collect()),
+        force_n: Scaled::new(&force),
+    })
+}
+
+/// Steps that are frames: evenly spaced ones, and those of the largest deflection, uplift, compression and tension.
+fn frames(histories: &HistoryRows) -> Vec<usize> {
+    let steps = histories.time_s.len();
+    let Some(last) = steps.checked_sub(1) else {
+        return Vec::new();
+    };
+    let every = steps.div_ceil(FRAMES).max(1);
+    let mut frames: BTreeSet<usize> = (0..steps).step_by(every).collect();
+    frames.insert(last);
+    for quantity in ["deflection_m", "force_n"] {
+        let lines = || histories.series.iter().filter(|(name, ..)| name == quantity);
+        for sign in [1.0, -1.0] {
+            let mut largest = (0.0, None);
+            for (step, value) in lines().flat_map(|(.., values)| values.iter().enumerate()) {
+                if sign * value > largest.0 {
+                    largest = (sign * value, Some(step));
+                }
+            }
+            frames.extend(largest.1);
+        }
+    }
+    frames.into_iter().collect()
+}

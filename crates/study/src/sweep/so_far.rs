@@ -1,0 +1,59 @@
+//! What a folder's journal holds of a study that is not done, or whose tables are not there.
+//!
+//! Knows journals from outside, while others write them. Writes nothing.
+
+use super::SweepError;
+use super::opened::check_folder;
+use super::status::study_of_book;
+use crate::journal::{Book, Session};
+use crate::plan::{Job, Jobs};
+use crate::refusal::Refusal;
+use crate::run::{JobRecord, Ledger};
+use crate::spec::Study;
+use std::path::Path;
+
+/// The recorded jobs of a study.
+#[derive(Debug, Clone)]
+pub struct SoFar {
+    /// The study as the last process had it.
+    pub study: Study,
+    /// The jobs that are recorded, in their order.
+    pub jobs: Vec<Job>,
+    /// Their records.
+    pub records: Vec<JobRecord>,
+    /// Jobs of the study.
+    pub of: usize,
+    /// The share of the jobs that was asked for; none where all were.
+    pub shard: Option<String>,
+    /// The last process.
+    pub session: Session,
+}
+
+/// Reads what is recorded in a folder.
+///
+/// # Errors
+/// [`SweepError::Refused`] of a folder without a journal, or with one of a study that this program cannot read;
+/// [`SweepError::Journal`].
+pub fn so_far(folder: &Path) -> Result<SoFar, SweepError> {
+    check_folder(folder)?;
+    let book = Book::read(folder)?;
+    let (study, binding, session) = study_of_book(&book, folder)?;
+    let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
+    let ledger = Ledger::new(&book, &jobs);
+    let mut records = Vec::with_capacity(ledger.known());
+    for (at, job) in jobs.iter().enumerate() {
+        records.extend(ledger.record(at, job)?);
+    }
+    let of = jobs.len();
+    let known = jobs.into_iter().enumerate().filter(|(at, _)| ledger.knows(*at));
+    let known = known.map(|(_, job)| job).collect();
+    let (shard, session) = (binding.shard.clone(), session.clone());
+    Ok(SoFar {
+        study,
+        jobs: known,
+        records,
+        of,
+        shard,
+        session,
+    })
+}
