@@ -15,6 +15,7 @@
 //! | [`compare`] | results held against a reference, or against older results |
 //! | [`report`] | what a page tells of results |
 //! | [`calibrate`] | a bridge's numbers identified from the checks of references |
+//! | [`figures`] | what a paper would draw of results, as numbers, with the points of a reference beside them |
 //! | [`modes`] | natural frequencies of a bridge file |
 //! | [`schema`] | the JSON Schema of what a person writes |
 //!
@@ -23,6 +24,7 @@
 pub mod calibrate;
 pub mod compare;
 pub mod document;
+pub mod figures;
 pub mod filter;
 pub mod journal;
 pub mod modes;

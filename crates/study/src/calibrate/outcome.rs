@@ -182,7 +182,7 @@ fn provenance(model: &Model<'_>, fit: &Fit, parameters: &[Identified]) -> Proven
         documents.push(document(
             "reference",
             &source.reference.spec.name,
-            &to_value(&source.reference.spec),
+            &to_value(&source.reference.spec.judged()),
         ));
         documents.push(document("study", &source.study.spec.name, &source.study.document));
     }

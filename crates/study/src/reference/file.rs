@@ -93,6 +93,22 @@ impl Reference {
             }
             place.check(check)?;
         }
+        for (i, group) in self.spec.measured.iter().enumerate() {
+            let refuse = |key: String, found: String, allowed: &str| {
+                Refusal::new(&self.file, format!("measured[{i}].{key}"), found, allowed)
+            };
+            if group.id.trim().is_empty() {
+                return Err(refuse(
+                    "id".to_owned(),
+                    "an empty id".to_owned(),
+                    "a name unlike any other's",
+                ));
+            }
+            if self.spec.measured[..i].iter().any(|other| other.id == group.id) {
+                return Err(refuse("id".to_owned(), format!("'{}' twice", group.id), "each id once"));
+            }
+            group.check(&self.file, &format!("measured[{i}]"))?;
+        }
         Ok(())
     }
 }

@@ -3,10 +3,12 @@
 //! Knows what a person may write and refuses what cannot be a check, whatever the results. Does not know results.
 
 mod file;
+mod measured;
 mod spec;
 
 pub use crate::filter::{Allowed, Filter};
 pub use file::Reference;
+pub use measured::{Against, MeasuredOf, MeasuredSpec};
 pub use spec::{
     BoundCheck, CheckKind, CheckSpec, CurveCheck, Edge, HistoryQuantity, HistoryReduction, MeasuredCheck, ModeCheck,
     Quantity, Reduction, ReferenceSpec, Role, SelectQuantity, Tolerance, Trend, TrendCheck, ValueCheck,

@@ -3,6 +3,7 @@
 //! Knows their types and meaning. Does not know which combinations make sense.
 
 use super::Filter;
+use super::measured::MeasuredSpec;
 use crate::tables::TableName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,19 @@ pub struct ReferenceSpec {
     /// The checks, each with an id of its own.
     #[schemars(length(min = 1))]
     pub checks: Vec<CheckSpec>,
+    /// Points that were measured, each group with an id of its own: drawn as marks, never judged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<MeasuredSpec>,
+}
+
+impl ReferenceSpec {
+    /// What results are judged by: the reference without the measured points, which no verdict and no fit depends on.
+    #[must_use]
+    pub fn judged(&self) -> Self {
+        let mut judged = self.clone();
+        judged.measured.clear();
+        judged
+    }
 }
 
 /// What becomes of a check.
