@@ -1,0 +1,57 @@
+// The top of the page: what was asked, with which settings, what a reader must know first, the largest values, what failed.
+(page => {
+  'use strict';
+  const { data, numbers } = page, { el, section, button } = page.dom;
+  const KINDS = { crossing: 'Crossings', static: 'Static cases', modes: 'Natural modes' };
+
+  function tally() {
+    const { total, ok, failed, missing } = data.jobs, parts = [`${numbers.count(ok)} of ${numbers.count(total)} ${total === 1 ? 'job' : 'jobs'} done`];
+    if (failed) parts.push(`${numbers.count(failed)} failed`);
+    if (missing) parts.push(`${numbers.count(missing)} missing`);
+    return parts.join(', ');
+  }
+
+  function head() {
+    const { study } = data;
+    document.title = `${study.name} \u2013 pontoon report`;
+    return el('header', { class: 'top' },
+      el('p', { class: 'kind' }, `${KINDS[study.kind] ?? study.kind} \u00b7 ${tally()}`), el('h1', {}, study.name),
+      study.question && el('p', { class: 'question' }, study.question),
+      (data.notes ?? []).length > 0 && el('ul', { class: 'notes', role: 'list', 'aria-label': 'Notes' }, data.notes.map(note => el('li', { class: 'note' }, note))));
+  }
+
+  /** A button that names a job and picks it. */
+  const jobButton = job => button(`job ${job}`, () => page.pick(job, 'card'), { class: 'job', 'aria-label': `Pick job ${job}` });
+
+  function cards() {
+    if (!(data.cards ?? []).length) return null;
+    return section('summary', 'Largest values', el('ul', { class: 'cards', role: 'list' }, data.cards.map(card => {
+      const shown = numbers.unit(card.unit, Math.abs(card.value ?? 0));
+      return el('li', { class: 'card', 'data-measure': card.measure },
+        el('h3', {}, card.label), el('p', { class: 'value', 'data-value': card.value }, numbers.digits(card.value * shown.factor), shown.unit && el('span', { class: 'unit' }, shown.unit)),
+        card.where && el('p', { class: 'where' }, card.where), el('p', { class: 'axes' }, card.job !== null && card.job !== undefined && jobButton(card.job), card.axes && ` ${card.axes}`));
+    })));
+  }
+
+  function settings() {
+    const list = [...(data.study.settings ?? [])];
+    for (const axis of data.axes ?? []) {
+      const at = data.axes.indexOf(axis), n = axis.values.length;
+      if (n < 1) continue;
+      const text = n === 1 ? page.axes.name(at, 0) : n <= 8 ? axis.values.map((_, i) => page.axes.tick(at, i)).join(', ') + (page.axes.shown(at).unit && numbers.THIN + page.axes.shown(at).unit)
+        : `${numbers.count(n)} ${axis.bins ? 'ranges' : 'values'}, ${page.axes.name(at, axis.values[0] === null ? 1 : 0)} to ${page.axes.name(at, n - 1)}`;
+      list.push({ label: axis.label[0].toUpperCase() + axis.label.slice(1), value: text, axis: true });
+    }
+    if (!list.length) return null;
+    return section('settings', 'Settings', el('dl', { class: 'pairs' }, list.map(s => el('div', {}, el('dt', {}, s.label), el('dd', {}, s.value)))));
+  }
+
+  function failures() {
+    if (!(data.failures ?? []).length) return null;
+    return section('failures', 'Failed jobs', page.dom.scroller('Failed jobs by cause', el('table', { class: 'plain' },
+      el('thead', {}, el('tr', {}, ['jobs', 'reason', 'for example'].map(h => el('th', { scope: 'col' }, h)))),
+      el('tbody', {}, data.failures.map(f => el('tr', {}, el('td', { class: 'number' }, numbers.count(f.count)), el('td', {}, f.reason), el('td', {}, jobButton(f.job))))))));
+  }
+
+  page.head = { head, cards, settings, failures, jobButton };
+})(globalThis.pontoon ??= {});
