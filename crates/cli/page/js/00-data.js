@@ -18,9 +18,7 @@
     if (unpacked.has(packed)) return unpacked.get(packed);
     const kind = Object.keys(WIDTH).find(key => key in packed);
     const [Type, width] = WIDTH[kind], raw = bytes(packed[kind]);
-    let out;
-    if (new Uint8Array(new Uint16Array([1]).buffer)[0] === 1) out = new Type(raw.buffer, raw.byteOffset, raw.byteLength / width);
-    else for (let i = 0, n = raw.byteLength; i < n; i += width) raw.subarray(i, i + width).reverse(), (out = new Type(raw.buffer));
+    let out = new Type(raw.buffer, raw.byteOffset, raw.byteLength / width);
     if ('scale' in packed) out = Float64Array.from(out, v => v * packed.scale);
     unpacked.set(packed, out);
     return out;

@@ -10,7 +10,7 @@
       else if (name === 'value' || name === 'checked') node[name] = value;
       else node.setAttribute(name, value === true ? '' : value);
     }
-    node.append(...children.flat().filter(child => child !== null && child !== undefined && child !== false));
+    node.append(...children.flat(Infinity).filter(child => child !== null && child !== undefined && child !== false));
     return node;
   }
   const el = (tag, attributes, ...children) => fill(document.createElement(tag), attributes, children);
@@ -58,7 +58,9 @@
     };
   }
 
-  // What must stand still on paper registers here; see 95-main.js.
+  // What must stand still on paper registers here, and what is drawn takes paper's width there; see 95-main.js.
   page.paper = [];
-  page.dom = { el, svg, id, field, select, button, section, scroller, animation, motionless };
+  page.paperWidth = null;
+  const room = node => (node.clientWidth ? page.paperWidth ?? node.clientWidth : 0);
+  page.dom = { el, svg, id, field, select, button, section, scroller, animation, motionless, room };
 })(globalThis.pontoon ??= {});

@@ -42,5 +42,17 @@
   /** Axes that take more than one value. */
   const varying = () => (data.axes ?? []).map((_, i) => i).filter(i => data.axes[i].values.length > 1);
 
-  page.cells = { axis, measure, slice, range, varying };
+  /** Stops to begin with: the value of an axis that nine cells of ten have; a lone job with another load is not drawn among them. */
+  function usual() {
+    const out = new Map();
+    for (const a of varying()) {
+      const tally = new Uint32Array(data.axes[a].values.length);
+      for (const i of array(cells.axis[a])) tally[i]++;
+      const most = tally.indexOf(Math.max(...tally));
+      if (tally[most] >= 0.9 * cells.count) out.set(a, most);
+    }
+    return out;
+  }
+
+  page.cells = { usual, axis, measure, slice, range, varying };
 })(globalThis.pontoon ??= {});

@@ -57,7 +57,7 @@
     }
 
     function redraw() {
-      width = plot.clientWidth;
+      width = page.dom.room(plot);
       if (!width) return;
       now = draw(width);
       now.walk ??= walker(now.groups ?? []);
@@ -100,7 +100,7 @@
       event.preventDefault();
       show(current ? now.walk.step(current, ...move) : now.walk.first());
     });
-    new ResizeObserver(() => Math.abs(plot.clientWidth - width) > 1 && redraw()).observe(plot);
+    new ResizeObserver(() => Math.abs(page.dom.room(plot) - width) > 1 && redraw()).observe(plot);
     const out = { node, redraw, get now() { return now; }, marks: () => now?.marks?.() ?? [] };
     figures.add(out);
     return out;

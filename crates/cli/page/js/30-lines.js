@@ -16,12 +16,13 @@
   const shape = (symbol, size) => d3.symbol(SHAPES[symbol] ?? d3.symbolCircle, size)();
 
   /** A legend: the line with its symbol, then its name. */
-  function legend(series, marks) {
+  function legend(series, marks, of) {
     const item = (label, swatch) => el('li', {}, svg('svg', { width: 34, height: 14, viewBox: '-17 -7 34 14', 'aria-hidden': 'true' }, swatch), label);
     const items = series.filter(s => s.label).map(s => item(s.label, [
       svg('line', { x1: -16, x2: 16, y1: 0, y2: 0, stroke: s.color, 'stroke-width': 2, 'stroke-dasharray': s.dash }),
       s.symbol && svg('path', { d: shape(s.symbol, 42), fill: s.color }) ]));
     for (const label of new Set(marks.map(m => m.label))) items.push(item(label, svg('path', { d: shape('times', 60), stroke: 'var(--ink)', 'stroke-width': 2, fill: 'none' })));
+    if (of) items.unshift(el('li', { class: 'of' }, `${of}:`));
     return items.length > (series.length > 1 ? 0 : 1) || marks.length ? el('ul', {}, items) : [];
   }
 

@@ -72,7 +72,7 @@
       const cells = columns.map((c, i) => {
         const text = c.write(row), bad = c.bad?.(row);
         if (i === 0) return el('th', { scope: 'row' }, pick ? el('button', { type: 'button', class: 'pick', 'aria-pressed': String(row === marked), 'aria-label': `${c.label} ${text}` }, text) : text);
-        return el('td', { class: [c.kind === 'number' ? 'number' : '', bad ? 'bad' : ''].join(' ').trim() || null }, text);
+        return el('td', { class: [c.kind === 'number' ? 'number' : text.length > 24 ? 'long' : '', bad ? 'bad' : ''].join(' ').trim() || null }, text);
       });
       return el('tr', { 'data-row': row, class: row === marked ? 'picked' : null, onclick: pick && (() => pick(row)) }, cells);
     }

@@ -11,7 +11,7 @@
     const others = varying.filter(i => i !== x);
     const line = [prefer(['gap_tension_m', 'load_n', 'gap_compression_m']), ...others].find(i => i !== undefined && i !== x && others.includes(i));
     const has = name => cells.measure(name), first = Math.max(0, has('peak_deflection_m')), second = has('peak_compression_n') >= 0 ? has('peak_compression_n') : Math.min(1, data.measures.length - 1);
-    const state = { x, line: line ?? -1, fixed: new Map(), measures: [first, second] };
+    const state = { x, line: line ?? -1, fixed: cells.usual(), measures: [first, second] };
     const controls = el('div', { class: 'controls' }), stops = el('div', { class: 'controls stops' });
     const charts = state.measures.map((_, side) => page.figure(`speed-${side + 1}`, { title: '', label: side ? 'Connector force chart' : 'Deflection chart', draw: width => draw(state, side, width),
       hint: 'Point at the chart, or focus it and use the arrow keys, to read a value; click or Enter picks its job.' }));
@@ -55,7 +55,7 @@
       return { ...k, color: of?.color, text: () => `${k.label}${k.position ? ` at position ${k.position}` : ''}${k.x === null ? '' : `, ${numbers.quantity(k.x, data.axes[x].unit)}`}: ${numbers.quantity(k.y, measure.unit)}` };
     }) : [];
     const out = page.lines({ width, series, marks, x: { title: axes.title(x), factor: factorX }, y: { title: numbers.axisTitle(measure.label, unit.unit), factor: unit.factor } });
-    return { ...out, title, note, legend: [line >= 0 && el('span', { class: 'of' }, `${data.axes[line].label}:`), page.legend(series, marks)].filter(Boolean),
+    return { ...out, title, note, legend: page.legend(series, marks, line < 0 ? null : data.axes[line].label),
       table: () => [[axes.title(x), ...series.map(s => s.label || measure.label)], ...[...new Set(series.flatMap(s => s.points.map(p => p.x)))].sort((a, b) => a - b).map(v => [numbers.plain(v * factorX), ...series.map(s => numbers.digits((s.points.find(p => p.x === v)?.y ?? NaN) * unit.factor))])] };
   }
 

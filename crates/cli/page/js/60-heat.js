@@ -8,7 +8,7 @@
     if (!data.cells?.count || !data.measures.length || varying.length < 2) return null;
     const rank = ['gap_tension_m', 'speed_m_s', 'gap_compression_m', 'load_n'].map(cells.axis).filter(i => varying.includes(i));
     const [x, y] = [...rank, ...varying.filter(i => !rank.includes(i))];
-    const state = { x: y, y: x, measure: Math.max(0, cells.measure('peak_deflection_m')), statistic: 'max', own: false, fixed: new Map() };
+    const state = { x: y, y: x, measure: Math.max(0, cells.measure('peak_deflection_m')), statistic: 'max', own: false, fixed: cells.usual() };
     const controls = el('div', { class: 'controls' }), stops = el('div', { class: 'controls stops' });
     const chart = page.figure('heat-map', { title: '', label: 'Heat map', draw: width => draw(state, width), hint: 'Point at a cell, or focus the map and use the arrow keys, to read it; click or Enter picks its job.' });
 

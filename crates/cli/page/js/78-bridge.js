@@ -30,15 +30,15 @@
 
     function rebuild(by) {
       E = by;
-      width = stage.clientWidth || 800;
-      s = width / (length * 1.1);
-      left = 0.05 * length * s;
+      width = page.dom.room(stage) || 800;
+      left = Math.max(30, 0.045 * width);
+      s = (width - 2 * left) / length;
       thick = Math.max(7, bridge.depth_m * tall * s);
       const head = Math.max(18, 0.03 * width) + 12, top = head + up * E * s;
       base = top + thick;
-      const floor = base + Math.max(down * E * s, 0.03 * width) + 8, ruler = floor + 14, barTop = ruler + 30, reach = 34;
+      const floor = base + Math.max(down * E * s, 0.03 * width) + 8, ruler = floor + 14, barTop = ruler + 44, reach = 34;
       bars = barTop + reach + 6;
-      const height = bars + reach + 10, water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick;
+      const height = bars + reach + 22, water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick;
       const ticks = d3.scaleLinear([0, length], [0, 1]).ticks(Math.max(3, Math.round(width / 110))).filter(t => t <= length);
       const size = Math.max(3, Math.min(6.5, 0.3 * module * s));
       const bar = d3.tickStep(0, Math.max(down, 1e-6), 2);
@@ -55,8 +55,8 @@
         [[0, X(0)], [X(length), width]].map(([a, b]) => svg('line', { class: 'bank', x1: a, x2: b, y1: base - thick, y2: base - thick })),
         part.modules, part.body, part.wheels, part.joints,
         svg('g', { class: 'ruler' }, svg('line', { x1: X(0), x2: X(length), y1: ruler, y2: ruler }), ticks.map(t => [svg('line', { x1: X(t), x2: X(t), y1: ruler, y2: ruler + 5 }), svg('text', { x: X(t), y: ruler + 18, 'text-anchor': 'middle' }, t === ticks.at(-1) ? `${numbers.plain(t)} m` : numbers.plain(t))])),
-        down > 0 && svg('g', { class: 'ruler measure' }, svg('line', { x1: 6, x2: 6, y1: base, y2: base + bar * E * s }), svg('line', { x1: 2, x2: 10, y1: base, y2: base }), svg('line', { x1: 2, x2: 10, y1: base + bar * E * s, y2: base + bar * E * s }), svg('text', { x: 13, y: base + (bar * E * s) / 2 + 4 }, numbers.quantity(bar, 'm', 2))),
-        J > 0 && svg('g', { class: 'ruler' }, svg('line', { x1: X(0), x2: X(length), y1: bars, y2: bars }), svg('text', { x: 2, y: bars - reach + 4 }, `tension, bar to ${numbers.quantity(most, 'N', 3)}`), svg('text', { x: 2, y: bars + reach + 6 }, 'compression')),
+        down > 0 && svg('g', { class: 'ruler measure' }, svg('line', { x1: 6, x2: 6, y1: base, y2: base + bar * E * s }), svg('line', { x1: 2, x2: 10, y1: base, y2: base }), svg('line', { x1: 2, x2: 10, y1: base + bar * E * s, y2: base + bar * E * s }), svg('text', { transform: `translate(22,${base + (bar * E * s) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, `${numbers.plain(bar)} m`)),
+        J > 0 && svg('g', { class: 'ruler' }, svg('line', { x1: X(0), x2: X(length), y1: bars, y2: bars }), svg('text', { x: 2, y: bars - reach - 6 }, `tension, bar to ${numbers.quantity(most, 'N', 3)}`), svg('text', { x: 2, y: bars + reach + 16 }, 'compression')),
         part.forces);
       part.reach = reach;
       stage.replaceChildren(node, legend(), el('p', { class: 'sub scale' }, `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of the unloaded bridge.' : 'The water line is drawn at half the depth.'}`));
@@ -115,7 +115,7 @@
     }
 
     rebuild(exaggeration);
-    return { draw, rebuild, names, resized: () => Math.abs(stage.clientWidth - width) > 1 };
+    return { draw, rebuild, names, resized: () => Math.abs(page.dom.room(stage) - width) > 1 };
   }
 
   page.bridgeScene = scene;

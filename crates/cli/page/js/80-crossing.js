@@ -27,7 +27,7 @@
     choose.id = 'play-job';
     const scrubField = field('Time', scrub);
     scrubField.classList.add('wide');
-    const controls = el('div', { class: 'controls player' }, el('div', { class: 'buttons' }, run, button('\u2039 Step', () => step(-1), { 'aria-label': 'One frame back', id: 'step-back' }), button('Step \u203a', () => step(1), { 'aria-label': 'One frame on', id: 'step-on' })), scrubField, field('Speed', speed), field('Displacements drawn', scale));
+    const controls = el('div', { class: 'controls player' }, el('div', { class: 'buttons' }, run, button('\u2039 Step', () => step(-1), { 'aria-label': 'One frame back', id: 'step-back' }), button('Step \u203a', () => step(1), { 'aria-label': 'One frame on', id: 'step-on' })), scrubField, field('Speed', speed), field('Exaggeration', scale));
     const body = el('div', {}, stage, readout, controls);
     const node = el('div', { class: 'crossing', role: 'group', 'aria-labelledby': 'crossing-title' }, el('div', { class: 'between' }, title, plays.length > 0 && field('Crossings on this page', choose)), axes, why, body);
 
@@ -88,7 +88,7 @@
       peak = peakFrame(play);
       scrub.max = play.frames - 1;
       const deepest = array(play.deflection_m).reduce((a, v) => Math.max(a, Math.abs(v)), 0), length = data.bridge.position_x_m.at(-1) || 1;
-      if (deepest > 0) scale.value = String(SCALES.filter(s => s * deepest <= 0.1 * length).at(-1) ?? 1);
+      if (deepest > 0) scale.value = String(SCALES.filter(s => s * deepest <= Math.max(0.1 * length, (70 * length) / (stage.clientWidth || 800))).at(-1) ?? 1);
       scene = page.bridgeScene(play, stage, Number(scale.value));
       readout.replaceChildren(...scene.names.flatMap(name => el('div', {}, el('dt', {}, name), el('dd'))));
       const alive = by !== 'start' && !motionless.matches;
@@ -98,9 +98,10 @@
 
     if (!plays.length) { why.textContent = 'No job of this page has a crossing to play.'; body.hidden = true; }
     page.onPick(load);
-    new ResizeObserver(() => { if (scene?.resized()) { scene.rebuild(Number(scale.value)); show(frame); } }).observe(stage);
+    const rescale = () => { if (scene?.resized()) { scene.rebuild(Number(scale.value)); show(frame); } };
+    new ResizeObserver(rescale).observe(stage);
     document.addEventListener('visibilitychange', () => document.hidden && pause());
-    page.paper.push({ freeze() { kept = frame; pause(); if (play) show(peak); }, thaw() { if (play) show(kept); } });
+    page.paper.push({ freeze() { kept = frame; pause(); rescale(); if (play) show(peak); }, thaw() { rescale(); if (play) show(kept); } });
     return { node };
   }
 

@@ -41,7 +41,7 @@
     let faces = [], view = {};
     /** The boxes' rest position, right to left and far to near, so that the near ones cover. */
     function build() {
-      width = stage.clientWidth || 800;
+      width = page.dom.room(stage) || 800;
       const L = bridge.module_length_m * bridge.modules, span = L + 0.55 * bridge.breadth_m, s = (width - 20) / span, reach = 0.055 * L;
       const height = (2.1 * reach + bridge.depth_m * 2 + 0.45 * bridge.breadth_m) * s + 20;
       view = { s, reach, X: (x, y) => 10 + (x + 0.55 * y) * s, Y: (y, z) => height - 10 - reach * s - (z + 0.45 * y) * s };
@@ -70,9 +70,9 @@
       }
     }
 
-    page.paper.push({ freeze() { kept = phase; pause(); phase = 1; draw(); }, thaw() { phase = kept; draw(); } });
+    page.paper.push({ freeze() { kept = phase; pause(); phase = 1; build(); }, thaw() { phase = kept; build(); } });
     document.addEventListener('visibilitychange', () => document.hidden && pause());
-    new ResizeObserver(() => Math.abs(stage.clientWidth - width) > 1 && build()).observe(stage);
+    new ResizeObserver(() => Math.abs(page.dom.room(stage) - width) > 1 && build()).observe(stage);
     list();
     pick(mode);
     return section('modes', 'Mode shapes', said, stage, el('p', { class: 'sub' }, 'Oblique view; the largest motion is drawn as a twentieth of the length, the depth 1.6 times. Decks that rise are blue, decks that sink orange.'), controls, page.dom.scroller('Natural frequencies', table));

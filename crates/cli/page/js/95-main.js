@@ -35,15 +35,20 @@
   if (first !== null) page.pick(first, 'start');
 
   // Paper: everything open and at rest.
-  let opened = null;
+  const PAPER = 660;
+  let frozen = false;
   const freeze = () => {
-    if (opened) return;
-    opened = [...document.querySelectorAll('details.toc')].filter(d => d.open);
+    if (frozen) return;
+    frozen = true;
+    page.paperWidth = PAPER;
+    page.figures.forEach(figure => figure.redraw());
     page.paper.forEach(p => p.freeze());
   };
   const thaw = () => {
-    if (!opened) return;
-    opened = null;
+    if (!frozen) return;
+    frozen = false;
+    page.paperWidth = null;
+    page.figures.forEach(figure => figure.redraw());
     page.paper.forEach(p => p.thaw());
   };
   addEventListener('beforeprint', freeze);

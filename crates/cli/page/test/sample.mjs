@@ -52,7 +52,7 @@ function answer(job, draw) {
 
 /** Aggregates, rows, envelope of a list of jobs. */
 function study(kind, name, jobs, axisNames, measureNames, options = {}) {
-  const draw = random(7), P = bridge.position_x_m.length, J = bridge.joints.length;
+  const draw = random(7);
   const failed = job => (options.failed ?? []).includes(job.job);
   jobs.forEach((job, i) => (job.job = i));
   jobs.forEach(job => (job.answers = failed(job) ? null : answer(job, draw)));
@@ -109,7 +109,6 @@ function study(kind, name, jobs, axisNames, measureNames, options = {}) {
     modes: [{ label: 'floating free', list: modes() }], verdicts: null, provenance: [
       { label: 'study hash', value: '5f0c7d1f9f0f2f8b1a6e' }, { label: 'bridge hash', value: 'a81d6d20f1c09f3aa0c3' }, { label: 'program', value: 'pontoon 0.1.0 (b3c1f00)' },
       { label: 'ran', value: '2026-11-20 10:12:03 to 10:12:05 UTC on 2 threads' } ],
-    size: { positions: P, joints: J },
   };
 }
 
@@ -128,7 +127,7 @@ function play(job) {
     const x = bridge.position_x_m[n - 1], d = Math.abs(x - f + 3);
     return d < 12 ? -job.answers.peak_compression_n * (1 - d / 12) : d < 24 ? job.answers.peak_tension_n * (1 - Math.abs(d - 18) / 6) : 0; }));
   return { job: job.job, frames: F, time_s: f32(time), front_x_m: f32(front), axles: [{ behind_front_m: 0, share: 1, patch_length_m: 3.35 }], load_n: job.load_n,
-    deflection_m: i16(front.flatMap(f => bridge.position_x_m.map(x => depth(x, f))), 1e-5), force_n: i16(forces, 50),
+    deflection_m: i16(front.flatMap(f => bridge.position_x_m.map(x => depth(x, f))), w / 32000), force_n: i16(forces, 50),
     state: u8(forces.map((f, i) => (f < -1 ? (i % 37 === 0 ? 3 : 1) : f > 1 ? 2 : 0))) };
 }
 
