@@ -27,7 +27,7 @@
     const filterField = field('Filter', input);
     filterField.classList.add('wide');
     const node = el('div', { class: 'table' },
-      el('div', { class: 'controls' }, filterField, field('Rows at a time', sizes)), error, scroller(label, grid),
+      el('div', { class: 'controls' }, filterField, field('Rows at a time', sizes)), error, scroller(`${label}, table`, grid),
       el('div', { class: 'pager' }, said, el('div', { class: 'buttons' }, back, on)));
 
     function order(column) {
@@ -95,9 +95,12 @@
         marked = row;
         const place = shown.indexOf(row);
         if (reveal && place >= 0) state.page = Math.floor(place / state.size);
-        const focused = body.contains(document.activeElement) && document.activeElement.closest('tr')?.dataset.row;
-        draw();
-        if (focused) body.querySelector(`tr[data-row="${focused}"] .pick`)?.focus();
+        if (reveal && place >= 0 && !body.querySelector(`tr[data-row="${row}"]`)) return draw();
+        for (const tr of body.children) {
+          const on = Number(tr.dataset.row) === row;
+          tr.classList.toggle('picked', on);
+          tr.querySelector('.pick')?.setAttribute('aria-pressed', String(on));
+        }
       },
     };
   }

@@ -45,7 +45,7 @@
     const shape = numbers.column(list.map(m => m.frequency_hz), 'Hz');
     const word = (name, label) => ({ name, label, unit: '', kind: 'word', value: r => list[r][name], write: r => list[r][name] ?? '\u2013' });
     const integer = (name, label) => ({ name, label, unit: '', kind: 'number', input: true, value: r => list[r][name], write: r => String(list[r][name]) });
-    const table = page.table('Natural frequencies', list.length, [integer('job', 'job'), word('axes', 'bridge'), integer('number', 'mode'),
+    const table = page.table('Frequencies of the jobs', list.length, [integer('job', 'job'), word('axes', 'bridge'), integer('number', 'mode'),
       { name: 'frequency_hz', label: 'frequency', unit: 'Hz', kind: 'number', value: r => list[r].frequency_hz, write: r => shape.write(list[r].frequency_hz) }, word('shape', 'shape')], { size: 25, placeholder: 'words, or frequency_hz<1' });
     return section('frequencies', 'Natural frequencies', table.node);
   }

@@ -27,7 +27,7 @@
     choose.id = 'play-job';
     const scrubField = field('Time', scrub);
     scrubField.classList.add('wide');
-    const controls = el('div', { class: 'controls player' }, el('div', { class: 'buttons' }, run, button('\u2039 Step', () => step(-1), { 'aria-label': 'One frame back', id: 'step-back' }), button('Step \u203a', () => step(1), { 'aria-label': 'One frame on', id: 'step-on' })), scrubField, field('Speed', speed), field('Exaggeration', scale));
+    const controls = el('div', { class: 'controls player' }, el('div', { class: 'buttons' }, run, button('\u2039 Back', () => step(-1), { title: 'one frame back', id: 'step-back' }), button('On \u203a', () => step(1), { title: 'one frame on', id: 'step-on' })), scrubField, field('Speed', speed), field('Exaggeration', scale));
     const body = el('div', {}, stage, readout, controls);
     const node = el('div', { class: 'crossing', role: 'group', 'aria-labelledby': 'crossing-title' }, el('div', { class: 'between' }, title, plays.length > 0 && field('Crossings on this page', choose)), axes, why, body);
 

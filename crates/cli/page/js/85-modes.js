@@ -75,7 +75,7 @@
     new ResizeObserver(() => Math.abs(page.dom.room(stage) - width) > 1 && build()).observe(stage);
     list();
     pick(mode);
-    return section('modes', 'Mode shapes', said, stage, el('p', { class: 'sub' }, 'Oblique view; the largest motion is drawn as a twentieth of the length, the depth 1.6 times. Decks that rise are blue, decks that sink orange.'), controls, page.dom.scroller('Natural frequencies', table));
+    return section('modes', 'Mode shapes', said, stage, el('p', { class: 'sub' }, 'Oblique view; the largest motion is drawn as a twentieth of the length, the depth 1.6 times. Decks that rise are blue, decks that sink orange.'), controls, page.dom.scroller('Modes to choose from', table));
   }
 
   page.modes = modes;
