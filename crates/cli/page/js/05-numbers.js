@@ -62,5 +62,11 @@
   const count = n => group(String(n));
   const axisTitle = (label, name) => (name ? `${label} (${name})` : label);
 
-  page.numbers = { unit, digits, plain, column, quantity, count, axisTitle, THIN };
+  /** An axis's title cut to a width, its unit kept. */
+  function fit(title, width) {
+    const most = Math.floor(width / 7), [, label, tail] = /^([^]*?)( \([^()]*\))?$/.exec(title);
+    return title.length <= most ? title : `${label.slice(0, Math.max(4, most - (tail ?? '').length - 1))}\u2026${tail ?? ''}`;
+  }
+
+  page.numbers = { fit, unit, digits, plain, column, quantity, count, axisTitle, THIN };
 })(globalThis.pontoon ??= {});

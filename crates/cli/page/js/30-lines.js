@@ -35,6 +35,9 @@
     return [zero && low === 0 ? 0 : low - pad, zero && high === 0 ? 0 : high + pad];
   }
 
+  /** Beyond so many points lines are drawn without dots: they would be a smear. */
+  const MOST_DOTS = 900;
+
   /**
    * Draws `series` ({ key, label, color, symbol, dash, area, dots, points: [{ x, y, text, job }] }) and `marks` ({ x or null, y, label, text, color })
    * over axes x and y ({ title, factor, reverse, zero, ticks }). Values are in the data's units; the axes multiply by their factor.
@@ -46,7 +49,8 @@
     const ys = extent(all.map(p => p.y).filter(Number.isFinite).map(v => v * fy), y.zero ?? true);
     const layers = [Plot.ruleY(ys[0] <= 0 && ys[1] >= 0 ? [0] : [], { className: 'zero' })];
     const at = { x: p => p.x * fx, y: p => p.y * fy };
-    const order = [];
+    const order = [], dotted = all.length <= MOST_DOTS;
+    if (!dotted) series = series.map(s => ({ ...s, dots: false }));
     for (const s of series) {
       if (s.area) layers.push(Plot.areaY(s.points, { x: at.x, y1: 0, y2: at.y, fill: s.color, fillOpacity: 0.12 }));
       layers.push(Plot.line(s.points, { ...at, stroke: s.color, strokeWidth: s.thin ? 1.2 : 2, strokeDasharray: s.dash, className: 'series-line' }));
@@ -58,8 +62,8 @@
     if (placed.length) layers.push(Plot.dot(placed, { ...at, stroke: m => m.color ?? 'var(--ink)', symbol: 'times', r: 5, strokeWidth: 2.2, className: 'mark-dots' }));
     const node = Plot.plot({
       width, height, marginLeft: 62, marginBottom: 44, marginTop: 26, marginRight: 16, style: { fontSize: '12px', fontFamily: 'inherit', background: 'none', overflow: 'visible' },
-      x: { domain: xs, label: x.title, labelAnchor: 'center', labelArrow: 'none', ticks: Math.max(3, Math.round(width / 90)), tickFormat: numbers.plain },
-      y: { domain: y.reverse ? [ys[1], ys[0]] : ys, label: y.title, labelArrow: 'none', grid: true, ticks: 6, tickFormat: numbers.plain },
+      x: { domain: xs, label: numbers.fit(x.title, width - 90), labelAnchor: 'center', labelArrow: 'none', ticks: Math.max(3, Math.round(width / 90)), tickFormat: numbers.plain },
+      y: { domain: y.reverse ? [ys[1], ys[0]] : ys, label: numbers.fit(y.title, width - 20), labelArrow: 'none', grid: true, ticks: 6, tickFormat: numbers.plain },
       marks: layers,
     });
     node.style.maxWidth = '100%';

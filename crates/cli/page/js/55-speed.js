@@ -35,6 +35,10 @@
     return section('speed', `Peaks against ${data.axes[x].label}`, controls, stops, el('div', { class: 'pair' }, charts.map(c => c.node)));
   }
 
+  /** More lines than an eye can tell apart are thinned evenly, the first and the last kept. */
+  const MOST_LINES = 24;
+  const thin = list => (list.length <= MOST_LINES ? list : d3.range(MOST_LINES).map(i => list[Math.round((i * (list.length - 1)) / (MOST_LINES - 1))]));
+
   function draw(state, side, width) {
     const m = state.measures[side], measure = data.measures[m], { x, line } = state;
     const fixed = new Map([...state.fixed].filter(([a]) => a !== x && a !== line));
@@ -47,8 +51,10 @@
         text: () => `${data.axes[x].label} ${axes.name(x, p.i)}${line < 0 ? '' : `, ${data.axes[line].label} ${axes.name(line, l)}`}: ${measure.label} ${numbers.quantity(part.value[p.at], measure.unit)}, job ${part.at[p.at]}${part.jobs[p.at] > 1 ? ` (largest of ${numbers.count(part.jobs[p.at])} jobs)` : ''}${part.failed[p.at] ? `; ${part.failed[p.at]} failed` : ''}` }));
       if (points.length) series.push({ key: line < 0 ? 'all' : String(l), at: l, label: line < 0 ? '' : `${axes.name(line, l)}`, points });
     }
+    const drawn = thin(series);
+    if (drawn.length < series.length) series.splice(0, series.length, ...drawn);
     series.forEach((s, i) => Object.assign(s, page.look(i, series.length)));
-    const title = `${measure.label[0].toUpperCase()}${measure.label.slice(1)} against ${data.axes[x].label}`, note = axes.choice(fixed, [x, line]);
+    const title = `${measure.label[0].toUpperCase()}${measure.label.slice(1)} against ${data.axes[x].label}`, note = [axes.choice(fixed, [x, line]), nl > MOST_LINES && `${series.length} of ${nl} lines are drawn`].filter(Boolean).join('; ');
     if (!series.length) return { title, note, empty: part.failed.some(n => n > 0) ? 'Every job of this choice failed.' : 'No job has this combination: choose other stops.' };
     const marks = data.axes[x].name === 'speed_m_s' ? (data.marks ?? []).filter(k => k.chart === 'speed' && k.measure === measure.name && axes.fits(k, fixed)).map(k => {
       const of = line < 0 ? null : series.find(s => k.axes?.[data.axes[line].name] !== undefined && axes.find(line, k.axes[data.axes[line].name]) === s.at);

@@ -31,10 +31,19 @@ export async function chart(page, id) {
 
 /** The cells of a heat map: { left, top, width, height, fill } of each sub-path; ticks; the colours of its legend. */
 export function heat(page, id = 'heat-map') {
-  return page.evaluate(key => {
+  return page.evaluate(async key => {
     const node = document.querySelector(`#${key} .plot > svg`);
     if (!node) return null;
-    const cells = [];
+    const cells = [], picture = node.querySelector('.heat image');
+    if (picture) {
+      const image = new Image(), canvas = document.createElement('canvas').getContext('2d'), [x, y, w, h] = ['x', 'y', 'width', 'height'].map(n => Number(picture.getAttribute(n)));
+      image.src = picture.getAttribute('href');
+      await image.decode();
+      [canvas.canvas.width, canvas.canvas.height] = [image.width, image.height];
+      canvas.drawImage(image, 0, 0);
+      const { data } = canvas.getImageData(0, 0, image.width, image.height), hex = v => v.toString(16).padStart(2, '0'), cw = w / image.width, ch = h / image.height;
+      for (let j = 0, k = 0; j < image.height; j++) for (let i = 0; i < image.width; i++, k += 4) if (data[k + 3] === 255) cells.push({ left: x + i * cw, top: y + j * ch, width: cw, height: ch, fill: `#${hex(data[k])}${hex(data[k + 1])}${hex(data[k + 2])}` });
+    }
     for (const path of node.querySelectorAll('.heat path[fill]')) {
       for (const m of path.getAttribute('d').matchAll(/M([-\d.]+) ([-\d.]+)h([-\d.]+)v([-\d.]+)h[-\d.]+z/g)) cells.push({ left: +m[1], top: +m[2], width: +m[3], height: +m[4], fill: path.getAttribute('fill') });
     }
