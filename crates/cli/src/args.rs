@@ -104,6 +104,16 @@ pub enum Command {
         after_help = "Example:\n  pontoon calibrate studies/identification/start.json --with studies/table1 --with studies/fig09_static --parameters studies/identification/parameters.json --out bridge.json"
     )]
     Calibrate(CalibrateArguments),
+    /// Shows results: one page that opens anywhere, figures for papers.
+    ///
+    /// The page is one HTML file that carries all it needs: summary, peaks against speed, heat maps, envelope, histories, a
+    /// browser of jobs that plays their crossings, mode shapes and, with a reference, the experiment's points and the
+    /// verdicts. A folder whose run is not done gives a page of what is there. Exit status 1 where a check falls short or
+    /// a job failed.
+    #[command(
+        after_help = "Examples:\n  pontoon report results/fig09_static --with studies/fig09_static\n  pontoon report results/fu2005 --out fu2005.html"
+    )]
+    Report(ReportArguments),
     /// The JSON Schema of a file, for an editor or a checker.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
@@ -198,6 +208,24 @@ pub struct CompareArguments {
     /// How far columns may be from older results: {"default": {"relative_tolerance": 1e-6}, "columns": {"NAME": ...}}.
     #[arg(long, value_name = "FILE")]
     pub tolerance: Option<PathBuf>,
+}
+
+/// What `report` takes.
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// Folder of the results, or of a run that is not done.
+    #[arg(value_name = "RESULTS")]
+    pub results: PathBuf,
+    /// A reference file or the folder that holds reference.json: its points are drawn, its checks are judged.
+    #[arg(long, value_name = "REFERENCE")]
+    pub with: Option<PathBuf>,
+    /// The page to write; `report.html` in the folder of results where absent. A file there is replaced where it is a page
+    /// of this program.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Crossings that can be played, at most; they are solved once more.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u16).range(0..=400))]
+    pub plays: u16,
 }
 
 /// What `calibrate` takes.

@@ -5,6 +5,7 @@
 //! | `args` | the words that are understood |
 //! | `commands` | a file a command: what it asks of the study's rooms and how it answers |
 //! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
+//! | `page` | the page of a report, whole |
 //! | `signals` | interrupts and questions from outside |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
 //! | `watching` | what is told of a sweep |
@@ -16,6 +17,7 @@
 mod args;
 mod commands;
 mod comparison;
+mod page;
 mod progress;
 mod signals;
 mod watching;
@@ -62,6 +64,7 @@ fn main() -> ExitCode {
         Command::Modes(modes) => commands::modes::modes(&modes, common),
         Command::Calibrate(calibrate) => commands::calibrate::calibrate(&calibrate, common),
         Command::Compare(compare) => commands::compare::compare(&compare, common),
+        Command::Report(report) => commands::report::report(&report, common),
         Command::Schema(schema) => commands::schema::schema(&schema),
     };
     match ended {

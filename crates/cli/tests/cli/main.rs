@@ -17,5 +17,6 @@ mod designs;
 mod old_results;
 mod operator;
 mod refusals;
+mod report;
 mod results;
 mod stage;

@@ -184,7 +184,7 @@ fn provenance(model: &Model<'_>, fit: &Fit, parameters: &[Identified]) -> Proven
             &source.reference.spec.name,
             &to_value(&source.reference.spec.judged()),
         ));
-        documents.push(document("study", &source.study.spec.name, &source.study.document));
+        documents.push(document("study", &source.study.spec.name, &source.study.computed()));
     }
     Provenance {
         program: format!("pontoon calibrate {}", crate::VERSION),

@@ -3,7 +3,7 @@
 //! Knows how a curve keeps its peaks with fewer points. Does not know which jobs matter.
 
 use super::packed::Packed;
-use crate::tables::{Results, TableName};
+use crate::tables::{Results, ResultsError, TableName};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -32,54 +32,84 @@ pub struct HistoryLine {
     pub value: Packed,
 }
 
-/// The first histories of the table, and how many there are. `jobs` are the ones wanted.
+/// A history as its rows come.
+#[derive(Debug, Default)]
+struct Gathered {
+    job: u32,
+    quantity: String,
+    position: u32,
+    time_s: Vec<f64>,
+    value: Vec<f64>,
+}
+
+impl Gathered {
+    fn is(&self, job: u32, quantity: &str, position: u32) -> bool {
+        self.job == job && self.position == position && self.quantity == quantity
+    }
+
+    fn line(&self, axes: String) -> HistoryLine {
+        let kept = thinned(&self.value);
+        let of = |list: &[f64]| Packed::numbers(kept.iter().map(|&i| Some(list[i])));
+        HistoryLine {
+            job: self.job,
+            axes,
+            position: self.position,
+            quantity: self.quantity.clone(),
+            unit: super::words::unit(&self.quantity),
+            time_s: of(&self.time_s),
+            value: of(&self.value),
+        }
+    }
+}
+
+/// The first histories of the jobs that are wanted, and how many there are of all jobs.
+///
+/// # Errors
+/// [`ResultsError::Damaged`].
 pub(super) fn histories(
     results: &Results,
-    jobs: &HashSet<u32>,
+    wanted: &HashSet<u32>,
     said: &dyn Fn(usize) -> String,
-) -> (Vec<HistoryLine>, usize) {
-    let Some(table) = results.table(TableName::Histories) else {
-        return (Vec::new(), 0);
-    };
-    let columns = (
-        table.numbers("job"),
-        table.numbers("time_s"),
-        table.word_cells("quantity"),
-        table.numbers("position"),
-        table.numbers("value"),
-    );
-    let (Some(job), Some(time), Some(quantity), Some(position), Some(value)) = columns else {
-        return (Vec::new(), 0);
-    };
-    let (mut lines, mut count, mut start) = (Vec::new(), 0, 0);
-    while start < table.rows() {
-        let same = |row: &usize| {
-            job[*row] == job[start] && quantity[*row] == quantity[start] && position[*row] == position[start]
-        };
-        let end = (start..table.rows()).take_while(same).last().unwrap_or(start) + 1;
-        let number = job[start].map_or(u32::MAX, |job| job as u32);
-        count += 1;
-        if lines.len() < MOST && jobs.contains(&number) {
-            let word = quantity[start].clone().unwrap_or_default();
-            let kept = thinned(&value[start..end]);
-            let of = |list: &[Option<f64>]| Packed::numbers(kept.iter().map(|i| list[start + i]));
-            lines.push(HistoryLine {
-                job: number,
-                axes: results.row_of_job(u64::from(number)).map(said).unwrap_or_default(),
-                position: position[start].map_or(0, |position| position as u32),
-                unit: super::words::unit(&word),
-                quantity: word,
-                time_s: of(time),
-                value: of(value),
-            });
+) -> Result<(Vec<HistoryLine>, usize), ResultsError> {
+    let (mut lines, mut count, mut now) = (Vec::new(), 0, Gathered::default());
+    let mut flush = |now: &Gathered| {
+        if !now.value.is_empty() && lines.len() < MOST {
+            let row = results.row_of_job(u64::from(now.job));
+            lines.push(now.line(row.map(said).unwrap_or_default()));
         }
-        start = end;
-    }
-    (lines, count)
+    };
+    let columns = ["job", "time_s", "quantity", "position", "value"];
+    results.scan(TableName::Histories, &columns, |part| {
+        let Some(quantities) = part.word_cells("quantity") else {
+            return;
+        };
+        for (row, quantity) in quantities.iter().enumerate() {
+            let quantity = quantity.as_deref().unwrap_or_default();
+            let place = |column| part.number(column, row).map_or(u32::MAX, |x| x as u32);
+            let (job, position) = (place("job"), place("position"));
+            if count == 0 || !now.is(job, quantity, position) {
+                flush(&now);
+                count += 1;
+                now = Gathered {
+                    job,
+                    quantity: quantity.to_owned(),
+                    position,
+                    ..Gathered::default()
+                };
+            }
+            let sample = part.number("time_s", row).zip(part.number("value", row));
+            if let Some((time_s, value)) = sample.filter(|_| wanted.contains(&job)) {
+                now.time_s.push(time_s);
+                now.value.push(value);
+            }
+        }
+    })?;
+    flush(&now);
+    Ok((lines, count))
 }
 
 /// Places of a list that keep its first, its last, and the smallest and the largest of each stretch.
-fn thinned(values: &[Option<f64>]) -> Vec<usize> {
+fn thinned(values: &[f64]) -> Vec<usize> {
     if values.len() <= 2 * STRETCHES {
         return (0..values.len()).collect();
     }
@@ -89,7 +119,7 @@ fn thinned(values: &[Option<f64>]) -> Vec<usize> {
             stretch * values.len() / STRETCHES,
             (stretch + 1) * values.len() / STRETCHES,
         );
-        let of = |i: &usize| values[*i].unwrap_or_default();
+        let of = |i: &usize| values[*i];
         let by = |a: &usize, b: &usize| of(a).total_cmp(&of(b)).then(b.cmp(a));
         kept.extend((from..to).min_by(by));
         kept.extend((from..to).max_by(by));
@@ -105,9 +135,9 @@ mod tests {
 
     #[test]
     fn thinned_lists_keep_their_ends_and_peaks() {
-        let mut values: Vec<Option<f64>> = (0..5000).map(|i| Some(f64::sin(0.01 * f64::from(i)))).collect();
-        values[1234] = Some(9.0);
-        values[3333] = Some(-9.0);
+        let mut values: Vec<f64> = (0..5000).map(|i| f64::sin(0.01 * f64::from(i))).collect();
+        values[1234] = 9.0;
+        values[3333] = -9.0;
         let kept = thinned(&values);
         assert!(kept.len() <= 2 * STRETCHES + 2 && kept.windows(2).all(|w| w[0] < w[1]));
         assert!([0, 1234, 3333, 4999].iter().all(|place| kept.contains(place)));

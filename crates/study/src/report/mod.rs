@@ -43,9 +43,10 @@ pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{VerdictLine, Verdicts};
 
 use crate::compare::Comparison;
+use crate::figures::Mark;
 use crate::run::Cache;
 use crate::spec::Kind;
-use crate::tables::Table;
+use crate::tables::{ResultsError, Table};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -121,6 +122,23 @@ pub struct BridgeNote {
     pub joints: Vec<usize>,
 }
 
+/// A point of a reference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageMark {
+    /// The point.
+    #[serde(flatten)]
+    pub mark: Mark,
+    /// The measure whose chart it is drawn in.
+    pub measure: String,
+}
+
+impl From<Mark> for PageMark {
+    fn from(mark: Mark) -> Self {
+        let measure = mark.column.clone();
+        Self { mark, measure }
+    }
+}
+
 /// How many jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Counts {
@@ -159,8 +177,8 @@ pub struct Report {
     pub cards: Vec<Card>,
     /// Why jobs failed.
     pub failures: Vec<FailureNote>,
-    /// Points of an experiment.
-    pub marks: Vec<Value>,
+    /// Points of an experiment, and what checks expect.
+    pub marks: Vec<PageMark>,
     /// Largest values along the bridge.
     pub envelope: Option<Envelope>,
     /// Jobs that are listed.
@@ -194,7 +212,15 @@ fn failed(jobs: &Table, row: usize) -> bool {
 impl Report {
     /// What there is to tell of results, held against a reference where there is a comparison. Solves some crossings once
     /// more on the current pool, so that they can be played.
-    pub fn new(mut found: Found, compared: Option<&Comparison>, marks: Vec<Value>, setting: &ReportSetting) -> Self {
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`] where a table cannot be scanned.
+    pub fn new(
+        mut found: Found,
+        compared: Option<&Comparison>,
+        marks: Vec<Mark>,
+        setting: &ReportSetting,
+    ) -> Result<Self, ResultsError> {
         let all = found.jobs();
         let Found {
             results,
@@ -222,9 +248,9 @@ impl Report {
         }
         let measures = cells::measures(jobs);
         let chosen = rows::chosen(jobs, &measures);
-        let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen);
+        let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen)?;
         let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(jobs, row)).collect();
-        let (histories, recorded) = histories::histories(&results, &wanted, &said);
+        let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
         if histories.len() < recorded {
             notes.push(format!(
                 "{} of {recorded} recorded histories are shown.",
@@ -249,7 +275,7 @@ impl Report {
         let failed = (0..jobs.rows()).filter(|&row| failed(jobs, row)).count();
         let question = study.as_ref().and_then(|study| study.spec.question.clone());
         let kind = study.as_ref().map(|study| study.spec.analysis.kind);
-        Self {
+        Ok(Self {
             format: 1,
             program: Program {
                 version: crate::VERSION,
@@ -274,7 +300,7 @@ impl Report {
             cells: Cells::new(jobs, &axes, &measures),
             cards: cards::cards(jobs, &measures, &said),
             failures,
-            marks,
+            marks: marks.into_iter().map(PageMark::from).collect(),
             envelope,
             rows,
             histories,
@@ -286,7 +312,7 @@ impl Report {
             notes,
             axes,
             measures,
-        }
+        })
     }
 }
 

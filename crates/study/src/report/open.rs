@@ -7,7 +7,7 @@ use crate::plan::{Job, Jobs};
 use crate::refusal::Refusal;
 use crate::spec::Study;
 use crate::sweep::{SoFar, SweepError, so_far};
-use crate::tables::{Results, ResultsError};
+use crate::tables::{Results, ResultsError, TableName};
 use serde_json::Value;
 use std::path::Path;
 
@@ -26,13 +26,17 @@ pub struct Found {
     pub provenance: Vec<Item>,
 }
 
+/// Tables that a page has in memory where it need not have all.
+const NEEDED: [TableName; 2] = [TableName::Jobs, TableName::Modes];
+
 impl Found {
-    /// Opens a folder of results; one without tables where it has a journal.
+    /// Opens a folder of results; one without tables where it has a journal. `whole` reads every table into memory, as
+    /// comparisons need them.
     ///
     /// # Errors
     /// [`ResultsError`]: a folder with neither, tables that are not whole.
-    pub fn open(folder: &Path) -> Result<Self, ResultsError> {
-        match Results::read(folder) {
+    pub fn open(folder: &Path, whole: bool) -> Result<Self, ResultsError> {
+        match Results::read_some(folder, if whole { &TableName::ALL } else { &NEEDED }) {
             Ok(results) => Ok(Self::of_results(results)),
             Err(ResultsError::Refused(refused)) => match so_far(folder) {
                 Ok(found) => Self::of_journal(folder, found),

@@ -87,7 +87,7 @@ pub(super) fn plays(
     let mut played = Played::default();
     if chosen.len() < able.len() && most > 0 {
         played.notes.push(format!(
-            "{} of {} crossings can be played: the ones with the largest values and an even sample; full models and very long crossings cannot.",
+            "{} of {} crossings listed can be played: the ones with the largest values and an even sample; full models and very long crossings cannot.",
             chosen.len(),
             able.len()
         ));

@@ -5,7 +5,7 @@
 use super::cells::Measure;
 use super::packed::Packed;
 use super::words;
-use crate::tables::{Kind, Results, Table, TableName};
+use crate::tables::{Kind, Results, ResultsError, Table, TableName};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
@@ -171,17 +171,20 @@ pub(super) fn severest(jobs: &Table, column: &str, most: usize) -> Vec<usize> {
 
 impl Rows {
     /// The rows with their profiles and the envelope of all jobs.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`].
     pub(super) fn new(
         results: &Results,
         axes: &[String],
         measures: &[Measure],
         (rows, note): &(Vec<usize>, String),
-    ) -> (Self, Option<Envelope>) {
+    ) -> Result<(Self, Option<Envelope>), ResultsError> {
         let jobs = results.jobs();
         let outcomes = measures.iter().map(|measure| measure.name).chain(FURTHER);
         let there = |name: &String| jobs.kind(name).is_some();
         let names = axes.iter().cloned().chain(outcomes.map(str::to_owned)).filter(there);
-        let (profile, envelope) = along(results, rows).unzip();
+        let (profile, envelope) = along(results, rows)?.unzip();
         let listed = Self {
             count: rows.len(),
             note: note.clone(),
@@ -194,7 +197,7 @@ impl Rows {
             })),
             profile,
         };
-        (listed, envelope)
+        Ok((listed, envelope))
     }
 }
 
@@ -222,6 +225,8 @@ fn column(jobs: &Table, name: String, rows: &[usize]) -> RowColumn {
 /// Values by place of the chosen rows and the largest of all jobs.
 struct Lines {
     places: usize,
+    /// Columns that the table has.
+    found: usize,
     rows: Vec<Vec<f32>>,
     largest: Vec<Vec<f32>>,
 }
@@ -230,6 +235,7 @@ impl Lines {
     fn new(rows: usize, places: usize, columns: usize) -> Self {
         Self {
             places,
+            found: 0,
             rows: vec![vec![f32::NAN; rows * places]; columns],
             largest: vec![vec![f32::NAN; places]; columns],
         }
@@ -259,45 +265,58 @@ impl Lines {
 }
 
 /// Profiles of the chosen rows and the envelope; none where the study leaves no table of positions.
-fn along(results: &Results, rows: &[usize]) -> Option<(Profile, Envelope)> {
-    let ends = results.table(TableName::Positions).filter(|table| table.rows() > 0)?;
+fn along(results: &Results, rows: &[usize]) -> Result<Option<(Profile, Envelope)>, ResultsError> {
     let listed: HashMap<u64, usize> = rows
         .iter()
         .enumerate()
         .map(|(i, &row)| (u64::from(super::job(results.jobs(), row)), i))
         .collect();
-    let whole = |list: &[Option<f64>], row: usize| list[row].map_or(0, |x| x as usize);
-    let (job, position, x) = (ends.numbers("job")?, ends.numbers("position")?, ends.numbers("x_m")?);
-    let places = (0..ends.rows()).map(|row| whole(position, row)).max()?;
-    let mut x_m = vec![f64::NAN; places];
+    let mut x_m: Vec<f64> = Vec::new();
+    results.scan(TableName::Positions, &["position", "x_m"], |part| {
+        for row in 0..part.rows() {
+            let place = whole(part, "position", row).saturating_sub(1);
+            if place >= x_m.len() {
+                x_m.resize(place + 1, f64::NAN);
+            }
+            if x_m[place].is_nan() {
+                x_m[place] = part.number("x_m", row).unwrap_or(f64::NAN);
+            }
+        }
+    })?;
+    if x_m.is_empty() {
+        return Ok(None);
+    }
+    let places = x_m.len();
+    let take = |name: TableName, place: &str, first: usize, columns: &[&str]| {
+        let mut lines = Lines::new(rows.len(), (places + 2).saturating_sub(2 * first), columns.len());
+        let asked: Vec<&str> = ["job", place, "y_m"].iter().chain(columns).copied().collect();
+        results.scan(name, &asked, |part| {
+            let numbers: Vec<&[Option<f64>]> = columns.iter().filter_map(|column| part.numbers(column)).collect();
+            lines.found = lines.found.max(numbers.len());
+            let y = part.numbers("y_m");
+            // of a joint its sum alone
+            for row in (0..part.rows()).filter(|&row| y.is_none_or(|y| y[row].is_none())) {
+                let of = listed.get(&(whole(part, "job", row) as u64)).copied();
+                let at = whole(part, place, row).saturating_sub(first);
+                lines.take(of, at, numbers.iter().map(|column| column[row]));
+            }
+        })?;
+        Ok::<Lines, ResultsError>(lines)
+    };
     let columns = ["peak_deflection_m", "peak_uplift_m", "deflection_m"];
-    let columns: Vec<&[Option<f64>]> = columns.iter().filter_map(|name| ends.numbers(name)).collect();
-    let mut at_ends = Lines::new(rows.len(), places, columns.len());
-    for row in 0..ends.rows() {
-        let place = whole(position, row).saturating_sub(1);
-        if x_m[place].is_nan() {
-            x_m[place] = x[row].unwrap_or(f64::NAN);
-        }
-        let of = listed.get(&(whole(job, row) as u64)).copied();
-        at_ends.take(of, place, columns.iter().map(|column| column[row]));
-    }
-    let mut at_joints = Lines::new(rows.len(), places.saturating_sub(2), 2);
-    if let Some(table) = results.table(TableName::Connectors) {
-        let (job, joint, y) = (table.numbers("job")?, table.numbers("joint")?, table.numbers("y_m"));
-        let columns = [table.numbers("peak_compression_n")?, table.numbers("peak_tension_n")?];
-        // the joint's sum alone
-        for row in (0..table.rows()).filter(|&row| y.is_none_or(|y| y[row].is_none())) {
-            let of = listed.get(&(whole(job, row) as u64)).copied();
-            let place = whole(joint, row).saturating_sub(2);
-            at_joints.take(of, place, columns.iter().map(|column| column[row]));
-        }
-    }
+    let mut at_ends = take(TableName::Positions, "position", 1, &columns)?;
+    let mut at_joints = take(
+        TableName::Connectors,
+        "joint",
+        2,
+        &["peak_compression_n", "peak_tension_n"],
+    )?;
     let profile = Profile {
         deflection_m: at_ends.row(0),
         uplift_m: at_ends.row(1),
         compression_n: at_joints.row(0),
         tension_n: at_joints.row(1),
-        signed_m: (columns.len() > 2).then(|| at_ends.row(2)),
+        signed_m: (at_ends.found == columns.len()).then(|| at_ends.row(2)),
     };
     let envelope = Envelope {
         joint_x_m: x_m.get(1..places.saturating_sub(1)).unwrap_or_default().to_vec(),
@@ -307,5 +326,9 @@ fn along(results: &Results, rows: &[usize]) -> Option<(Profile, Envelope)> {
         compression_n: at_joints.envelope(0),
         tension_n: at_joints.envelope(1),
     };
-    Some((profile, envelope))
+    Ok(Some((profile, envelope)))
+}
+
+fn whole(table: &Table, column: &str, row: usize) -> usize {
+    table.number(column, row).map_or(0, |x| x as usize)
 }

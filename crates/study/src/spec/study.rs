@@ -232,6 +232,15 @@ impl Study {
         names
     }
 
+    /// The document without what it asks in words, on which no number depends.
+    pub fn computed(&self) -> Value {
+        let mut document = self.document.clone();
+        if let Some(keys) = document.as_object_mut() {
+            keys.shift_remove("question");
+        }
+        document
+    }
+
     /// The study's document on one line and the blake3 hash of that text.
     pub fn text_and_hash(&self) -> (String, String) {
         text_and_hash(&self.document)

@@ -11,11 +11,11 @@ use crate::plan::Job;
 use crate::refusal::Refusal;
 use crate::run::JobRecord;
 use crate::spec::{Study, text_and_hash};
-use polars::prelude::{ParquetReader, SerReader};
+use polars::prelude::{DataFrame, ParquetReader, PolarsResult, SerReader};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
-use std::panic::catch_unwind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -49,9 +49,13 @@ pub struct Results {
     /// What its manifest says; null of a run that has just ended, or has not.
     pub manifest: Value,
     tables: BTreeMap<TableName, Table>,
+    on_disk: BTreeMap<TableName, PathBuf>,
     jobs: Table,
     row_of_job: HashMap<u64, usize>,
 }
+
+/// Rows of a table that a scan has in memory at a time.
+const SCANNED: usize = 1 << 18;
 
 impl Results {
     /// Reads a folder of results.
@@ -59,6 +63,14 @@ impl Results {
     /// # Errors
     /// [`ResultsError::Refused`] where the folder holds no results, [`ResultsError::Damaged`] where they are not whole.
     pub fn read(folder: &Path) -> Result<Self, ResultsError> {
+        Self::read_some(folder, &TableName::ALL)
+    }
+
+    /// The same with some tables alone in memory, that of jobs always; the others are there to be scanned.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn read_some(folder: &Path, wanted: &[TableName]) -> Result<Self, ResultsError> {
         let file = folder.join(manifest::FILE);
         let damaged = |file: &Path, found: &str| ResultsError::Damaged {
             file: file.to_owned(),
@@ -89,7 +101,7 @@ impl Results {
         if manifest["study"]["name"].as_str() != Some(name) {
             return Err(damaged(&file, &format!("'{name}', which is not the study's name")));
         }
-        let mut tables = BTreeMap::new();
+        let (mut tables, mut on_disk) = (BTreeMap::new(), BTreeMap::new());
         for table in TableName::ALL {
             let path = folder.join(table.file());
             match hashes.get(&table.file()).and_then(Value::as_str) {
@@ -101,7 +113,11 @@ impl Results {
                     if hash_of(&path).map_err(|e| damaged(&path, &e.to_string()))? != hash {
                         return Err(damaged(&path, "not the bytes that the manifest names"));
                     }
-                    tables.insert(table, read_table(&path).map_err(|found| damaged(&path, &found))?);
+                    if table == TableName::Jobs || wanted.contains(&table) {
+                        tables.insert(table, read_table(&path).map_err(|found| damaged(&path, &found))?);
+                    } else {
+                        on_disk.insert(table, path);
+                    }
                 }
             }
         }
@@ -130,7 +146,7 @@ impl Results {
         }
         let documents = (manifest["study"].clone(), manifest["bridge"].clone());
         let mut results = Self::new(name, folder, documents, jobs, tables);
-        results.manifest = manifest;
+        (results.manifest, results.on_disk) = (manifest, on_disk);
         Ok(results)
     }
 
@@ -166,6 +182,7 @@ impl Results {
             study,
             bridge,
             manifest: Value::Null,
+            on_disk: BTreeMap::new(),
             tables,
             jobs,
             row_of_job,
@@ -177,7 +194,34 @@ impl Results {
         &self.jobs
     }
 
-    /// A table, where the run left it.
+    /// Hands on a table part by part in the order of its rows, of one on disk with some columns alone; nothing where the run
+    /// left none.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`].
+    pub fn scan(&self, name: TableName, columns: &[&str], mut take: impl FnMut(&Table)) -> Result<(), ResultsError> {
+        if let Some(table) = self.table(name) {
+            take(table);
+            return Ok(());
+        }
+        let Some(path) = self.on_disk.get(&name) else {
+            return Ok(());
+        };
+        let mut start = 0;
+        loop {
+            let part = read_part(path, columns, start).map_err(|found| ResultsError::Damaged {
+                file: path.clone(),
+                found,
+            })?;
+            if part.rows() == 0 {
+                return Ok(());
+            }
+            take(&part);
+            start += part.rows();
+        }
+    }
+
+    /// A table, where the run left it and it was read.
     pub fn table(&self, name: TableName) -> Option<&Table> {
         match name {
             TableName::Jobs => Some(&self.jobs),
@@ -202,10 +246,28 @@ impl Results {
 
 /// Reads a Parquet file; that the library panics over it is an error like any other.
 fn read_table(path: &Path) -> Result<Table, String> {
+    guarded(path, |file| ParquetReader::new(file).finish())
+}
+
+/// Reads some rows of some columns, of those that the file has.
+fn read_part(path: &Path, columns: &[&str], start: usize) -> Result<Table, String> {
+    guarded(path, |file| {
+        let mut reader = ParquetReader::new(file);
+        let there = reader.schema()?;
+        let there = columns
+            .iter()
+            .filter(|name| there.contains(name))
+            .map(|name| (*name).to_owned());
+        let reader = reader.with_columns(Some(there.collect()));
+        reader.with_slice(Some((start, SCANNED))).finish()
+    })
+}
+
+fn guarded(path: &Path, read: impl Fn(File) -> PolarsResult<DataFrame>) -> Result<Table, String> {
     let read = || {
         let file = File::open(path).map_err(|e| e.to_string())?;
-        let frame = ParquetReader::new(file).finish().map_err(|e| e.to_string())?;
+        let frame = read(file).map_err(|e| e.to_string())?;
         Table::from_frame(&frame).map_err(|e| e.to_string())
     };
-    catch_unwind(read).unwrap_or_else(|_| Err("no readable Parquet file".to_owned()))
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err("no readable Parquet file".to_owned()))
 }

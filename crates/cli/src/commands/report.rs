@@ -1,0 +1,129 @@
+//! `pontoon report`: results as a page.
+
+use crate::args::{Common, Format, ReportArguments};
+use crate::{Ending, page, words};
+use anyhow::Result;
+use pontoon_study::Refusal;
+use pontoon_study::compare::{Comparison, against_reference};
+use pontoon_study::figures::marks;
+use pontoon_study::reference::Reference;
+use pontoon_study::report::{Found, Report, ReportSetting};
+use pontoon_study::run::Cache;
+use pontoon_study::tables::{Folder, FolderError};
+use serde_json::json;
+use std::fs::File;
+use std::io::{BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Shapes that a page animates, from the lowest.
+const MODES: usize = 16;
+
+/// Bytes of a file in which it shows whether it is a page.
+const HEAD: u64 = 4096;
+
+/// Opens results, gathers what a page tells of them and writes it.
+pub fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
+    let out = page_file(arguments)?;
+    let found = Found::open(&arguments.results, arguments.with.is_some())?;
+    let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
+    let judged = match &reference {
+        Some(reference) => Some((
+            against_reference(&found.results, reference)?,
+            marks(&found.results, reference)?,
+        )),
+        None => None,
+    };
+    let (compared, marks) = judged.unzip();
+    let setting = ReportSetting {
+        plays: usize::from(arguments.plays),
+        modes: MODES,
+        cache: Cache::of_user(),
+        commit: crate::COMMIT.map(str::to_owned),
+    };
+    let report = Report::new(found, compared.as_ref(), marks.unwrap_or_default(), &setting)?;
+    let bytes = write(&report, &out)?;
+    words::result(&match common.format {
+        Format::Json => format!("{:#}\n", object(&report, compared.as_ref(), &out, bytes)),
+        _ => text(&report, compared.as_ref(), &out, bytes),
+    })?;
+    if !common.quiet {
+        report.notes.iter().for_each(|note| words::note(note));
+    }
+    let good = compared.as_ref().is_none_or(Comparison::good) && report.jobs.failed == 0;
+    Ok(if good { Ending::Good } else { Ending::Short })
+}
+
+/// The page's file, which is no folder and no other file that somebody may miss.
+fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| arguments.results.join("report.html"));
+    let refuse = |found: &str| {
+        Err(Refusal::new(
+            &out,
+            "",
+            found,
+            "a new file, or a page of `pontoon report`",
+        ))
+    };
+    if out.is_dir() {
+        return refuse("a folder");
+    }
+    if out.file_name().is_none() {
+        return refuse("no name of a file");
+    }
+    if out.exists() {
+        let mut head = Vec::new();
+        let read = File::open(&out).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+        let is_page = head
+            .windows(page::MARK.len())
+            .any(|window| window == page::MARK.as_bytes());
+        if read.is_err() || !(is_page || head.is_empty()) {
+            return refuse("another file");
+        }
+    }
+    Ok(out)
+}
+
+/// Writes the page whole or not at all; its size in bytes.
+fn write(report: &Report, out: &Path) -> Result<u64, FolderError> {
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    Folder::create(folder.unwrap_or(Path::new(".")))?.write(&name, |to| {
+        let mut to = BufWriter::new(to);
+        page::write(report, &mut to)?;
+        to.flush()
+    })?;
+    let size = out.metadata().map(|data| data.len());
+    Ok(size.unwrap_or_default())
+}
+
+fn text(report: &Report, compared: Option<&Comparison>, out: &Path, bytes: u64) -> String {
+    let jobs = report.jobs;
+    let count = |n: usize, what: &str| (n > 0).then(|| format!(", {n} {what}")).unwrap_or_default();
+    let mut text = format!(
+        "jobs {}{}{}; {} crossings to play, {} mode shapes\n",
+        jobs.total,
+        count(jobs.failed, "failed"),
+        count(jobs.missing, "missing"),
+        report.plays.len(),
+        report.modes.iter().map(|set| set.list.len()).sum::<usize>(),
+    );
+    if let Some(compared) = compared {
+        text += &format!("{}\n", compared.tally());
+    }
+    text + &format!("page of {:.1} MB in {}\n", 1e-6 * bytes as f64, out.display())
+}
+
+fn object(report: &Report, compared: Option<&Comparison>, out: &Path, bytes: u64) -> serde_json::Value {
+    json!({
+        "study": report.study.name,
+        "page": out.display().to_string(),
+        "bytes": bytes,
+        "jobs": report.jobs,
+        "plays": report.plays.len(),
+        "notes": report.notes,
+        "good": compared.map(Comparison::good),
+    })
+}
