@@ -9,7 +9,7 @@ use pontoon_study::figures::marks;
 use pontoon_study::reference::Reference;
 use pontoon_study::report::{Found, Report, ReportSetting};
 use pontoon_study::run::Cache;
-use pontoon_study::tables::{Folder, FolderError};
+use pontoon_study::tables::{Folder, FolderError, PAGE};
 use serde_json::json;
 use std::fs::File;
 use std::io::{BufWriter, Read, Write};
@@ -58,7 +58,7 @@ fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
     let out = arguments
         .out
         .clone()
-        .unwrap_or_else(|| arguments.results.join("report.html"));
+        .unwrap_or_else(|| arguments.results.join(PAGE));
     let refuse = |found: &str| {
         Err(Refusal::new(
             &out,

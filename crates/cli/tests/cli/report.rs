@@ -226,6 +226,13 @@ fn the_same_results_give_the_same_bytes_and_a_page_replaces_none_but_a_page() {
         );
         assert_eq!(fs::read(stage.path(out)).ok(), before);
     }
+    // and results that are set aside take their page with them
+    let again = stage.pontoon(&["run", "study.json", "--out", "moved", "--quiet"]);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    assert_eq!(stage.pontoon(&["report", "moved"]).status.code(), Some(0));
+    let fresh = stage.pontoon(&["run", "study.json", "--out", "moved", "--quiet", "--fresh"]);
+    assert_eq!(fresh.status.code(), Some(0), "{}", stderr(&fresh));
+    assert!(!stage.path("moved/report.html").exists());
     // a page that cannot be written whole leaves the old one
     let old = fs::read(stage.path("r/report.html")).unwrap();
     fs::create_dir(stage.path("r/.report.html.partial")).unwrap();

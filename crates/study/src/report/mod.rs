@@ -285,10 +285,7 @@ impl Report {
                 name: results.name.clone(),
                 question,
                 kind: kind.unwrap_or_else(|| kind_of(&results.study)),
-                settings: study
-                    .as_ref()
-                    .map(|study| settings::settings(study, &axes))
-                    .unwrap_or_default(),
+                settings: study.as_ref().map(settings::settings).unwrap_or_default(),
             },
             bridge: all.first().map(|job| bridge_note(&job.bridge.design)),
             jobs: Counts {

@@ -2,17 +2,12 @@
 //!
 //! Knows the study's spec. Does not know results.
 
-use super::axes::Axis;
 use super::{Item, words};
 use crate::spec::{AnalysisSpec, Kind, ModelSpec, SolverSpec, Study, TimeStepSpec};
 use pontoon_core::vehicle::Inertia;
-use serde_json::Value;
 
-/// Values of an axis that are listed.
-const MOST_LISTED: usize = 8;
-
-/// The settings of a study and its axes.
-pub(super) fn settings(study: &Study, axes: &[Axis]) -> Vec<Item> {
+/// The settings of a study, its axes apart.
+pub(super) fn settings(study: &Study) -> Vec<Item> {
     let mut list = vec![
         Item::new("bridge", bridge(study)),
         Item::new("connectors", connectors(study)),
@@ -25,7 +20,6 @@ pub(super) fn settings(study: &Study, axes: &[Axis]) -> Vec<Item> {
         "analysis",
         analysis(checked.as_ref().unwrap_or(&study.spec.analysis)),
     ));
-    list.extend(axes.iter().filter(|axis| !axis.values.is_empty()).map(axis_item));
     list
 }
 
@@ -113,20 +107,4 @@ fn analysis(spec: &AnalysisSpec) -> String {
             )
         }
     }
-}
-
-fn axis_item(axis: &Axis) -> Item {
-    let said = |value: &Value| words::value(&axis.name, value);
-    let values: Vec<&Value> = axis.values.iter().filter(|value| !value.is_null()).collect();
-    let text = match (&axis.bins, values.as_slice()) {
-        (Some(bins), _) => {
-            let ends: Vec<[f64; 2]> = bins.iter().flatten().copied().collect();
-            let [from, to] = [ends.first().map(|e| e[0]), ends.last().map(|e| e[1])].map(|x| said(&x.into()));
-            format!("{from} to {to}, in {} ranges here", ends.len())
-        }
-        (None, few) if few.len() <= MOST_LISTED => few.iter().map(|v| said(v)).collect::<Vec<_>>().join(", "),
-        (None, [first, .., last]) => format!("{} to {}, {} values", said(first), said(last), values.len()),
-        (None, _) => String::new(),
-    };
-    Item::new(axis.label.clone(), text)
 }

@@ -14,6 +14,11 @@ use serde_json::Value;
 /// Bridges of a study of modes whose shapes are shown.
 const MOST_BRIDGES: usize = 4;
 
+/// Motions that nothing restores, of a bridge floating free, and the frequency below which a mode is one [Hz]: there is
+/// nothing to see in them.
+const RIGID: usize = 3;
+const UNRESTORED_HZ: f64 = 1e-3;
+
 /// Rows of modes that a page lists.
 const MOST_ROWS: usize = 2_000;
 
@@ -87,8 +92,12 @@ pub(super) fn mode_sets(
             Some(axes) => format!("{held}: {axes}"),
             None => held.to_owned(),
         };
-        match found(job, ends, model, count.min(most)) {
-            Ok(list) => sets.push(ModeSet { label, list }),
+        let restored = |shape: &ModeShape| of_modes || shape.frequency_hz > UNRESTORED_HZ;
+        match found(job, ends, model, count.min(most) + if of_modes { 0 } else { RIGID }) {
+            Ok(list) => sets.push(ModeSet {
+                label,
+                list: list.into_iter().filter(restored).take(most).collect(),
+            }),
             Err(reason) => notes.push(format!("No mode shapes, {label}: {reason}.")),
         }
     }

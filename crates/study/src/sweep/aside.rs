@@ -4,7 +4,7 @@
 
 use super::SweepError;
 use crate::journal::{Book, FOLDER, JournalError};
-use crate::tables::OwnFiles;
+use crate::tables::{OwnFiles, PAGE};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,11 @@ pub(super) fn set_aside(folder: &Path, book: Option<&Book>) -> Result<Option<Pat
     }
     if list.is_empty() {
         return Ok(None);
+    }
+    // a page of theirs goes with them, before the journal
+    let page = folder.join(PAGE);
+    if page.exists() {
+        list.insert(0, page);
     }
     let to = free(&folder.join(ASIDE), &name(book));
     let error = |path: &Path, cause| JournalError::Io {

@@ -21,6 +21,9 @@ pub struct FolderError {
     pub cause: io::Error,
 }
 
+/// Name of a report's page beside the tables that it shows.
+pub const PAGE: &str = "report.html";
+
 /// The files of a run's results.
 #[derive(Debug, Clone, Copy)]
 pub struct OwnFiles;

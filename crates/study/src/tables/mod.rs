@@ -14,7 +14,7 @@ mod summary;
 mod table;
 mod writer;
 
-pub use folder::{Folder, FolderError, OwnFiles};
+pub use folder::{Folder, FolderError, OwnFiles, PAGE};
 pub use manifest::{Manifest, Moment, check_own};
 pub use parquet::Provenance;
 pub use results::{Results, ResultsError};
