@@ -6,6 +6,7 @@ use thiserror::Error;
 
 pub mod crossing;
 pub mod modes;
+pub mod snapshot;
 pub mod statics;
 
 /// Why an analysis gave no answer.

@@ -4,10 +4,11 @@
 
 use super::fit::check_fit;
 use super::{BridgeDesign, BridgeError, Model};
-use crate::fem::{MassKind, NodeId, SparseRow, SymmetricMatrix, assemble};
+use crate::fem::{MassKind, Mesh, NodeId, SparseRow, SymmetricMatrix, assemble};
 use crate::module::{Grid, ModuleMesh, mesh_module};
 use crate::superelement::SuperElement;
 use crate::water::spread;
+use faer::MatRef;
 use std::collections::BTreeSet;
 
 /// Translation along the bridge, across it, and up, as directions of a node's dofs.
@@ -28,6 +29,8 @@ pub(super) enum Side {
 pub struct PreparedModule {
     pub(super) model: Model,
     pub(super) grid: Grid,
+    /// Its nodes, shells and beams.
+    pub(super) mesh: Mesh,
     /// Structure and water.
     pub(super) k: SymmetricMatrix,
     /// Structure and water.
@@ -156,6 +159,7 @@ impl PreparedModule {
         Ok(Self {
             model,
             grid,
+            mesh,
             k,
             m,
             direct,
@@ -191,6 +195,11 @@ impl PreparedModule {
     /// Place of a node's translation among the dofs, where it is one of them.
     pub(super) fn dof(&self, node: NodeId, direction: usize) -> Option<usize> {
         self.direct[node.dof(direction)]
+    }
+
+    /// The transformation to all dofs of the finite elements, where the module is condensed.
+    pub(super) fn transformation(&self) -> Option<MatRef<'_, f64>> {
+        self.condensed.as_ref().map(|c| c.transformation.as_ref())
     }
 
     /// A node's translation in terms of the dofs: itself, or a row of the transformation.

@@ -6,7 +6,9 @@
 mod box_mesh;
 mod design;
 mod grid;
+mod plates;
 
 pub use box_mesh::{MeshSize, mesh_module, mesh_size};
 pub use design::{LongitudinalWalls, Material, MeshDesign, ModuleDesign, Stiffeners, TransverseWalls};
 pub use grid::{Grid, ModuleMesh};
+pub use plates::Plate;

@@ -6,6 +6,7 @@
 mod observe;
 mod operated;
 mod step;
+mod under_way;
 
 use super::AnalysisError;
 use super::modes::Rayleigh;
@@ -20,6 +21,7 @@ use observe::Observer;
 pub use operated::{OperatorSolver, REFINEMENTS};
 use std::sync::{Arc, OnceLock};
 use step::{Instant, Stepper};
+pub use under_way::UnderWay;
 
 /// What all crossings of a solver share.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,14 +101,13 @@ impl CrossingSolver {
     /// # Errors
     /// [`AnalysisError::NotConverged`] with time and connector, [`AnalysisError::NotFinite`], [`AnalysisError::Factor`].
     pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
-        let h = self.settings.time_step_s;
-        let (before, after) = span(
-            self.bridge.design().length_m(),
-            vehicle,
-            h,
-            crossing.speed_m_s,
-            crossing.tail_s,
-        );
+        let mut under = self.begin(vehicle, crossing);
+        while under.step()? {}
+        Ok(under.finish())
+    }
+
+    /// Begins a crossing that can be looked at between its steps; taken to its end it is the one of [`Self::solve`].
+    pub fn begin<'a>(&'a self, vehicle: &'a Vehicle, crossing: &Crossing) -> UnderWay<'a> {
         let stepper = Stepper {
             bridge: &self.bridge,
             track: &self.track,
@@ -119,16 +120,8 @@ impl CrossingSolver {
                 connection: crossing.connection,
             },
         };
-        let mut observer = Observer::new(&self.bridge, &crossing.record);
-        let start_s = -(before as f64) * h;
-        let mut now = stepper.at_rest(start_s);
-        observer.note_history(&now);
-        for n in 1..=before + after {
-            let to_s = (n as f64 - before as f64) * h;
-            now = self.advance(&stepper, &mut observer, now, to_s, 0)?;
-            observer.note_history(&now);
-        }
-        Ok(observer.finish())
+        let observer = Observer::new(&self.bridge, &crossing.record);
+        UnderWay::new(self, stepper, observer, crossing.tail_s)
     }
 
     /// One step to `to_s`, halved where the contact does not settle.
@@ -136,17 +129,17 @@ impl CrossingSolver {
         &self,
         stepper: &Stepper<'_>,
         observer: &mut Observer<'_>,
-        now: Instant,
+        now: &Instant,
         to_s: f64,
         halvings: usize,
     ) -> Result<Instant, AnalysisError> {
         let level = self.level(halvings)?;
-        match stepper.step(level, &now, to_s, self.settings.newton_limit) {
+        match stepper.step(level, now, to_s, self.settings.newton_limit) {
             Ok(next) => {
                 if !next.is_finite() {
                     return Err(AnalysisError::NotFinite { time_s: to_s });
                 }
-                observer.note_step(&now, &next);
+                observer.note_step(now, &next);
                 Ok(next)
             }
             Err(stuck) if halvings == self.settings.bisection_limit => {
@@ -163,7 +156,7 @@ impl CrossingSolver {
                 observer.note_bisection(stuck.iterations);
                 let middle_s = now.time_s + 0.5 * (to_s - now.time_s);
                 let middle = self.advance(stepper, observer, now, middle_s, halvings + 1)?;
-                self.advance(stepper, observer, middle, to_s, halvings + 1)
+                self.advance(stepper, observer, &middle, to_s, halvings + 1)
             }
         }
     }

@@ -5,6 +5,7 @@
 mod creeping;
 
 use super::AnalysisError;
+use super::snapshot::{Snapshot, connectors, wheels};
 use crate::bridge::{Bridge, Load};
 use crate::connector::{Connection, Law, State};
 use crate::contact::{ContactProblem, ContactSolution, NotSettled};
@@ -72,18 +73,8 @@ impl StaticSolver {
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
     pub fn solve(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
-        let load = self.load(vehicle, case, case.load_x_m);
-        let e_free: Vec<f64> = (0..self.bridge.connectors.len())
-            .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
-            .collect();
-        let contact = brought_on(self.flexibility.among_connectors(), &case.law(), &e_free, case.load_x_m)?;
+        let (_, contact, u) = self.rest(vehicle, case)?;
         let bridge = &self.bridge;
-        let mut u = vec![0.0; bridge.dofs()];
-        self.flexibility
-            .add_track_response(&SparseRow::combine(&[(-1.0, &load.weight)]), &mut u);
-        for (i, force) in contact.forces.iter().enumerate() {
-            self.flexibility.add_connector_response(i, -force, &mut u);
-        }
         let design = bridge.design();
         let joints = (2..=design.modules)
             .zip(contact.forces.chunks(design.connectors.y_m.len()))
@@ -118,6 +109,40 @@ impl StaticSolver {
             newton_iterations: contact.iterations,
             equilibrium: self.equilibrium(vehicle, case, &u),
         })
+    }
+
+    /// The same as the whole state of the bridge.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn state(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<Snapshot, AnalysisError> {
+        let (load, contact, u) = self.rest(vehicle, case)?;
+        let place = (case.load_n, case.load_x_m - vehicle.centre_ahead_m());
+        let at_rest = vec![0.0; load.riders.len()];
+        Ok(Snapshot {
+            time_s: 0.0,
+            elastic: u.clone(),
+            u,
+            inertial: None,
+            connectors: connectors(&contact.states, &contact.forces, &contact.elongations),
+            wheels: wheels(self.flexibility.track(), vehicle, place, &load, &at_rest),
+        })
+    }
+
+    /// The load, the connectors' forces and the displacement of a case.
+    fn rest(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<(Load, ContactSolution, Vec<f64>), AnalysisError> {
+        let load = self.load(vehicle, case, case.load_x_m);
+        let e_free: Vec<f64> = (0..self.bridge.connectors.len())
+            .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
+            .collect();
+        let contact = brought_on(self.flexibility.among_connectors(), &case.law(), &e_free, case.load_x_m)?;
+        let mut u = vec![0.0; self.bridge.dofs()];
+        self.flexibility
+            .add_track_response(&SparseRow::combine(&[(-1.0, &load.weight)]), &mut u);
+        for (i, force) in contact.forces.iter().enumerate() {
+            self.flexibility.add_connector_response(i, -force, &mut u);
+        }
+        Ok((load, contact, u))
     }
 
     /// Largest static deflection of any position over all places of the load along the bridge [m].
