@@ -114,6 +114,14 @@ pub enum Command {
         after_help = "Examples:\n  pontoon report results/fig09_static --with studies/fig09_static\n  pontoon report results/fu2005 --out fu2005.html"
     )]
     Report(ReportArguments),
+    /// Mode shapes, static cases and crossings as VTK files for ParaView.
+    ///
+    /// Of a bridge file its mode shapes and, where a load is given, a static case; of results a job's mode shapes and its static
+    /// case or crossing, which is solved again. Open the .pvd files. The folder is there whole afterwards, or as it was before.
+    #[command(
+        after_help = "Examples:\n  pontoon export studies/bridges/fu2005.json --to vtk --load-n 230300 --load-position 7\n  pontoon export results/fu2005 --to vtk --job 20 --count 0"
+    )]
+    Export(ExportArguments),
     /// The JSON Schema of a file, for an editor or a checker.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
@@ -295,6 +303,57 @@ impl From<ModelArgument> for ModelSpec {
             ModelArgument::SuperElement => Self::SuperElement,
         }
     }
+}
+
+/// What `export` takes.
+#[derive(Debug, Args)]
+pub struct ExportArguments {
+    /// A folder of results or a bridge file.
+    #[arg(value_name = "RESULTS|BRIDGE")]
+    pub source: PathBuf,
+    /// Folder to write: one that is not there, is empty or holds an earlier export.
+    #[arg(long, value_name = "DIR")]
+    pub to: PathBuf,
+    /// How many modes, from the lowest; 0: none. What a study of modes asks for, 20 otherwise, where absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub count: Option<u16>,
+    /// Modes of the bridge on its supports in place of floating free.
+    #[arg(long)]
+    pub supports: bool,
+    /// Weight of a vehicle that stands on the bridge [N]: a static case. The vehicle is the study's, a single footprint of
+    /// 3.35 m on two tracks of a bridge file.
+    #[arg(long, value_name = "N")]
+    pub load_n: Option<f64>,
+    /// Place of its centre [m].
+    #[arg(long, value_name = "X", requires = "load_n", conflicts_with = "load_position")]
+    pub load_x_m: Option<f64>,
+    /// Position of its centre, 1 to modules + 1.
+    #[arg(long, value_name = "P", requires = "load_n")]
+    pub load_position: Option<usize>,
+    /// How the connectors work under it; nonlinear where absent.
+    #[arg(long, value_enum, requires = "load_n")]
+    pub connection: Option<ConnectionArgument>,
+    /// Tension gap under it [m]; the bridge's where absent.
+    #[arg(long, value_name = "X", requires = "load_n")]
+    pub gap_tension_m: Option<f64>,
+    /// Compression gap under it [m]; the bridge's where absent.
+    #[arg(long, value_name = "X", requires = "load_n")]
+    pub gap_compression_m: Option<f64>,
+    /// Number of the job, from 0; the one with the largest deflection where absent.
+    #[arg(long, value_name = "N")]
+    pub job: Option<usize>,
+    /// Time steps from one instant of a crossing to the next; as many as give about 20 instants a second where absent.
+    #[arg(long, value_name = "K")]
+    pub every: Option<usize>,
+}
+
+/// How connectors work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConnectionArgument {
+    /// Both trusses at once, without gaps.
+    Linear,
+    /// Each truss behind its gap.
+    Nonlinear,
 }
 
 /// What `schema` takes.

@@ -65,6 +65,7 @@ fn main() -> ExitCode {
         Command::Calibrate(calibrate) => commands::calibrate::calibrate(&calibrate, common),
         Command::Compare(compare) => commands::compare::compare(&compare, common),
         Command::Report(report) => commands::report::report(&report, common),
+        Command::Export(export) => commands::export::export(&export, common),
         Command::Schema(schema) => commands::schema::schema(&schema),
     };
     match ended {

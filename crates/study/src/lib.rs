@@ -16,6 +16,7 @@
 //! | [`report`] | what a page tells of results |
 //! | [`calibrate`] | a bridge's numbers identified from the checks of references |
 //! | [`figures`] | what a paper would draw of results, as numbers, with the points of a reference beside them |
+//! | [`export`] | mode shapes, static cases and crossings as grids for ParaView |
 //! | [`modes`] | natural frequencies of a bridge file |
 //! | [`schema`] | the JSON Schema of what a person writes |
 //!
@@ -24,6 +25,7 @@
 pub mod calibrate;
 pub mod compare;
 pub mod document;
+pub mod export;
 pub mod figures;
 pub mod filter;
 pub mod journal;

@@ -3,6 +3,7 @@
 pub mod calibrate;
 pub mod compare;
 pub mod explain;
+pub mod export;
 pub mod merge;
 pub mod modes;
 pub mod plan;

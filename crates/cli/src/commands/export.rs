@@ -1,0 +1,51 @@
+//! `pontoon export`: mode shapes, static cases and crossings as VTK files.
+
+use crate::Ending;
+use crate::args::{Common, ConnectionArgument, ExportArguments, Format};
+use crate::words;
+use anyhow::Result;
+use pontoon_study::Refusal;
+use pontoon_study::export::{ExportError, Exported, LoadRequest, Request, export as write};
+use pontoon_study::modes::BridgeError;
+use serde_json::{Value, json};
+
+/// Writes what is asked for and says which files to open.
+pub fn export(arguments: &ExportArguments, common: Common) -> Result<Ending> {
+    let request = Request {
+        count: arguments.count.map(usize::from),
+        supports: arguments.supports,
+        load: arguments.load_n.map(|load_n| LoadRequest {
+            load_n,
+            load_x_m: arguments.load_x_m,
+            load_position: arguments.load_position,
+            linear: arguments.connection == Some(ConnectionArgument::Linear),
+            gap_tension_m: arguments.gap_tension_m,
+            gap_compression_m: arguments.gap_compression_m,
+        }),
+        job: arguments.job,
+        every: arguments.every,
+    };
+    let note = |what: &str| {
+        if !common.quiet {
+            words::note(what);
+        }
+    };
+    let exported = write(&arguments.source, &arguments.to, &request, &note).map_err(|error| match error {
+        ExportError::Refused(refused) => anyhow::Error::from(refused),
+        ExportError::Results(error) => error.into(),
+        ExportError::Bridge(BridgeError::Design(refused)) => Refusal::of(&arguments.source, "", refused).into(),
+        other => other.into(),
+    })?;
+    words::result(&match common.format {
+        Format::Json => format!("{:#}\n", json!(exported)),
+        _ => text(&exported, &arguments.to.display().to_string()),
+    })?;
+    Ok(Ending::Good)
+}
+
+fn text(exported: &Exported, to: &str) -> String {
+    let columns = ["file", "instants", "points", "cells", "shows"].map(str::to_owned);
+    let row = |part: &Value| columns.iter().map(|column| part[column].clone()).collect();
+    let rows: Vec<Vec<Value>> = exported.parts.iter().map(|part| row(&json!(part))).collect();
+    format!("{}{} files in {to}\n", words::table(&columns, &rows), exported.files)
+}

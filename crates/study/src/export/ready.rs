@@ -1,0 +1,83 @@
+//! The bridge and its mesh made ready, a job's solver.
+//!
+//! Knows what is built of a design. Does not know what is exported of it.
+
+use super::ExportError;
+use super::subject::CrossingWanted;
+use crate::plan::Task;
+use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
+use pontoon_core::analysis::modes::{bending_frequencies_hz, rayleigh};
+use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
+use pontoon_core::response::Record;
+use std::sync::Arc;
+
+/// A bridge with its mesh.
+#[derive(Debug)]
+pub(super) struct Ready {
+    pub bridge: Arc<Bridge>,
+    pub meshed: MeshedBridge,
+}
+
+impl Ready {
+    /// Builds a design.
+    ///
+    /// # Errors
+    /// [`ExportError::Bridge`].
+    pub(super) fn new(design: &BridgeDesign, model: Model, ends: Ends) -> Result<Self, ExportError> {
+        Self::of(design, &PreparedModule::new(design, model)?, ends)
+    }
+
+    fn of(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Result<Self, ExportError> {
+        Ok(Self {
+            bridge: Arc::new(Bridge::new(design, module, ends)?),
+            meshed: MeshedBridge::new(design, module, ends)?,
+        })
+    }
+
+    /// The bridge of a crossing with its settings: those of its study, at the time step of its answer.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub(super) fn of_crossing(wanted: &CrossingWanted) -> Result<(Self, CrossingSettings), ExportError> {
+        let (design, spec) = (&wanted.job.bridge.design, &wanted.job.analysis.spec);
+        let module = PreparedModule::new(design, spec.model.into())?;
+        let damping = spec.damping.unwrap_or_default();
+        let frequencies_hz = match damping.frequencies_hz {
+            Some(stated) => stated,
+            None => bending_frequencies_hz(&Bridge::new(design, &module, Ends::Free)?)?,
+        };
+        let settings = CrossingSettings {
+            time_step_s: wanted.time_step_s,
+            spectral_radius: spec.spectral_radius.unwrap_or_default(),
+            rayleigh: rayleigh(damping.ratio, frequencies_hz),
+            newton_limit: spec.newton_limit.unwrap_or_default(),
+            bisection_limit: spec.bisection_limit.unwrap_or_default(),
+        };
+        Ok((Self::of(design, &module, Ends::Supported)?, settings))
+    }
+
+    /// The solver of a crossing on this bridge.
+    ///
+    /// # Errors
+    /// [`ExportError::Analysis`].
+    pub(super) fn solver(&self, settings: &CrossingSettings) -> Result<CrossingSolver, ExportError> {
+        Ok(CrossingSolver::new(&self.bridge, settings)?)
+    }
+}
+
+/// The crossing of a job.
+pub(super) fn crossing_of(wanted: &CrossingWanted) -> Crossing {
+    let job = &wanted.job;
+    let speed_m_s = match job.task {
+        Task::Crossing { speed_m_s } => speed_m_s,
+        _ => 0.0,
+    };
+    Crossing {
+        connection: job.connection,
+        connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
+        load_n: job.load_n,
+        speed_m_s,
+        tail_s: job.analysis.spec.tail_s.unwrap_or_default(),
+        record: Record::default(),
+    }
+}
