@@ -16,6 +16,9 @@ CODE_OR_MATH = re.compile(
     r"|\$(?P<inline>[^\s$](?:[^$\n]*[^\s$])?)\$",
     re.DOTALL | re.MULTILINE,
 )
+# Text between tags, and what Markdown would take for its own there.
+TEXT = re.compile(r"(?<=>)[^<]+")
+HARMLESS = {c: f"&#{ord(c)};" for c in "*_`[]|\\~"}
 
 
 def set_equations(text, page):
@@ -27,7 +30,8 @@ def set_equations(text, page):
         if tex is None:
             return match[0]
         try:
-            return convert.convert_with_local_state(tex.strip(), displaystyle=match["display"] is not None)
+            mathml = convert.convert_with_local_state(tex.strip(), displaystyle=match["display"] is not None)
+            return TEXT.sub(lambda text: "".join(HARMLESS.get(c, c) for c in text[0]), mathml)
         except math_core.LatexError as error:
             sys.exit(f"{page}: no equation: {tex.strip()}: {error}")
 

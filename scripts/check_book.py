@@ -1,0 +1,167 @@
+"""Tries the book: its links, the paths and items it names, and every block of code; and the notebooks beside it.
+
+    check_book.py [--text] [--figures] [--book DIR] [--only WORD]
+
+Exit status 1 where something of the book is not so.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import book_pages
+import book_run
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def program():
+    """The program under trial."""
+    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release/pontoon"
+    found = Path(os.environ.get("PONTOON", built)).resolve()
+    if not found.is_file():
+        sys.exit(f"{found} is no file: build it, or name it by PONTOON")
+    if found.name != "pontoon":
+        sys.exit(f"{found}: the program must be called pontoon")
+    return found
+
+
+def faults_of_pages(pages, source):
+    """What is wrong with the book as a text."""
+    summary = pages.get("SUMMARY.md")
+    if summary is None:
+        return ["SUMMARY.md is missing"]
+    listed = {match["to"] for match in book_pages.LINK.finditer(summary.text)}
+    faults = [f"{name}: not in SUMMARY.md" for name in sorted(set(pages) - listed - {"SUMMARY.md"})]
+    for page in pages.values():
+        faults += book_pages.faults_of_text(page, pages, source, ROOT)
+        for block in page.blocks:
+            wrong = fault_of_block(block)
+            if wrong:
+                faults.append(f"{block.place}: {wrong}")
+    return faults
+
+
+def fault_of_block(block):
+    """What is wrong with how a block is marked; none where nothing is."""
+    if block.language not in book_run.LANGUAGES:
+        return f"a block of '{block.language}', not of {', '.join(sorted(book_run.LANGUAGES))}"
+    if "not-run" in block.settings and not block.settings["not-run"].strip():
+        return "not run, without a reason"
+    included = all(book_pages.INCLUDE.fullmatch(line.strip()) for line in block.body.splitlines() if line.strip())
+    if block.language == "rust" and not included:
+        return "Rust that is no part of a tested file: include it"
+    return None
+
+
+def run_pages(pages, figures, source, counts):
+    """Runs every block of every page; gives what is not so."""
+    faults = []
+    with tempfile.TemporaryDirectory(prefix="pontoon-book-") as folder:
+        folder = Path(folder)
+        for page in pages:
+            sandbox = None
+            began = time.monotonic()
+            for block in page.blocks:
+                if "not-run" in block.settings:
+                    counts["not run"] += 1
+                    continue
+                if block.language == "rust":
+                    continue
+                if block.language == "text" and "output" not in block.words:
+                    continue
+                if sandbox is None:
+                    own = folder / page.name.replace("/", "-")
+                    own.mkdir()
+                    sandbox = book_run.Sandbox(own, ROOT, program(), Path(sys.executable), folder / "cache")
+                try:
+                    sandbox.run(block)
+                    counts[block.language] += 1
+                except (book_run.Mismatch, ValueError, KeyError, book_run.subprocess.TimeoutExpired) as wrong:
+                    faults.append(f"{block.place}: {wrong}")
+            if sandbox:
+                if figures:
+                    book_run.keep_figures(sandbox, source / "figures")
+                sandbox.close()
+                print(f"  {page.name}  {time.monotonic() - began:.1f} s", file=sys.stderr)
+    return faults
+
+
+def run_notebooks(counts):
+    """Runs the notebooks of `examples/` on results of their own; gives what is not so."""
+    import nbformat
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError
+
+    faults = []
+    with tempfile.TemporaryDirectory(prefix="pontoon-notebooks-") as folder:
+        folder = Path(folder)
+        sandbox = book_run.Sandbox(folder, ROOT, program(), Path(sys.executable), folder / "cache")
+        done = sandbox.bash("pontoon run studies/fu2005 --quiet")
+        if done.returncode:
+            return [f"examples: {done.stderr}"]
+        for path in sorted((ROOT / "examples").glob("*.ipynb")):
+            notebook = nbformat.read(path, as_version=4)
+            nbformat.validate(notebook)
+            for cell in notebook.cells:
+                if cell.cell_type == "code" and (cell.outputs or cell.execution_count):
+                    faults.append(f"{path.name}: holds outputs; scripts/check-book --strip takes them out")
+                    break
+            client = NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder / "examples")}})
+            try:
+                client.execute()
+                counts["notebooks"] += 1
+            except CellExecutionError as error:
+                faults.append(f"{path.name}: {error}")
+            kept = os.environ.get("KEEP_NOTEBOOKS")
+            if kept:
+                nbformat.write(notebook, Path(kept) / path.name)
+    return faults
+
+
+def strip_notebooks():
+    """Takes outputs out of the notebooks."""
+    import nbformat
+
+    for path in sorted((ROOT / "examples").glob("*.ipynb")):
+        notebook = nbformat.read(path, as_version=4)
+        for cell in notebook.cells:
+            cell.metadata = {}
+            if cell.cell_type == "code":
+                cell.outputs, cell.execution_count = [], None
+        nbformat.write(notebook, path)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--text", action="store_true", help="links, paths and items alone: runs nothing")
+    parser.add_argument("--figures", action="store_true", help="keeps the figures that the pages draw")
+    parser.add_argument("--strip", action="store_true", help="takes outputs out of the notebooks, and no more")
+    parser.add_argument("--book", type=Path, default=ROOT / "book/src", help="the book's source")
+    parser.add_argument("--only", help="pages whose name holds this word")
+    arguments = parser.parse_args()
+    if arguments.strip:
+        return strip_notebooks()
+    source = arguments.book.resolve()
+    read = [book_pages.read_page(path, source) for path in sorted(source.rglob("*.md"))]
+    pages = {page.name: page for page in read}
+    faults = faults_of_pages(pages, source)
+    counts = Counter()
+    if not arguments.text:
+        chosen = [page for page in read if not arguments.only or arguments.only in page.name]
+        faults += run_pages(chosen, arguments.figures, source, counts)
+        if not arguments.only and arguments.book == ROOT / "book/src":
+            faults += run_notebooks(counts)
+    for fault in faults:
+        print(fault)
+    blocks = ", ".join(f"{number} {what}" for what, number in sorted(counts.items()))
+    print(f"{len(pages)} pages; {blocks or 'nothing run'}; {len(faults)} not so")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

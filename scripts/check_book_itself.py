@@ -1,0 +1,66 @@
+"""Whether check_book.py finds what is wrong: small books with one fault each must fail, the same ones without it must not."""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+CHECK = Path(__file__).with_name("check_book.py")
+SUMMARY = "# Summary\n\n[One](one.md)\n"
+FENCE = "```"
+
+
+def block(info, body):
+    return f"# One\n\n{FENCE}{info}\n{body}\n{FENCE}\n"
+
+
+# what is tried, a page that is right, the same with its fault
+TRIALS = [
+    ("output", block("console", "$ echo 1.25 m\n1.25 m"), block("console", "$ echo 1.25 m\n1.26 m")),
+    ("output left out", block("console", "$ seq 3\n1\n...\n3"), block("console", "$ seq 3\n1\n3")),
+    ("numbers within", block("console within=0.01", "$ echo a 1.004\na 1.0"), block("console within=0.01", "$ echo a 1.02\na 1.0")),
+    ("exit status", block("console exit=2", "$ echo no >&2; exit 2\nno"), block("console", "$ exit 2")),
+    ("python", block("python", "assert 1 + 1 == 2"), block("python", "assert 1 + 1 == 3")),
+    ("python's output", block("python", "print(2)") + block("text output", "2"), block("python", "print(2)") + block("text output", "3")),
+    ("a study", block("json study with=studies/smoke/study.json", '{ "name": "a" }'),
+     block("json study with=studies/smoke/study.json", '{ "nam": "a" }')),
+    ("a bridge", block("json bridge with=studies/bridges/smoke.json", '{ "modules": 2 }'),
+     block("json bridge with=studies/bridges/smoke.json", '{ "modules": 0 }')),
+    ("a reason", block('console not-run="no cluster"', "$ false"), block('console not-run=" "', "$ false")),
+    ("a language", block("text", "x"), block("xyz", "x")),
+    ("Rust", block("rust", "{{#include one.md}}"), block("rust", "fn f() {}")),
+    ("a path", "`crates/core/src/lib.rs`", "`crates/core/src/libb.rs`"),
+    ("an item", "`crates/core/src/scheme.rs::Scheme::alpha_m`", "`crates/core/src/scheme.rs::Scheme::alpha_x`"),
+    ("a link", "[a](one.md)", "[a](two.md)"),
+    ("a heading", "# One two\n\n[a](one.md#one-two)", "# One two\n\n[a](one.md#one-three)"),
+    ("an include", "{{#include one.md}}", "{{#include two.md}}"),
+]
+
+
+def check(pages):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in pages.items():
+            (Path(folder) / name).write_text(text)
+        done = subprocess.run([sys.executable, CHECK, "--book", folder], capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+
+def main():
+    wrong = []
+    trials = [(what, {"SUMMARY.md": SUMMARY, "one.md": right}, {"SUMMARY.md": SUMMARY, "one.md": fault})
+              for what, right, fault in TRIALS]
+    trials.append(("a page of the summary", {"SUMMARY.md": SUMMARY, "one.md": "# One"},
+                   {"SUMMARY.md": SUMMARY, "one.md": "# One", "two.md": "# Two"}))
+    for what, right, fault in trials:
+        status, said = check(right)
+        if status != 0:
+            wrong.append(f"{what}: a page that is right is refused: {said}")
+        status, said = check(fault)
+        if status != 1:
+            wrong.append(f"{what}: its fault passes (exit status {status}): {said}")
+    print("\n".join(wrong) if wrong else f"the checker finds {len(trials)} of {len(trials)} faults made for it")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
