@@ -27,6 +27,7 @@ class Block:
     language: str
     words: list
     settings: dict
+    raw: str
     body: str
 
     @property
@@ -69,8 +70,15 @@ def read_page(path, source):
             else:
                 words.append(part)
         line = page.text.count("\n", 0, match.start()) + 1
-        page.blocks.append(Block(page.name, line, language, words, settings, match["body"]))
+        body = INCLUDE.sub(lambda include: included(path, include[1]), match["body"])
+        page.blocks.append(Block(page.name, line, language, words, settings, match["body"], body))
     return page
+
+
+def included(path, what):
+    """The whole file of an include in a block."""
+    file = path.parent / what
+    return file.read_text().rstrip() if file.is_file() else ""
 
 
 def faults_of_text(page, pages, source, root):

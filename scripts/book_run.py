@@ -20,6 +20,18 @@ from pathlib import Path
 
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 SECONDS = 600
+# How figures of the pages look; matplotlib reads it from the folder in which it is run.
+STYLE = """
+figure.figsize: 7.2, 3.4
+axes.spines.top: False
+axes.spines.right: False
+axes.grid: True
+grid.alpha: 0.3
+lines.markersize: 4
+legend.frameon: False
+svg.hashsalt: pontoon
+savefig.bbox: tight
+"""
 LANGUAGES = {"console", "json", "python", "text", "rust"}
 
 # reads {"code": ...} a line, runs it in one namespace, answers {"out": ..., "error": ...}
@@ -45,10 +57,15 @@ def words_of(line):
     return " ".join(line.split())
 
 
+def pieces_of(line):
+    """What stands between the `...` of a line, without the spaces beside them."""
+    return re.split(r" ?\.\.\. ?", words_of(line))
+
+
 def pattern_of(line, within):
     """A line of the book as a pattern: `...` is anything, numbers are groups where they may be off."""
     parts = []
-    for piece in words_of(line).split("..."):
+    for piece in pieces_of(line):
         escaped = re.escape(piece)
         if within is not None:
             escaped, last = "", 0
@@ -64,7 +81,7 @@ def same_line(shown, found, within):
     match = re.fullmatch(pattern_of(shown, within), words_of(found))
     if match is None or within is None:
         return match is not None
-    numbers = [float(n) for piece in words_of(shown).split("...") for n in NUMBER.findall(piece)]
+    numbers = [float(n) for piece in pieces_of(shown) for n in NUMBER.findall(piece)]
     return all(abs(float(f) - s) <= within * abs(s) + 1e-12 for s, f in zip(numbers, match.groups()))
 
 
@@ -129,7 +146,10 @@ class Sandbox:
         self.environment = {
             "PATH": f"{program.parent}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8",
             "PONTOON_CACHE_DIR": str(cache), "NO_COLOR": "1", "MPLBACKEND": "Agg", "COLUMNS": "120",
+            # figures: the same bytes from the same numbers
+            "SOURCE_DATE_EPOCH": "0",
         }
+        (folder / "matplotlibrc").write_text(STYLE)
         self.process, self.number, self.printed = None, 0, None
 
     def close(self):
@@ -159,7 +179,8 @@ class Sandbox:
     def hold(self, block, shown, found, of):
         within = float(block.settings["within"]) if "within" in block.settings else None
         if not same(lines_of("\n".join(shown)), lines_of(found), within):
-            raise Mismatch(f"{of}\n--- shown\n" + "\n".join(shown) + "\n--- found\n" + found.rstrip())
+            found = "\n".join(found.rstrip().splitlines()[:30])
+            raise Mismatch(f"{of}\n--- shown\n" + "\n".join(shown) + "\n--- found\n" + found)
 
     def console(self, block):
         all_commands = commands(block.body)

@@ -52,7 +52,7 @@ def fault_of_block(block):
         return f"a block of '{block.language}', not of {', '.join(sorted(book_run.LANGUAGES))}"
     if "not-run" in block.settings and not block.settings["not-run"].strip():
         return "not run, without a reason"
-    included = all(book_pages.INCLUDE.fullmatch(line.strip()) for line in block.body.splitlines() if line.strip())
+    included = all(book_pages.INCLUDE.fullmatch(line.strip()) for line in block.raw.splitlines() if line.strip())
     if block.language == "rust" and not included:
         return "Rust that is no part of a tested file: include it"
     return None
