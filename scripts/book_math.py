@@ -23,7 +23,7 @@ HARMLESS = {c: f"&#{ord(c)};" for c in "*_`[]|\\~"}
 
 def set_equations(text, page):
     """The page with its equations set."""
-    convert = math_core.LatexToMathML()
+    convert = math_core.LatexToMathML(fancy_error=False)
 
     def one(match):
         tex = match["display"] or match["inline"]
