@@ -111,7 +111,9 @@ def run_notebooks(counts):
                 if cell.cell_type == "code" and (cell.outputs or cell.execution_count):
                     faults.append(f"{path.name}: holds outputs; scripts/check-book --strip takes them out")
                     break
-            client = NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder / "examples")}})
+            client = NotebookClient(
+                notebook, timeout=300, startup_timeout=300, extra_arguments=["--log-level=40"],
+                resources={"metadata": {"path": str(folder / "examples")}})
             try:
                 client.execute()
                 counts["notebooks"] += 1
