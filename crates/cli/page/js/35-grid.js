@@ -81,7 +81,7 @@
     const width = 260, step = width / LEVELS, at = v => ((v - scale.low) / (scale.high - scale.low)) * width;
     const ticks = d3.scaleLinear([scale.low, scale.high], [0, width]).ticks(4);
     return svg('svg', { class: 'strip', width: width + 40, height: 46, viewBox: `-20 0 ${width + 40} 46`, role: 'img', 'aria-label': `${title}: ${write(scale.low)} to ${write(scale.high)}` },
-      svg('text', { x: 0, y: 11 }, title),
+      svg('text', { x: 0, y: 11 }, page.numbers.fit(title, width)),
       d3.range(LEVELS).map(l => svg('rect', { x: l * step, y: 16, width: step + 0.4, height: 10, fill: fill(scale, l) })),
       ticks.map(t => [svg('line', { x1: at(t), x2: at(t), y1: 26, y2: 30 }), svg('text', { x: at(t), y: 42, 'text-anchor': 'middle' }, write(t))]));
   }
