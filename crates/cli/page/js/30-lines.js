@@ -1,4 +1,4 @@
-// A chart of lines and dots from series of points, drawn by Observable Plot. Knows points and looks; knows no bridge.
+// A chart of lines and dots from series of points, on Observable Plot's axes. Knows points and looks; knows no bridge.
 (page => {
   'use strict';
   const { el, svg } = page.dom, { numbers } = page;
@@ -35,6 +35,8 @@
     return [zero && low === 0 ? 0 : low - pad, zero && high === 0 ? 0 : high + pad];
   }
 
+  /** Plot puts its lines on the middle of a pixel where pixels are coarse; so does what is drawn beside them. */
+  const OFFSET = devicePixelRatio > 1 ? 0 : 0.5;
   /** Beyond so many points lines are drawn without dots: they would be a smear. */
   const MOST_DOTS = 900;
 
@@ -49,16 +51,10 @@
     const ys = extent(all.map(p => p.y).filter(Number.isFinite).map(v => v * fy), y.zero ?? true);
     const layers = [Plot.ruleY(ys[0] <= 0 && ys[1] >= 0 ? [0] : [], { className: 'zero' })];
     const at = { x: p => p.x * fx, y: p => p.y * fy };
-    const order = [], dotted = all.length <= MOST_DOTS;
-    if (!dotted) series = series.map(s => ({ ...s, dots: false }));
-    for (const s of series) {
-      if (s.area) layers.push(Plot.areaY(s.points, { x: at.x, y1: 0, y2: at.y, fill: s.color, fillOpacity: 0.12 }));
-      layers.push(Plot.line(s.points, { ...at, stroke: s.color, strokeWidth: s.thin ? 1.2 : 2, strokeDasharray: s.dash, className: 'series-line' }));
-      order.push(s);
-      if (s.dots !== false) layers.push(Plot.dot(s.points.filter(p => Number.isFinite(p.y)), { ...at, fill: s.color, symbol: s.symbol ?? 'circle', r: s.points.length > 60 ? 2 : 4, className: 'series-dots' }));
-    }
-    const whole = marks.filter(m => m.x === null), placed = marks.filter(m => m.x !== null);
-    if (whole.length) layers.push(Plot.ruleY(whole, { y: at.y, stroke: m => m.color ?? 'var(--ink)', strokeDasharray: '2 4', strokeWidth: 1.5, className: 'mark-rules' }));
+    if (all.length > MOST_DOTS) series = series.map(s => ({ ...s, dots: false }));
+    layers.push((index, scales) => svg('g', { transform: `translate(${OFFSET},${OFFSET})` }, series.map(s => [area(s, at, scales), line(s, at, scales), dots(s, at, scales)])));
+    const level = marks.filter(m => m.x === null), placed = marks.filter(m => m.x !== null);
+    if (level.length) layers.push(Plot.ruleY(level, { y: at.y, stroke: m => m.color ?? 'var(--ink)', strokeDasharray: '2 4', strokeWidth: 1.5, className: 'mark-rules' }));
     if (placed.length) layers.push(Plot.dot(placed, { ...at, stroke: m => m.color ?? 'var(--ink)', symbol: 'times', r: 5, strokeWidth: 2.2, className: 'mark-dots' }));
     const node = Plot.plot({
       width, height, marginLeft: 62, marginBottom: 44, marginTop: 26, marginRight: 16, style: { fontSize: '12px', fontFamily: 'inherit', background: 'none', overflow: 'visible' },
@@ -69,22 +65,25 @@
     node.style.maxWidth = '100%';
     const sx = node.scale('x'), sy = node.scale('y');
     const px = v => sx.apply(v * fx), py = v => sy.apply(v * fy);
-    const groups = read(node, order, placed, whole, px, py);
+    const groups = spots(series, placed, level, px, py);
     return { node, groups, scales: { x: sx, y: sy } };
   }
 
-  /** Names what was drawn, element by element, and answers the points of each series in pixels. */
-  function read(node, order, placed, whole, px, py) {
-    node.querySelectorAll('.series-line').forEach((g, i) => g.setAttribute('data-series', order[i].key));
-    const dotted = order.filter(s => s.dots !== false);
-    node.querySelectorAll('.series-dots').forEach((g, i) => {
-      g.setAttribute('data-series', dotted[i].key);
-      const points = dotted[i].points.filter(p => Number.isFinite(p.y));
-      [...g.children].forEach((dot, k) => { dot.setAttribute('data-x', points[k].x); dot.setAttribute('data-y', points[k].y); if (points[k].job !== undefined) dot.setAttribute('data-job', points[k].job); });
-    });
-    const groups = order.map(s => s.points.filter(p => Number.isFinite(p.y)).map(p => ({ px: px(p.x), py: py(p.y), job: p.job, text: p.text })));
+  // A layer of Plot's for each series would take ten times as long as one that draws them all.
+  const whole = p => Number.isFinite(p.y);
+  const area = (s, at, scales) => s.area && svg('path', { class: 'series-area', fill: s.color, 'fill-opacity': 0.12, d: d3.area(p => scales.x(at.x(p)), scales.y(0), p => scales.y(at.y(p))).defined(whole)(s.points) });
+  const line = (s, at, scales) => svg('g', { class: 'series-line', 'data-series': s.key }, svg('path', { fill: 'none', stroke: s.color, 'stroke-width': s.thin ? 1.2 : 2, 'stroke-dasharray': s.dash, 'stroke-linejoin': 'round', d: d3.line(p => scales.x(at.x(p)), p => scales.y(at.y(p))).defined(whole)(s.points) ?? '' }));
+  function dots(s, at, scales) {
+    if (s.dots === false) return null;
+    const d = shape(s.symbol ?? 'circle', s.points.length > 60 ? 14 : 50);
+    return svg('g', { class: 'series-dots', 'data-series': s.key, fill: s.color }, s.points.filter(whole).map(p => svg('path', { d, transform: `translate(${scales.x(at.x(p)).toFixed(3)},${scales.y(at.y(p)).toFixed(3)})`, 'data-x': p.x, 'data-y': p.y, 'data-job': p.job })));
+  }
+
+  /** The points of each series, then the experiment's, in pixels. */
+  function spots(series, placed, level, px, py) {
+    const groups = series.map(s => s.points.filter(whole).map(p => ({ px: px(p.x), py: py(p.y), job: p.job, text: p.text })));
     if (placed.length) groups.push(placed.map(m => ({ px: px(m.x), py: py(m.y), text: m.text })).sort((a, b) => a.px - b.px));
-    if (whole.length) groups.push(whole.map(m => ({ px: 70, py: py(m.y), text: m.text })));
+    if (level.length) groups.push(level.map(m => ({ px: 70, py: py(m.y), text: m.text })));
     return groups;
   }
 
