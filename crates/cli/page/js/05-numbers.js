@@ -68,5 +68,11 @@
     return title.length <= most ? title : `${label.slice(0, Math.max(4, most - (tail ?? '').length - 1))}\u2026${tail ?? ''}`;
   }
 
-  page.numbers = { fit, unit, digits, plain, column, quantity, count, axisTitle, THIN };
+  /** A way to write the ticks of an axis: all with the decimals that their step needs, but for 0. */
+  function ticks(low, high, count) {
+    const step = d3.tickStep(Math.min(low, high), Math.max(low, high), count), decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    return v => (v === 0 ? '0' : Math.abs(v) >= 1e7 || decimals > 6 ? digits(v, 4) : group(v.toFixed(decimals)));
+  }
+
+  page.numbers = { ticks, fit, unit, digits, plain, column, quantity, count, axisTitle, THIN };
 })(globalThis.pontoon ??= {});

@@ -56,10 +56,11 @@
     const level = marks.filter(m => m.x === null), placed = marks.filter(m => m.x !== null);
     if (level.length) layers.push(Plot.ruleY(level, { y: at.y, stroke: m => m.color ?? 'var(--ink)', strokeDasharray: '2 4', strokeWidth: 1.5, className: 'mark-rules' }));
     if (placed.length) layers.push(Plot.dot(placed, { ...at, stroke: m => m.color ?? 'var(--ink)', symbol: 'times', r: 5, strokeWidth: 2.2, className: 'mark-dots' }));
+    const across = Math.max(3, Math.round(width / 90));
     const node = Plot.plot({
       width, height, marginLeft: 62, marginBottom: 44, marginTop: 26, marginRight: 16, style: { fontSize: '12px', fontFamily: 'inherit', background: 'none', overflow: 'visible' },
-      x: { domain: xs, label: numbers.fit(x.title, width - 90), labelAnchor: 'center', labelArrow: 'none', ticks: Math.max(3, Math.round(width / 90)), tickFormat: numbers.plain },
-      y: { domain: y.reverse ? [ys[1], ys[0]] : ys, label: numbers.fit(y.title, width - 20), labelArrow: 'none', grid: true, ticks: 6, tickFormat: numbers.plain },
+      x: { domain: xs, label: numbers.fit(x.title, width - 90), labelAnchor: 'center', labelArrow: 'none', ticks: across, tickFormat: numbers.ticks(...xs, across) },
+      y: { domain: y.reverse ? [ys[1], ys[0]] : ys, label: numbers.fit(y.title, width - 20), labelArrow: 'none', grid: true, ticks: 6, tickFormat: numbers.ticks(...ys, 6) },
       marks: layers,
     });
     node.style.maxWidth = '100%';

@@ -3,12 +3,14 @@
   'use strict';
   const { el, field, select, button, scroller, id } = page.dom, { numbers } = page;
   const SIZES = [10, 25, 50, 100];
+  // As many columns as a sheet of paper takes; style.css leaves the others out there.
+  const MOST_ON_PAPER = 13;
 
   /**
    * `columns`: { name, label, unit, kind, value(row), write(row), title }. The first is the row's header. `pick(row)` makes rows
    * pickable and the header a button. `options.size` rows are shown at a time.
    */
-  function table(label, count, columns, { pick, size = 10, placeholder, classes, sort = null } = {}) {
+  function table(label, count, columns, { pick, size = 10, placeholder, sort = null } = {}) {
     const state = { text: '', sort, down: false, page: 0, size };
     let shown = [], marked = -1, paper = false;
     const plainText = new Map();
@@ -20,7 +22,7 @@
     const body = el('tbody'), said = el('p', { class: 'count', role: 'status' }), error = el('p', { class: 'error', id: id('error'), role: 'alert' });
     const heads = columns.map(c => el('th', { scope: 'col', class: c.kind === 'number' ? 'number' : null, 'aria-sort': 'none' },
       el('button', { type: 'button', class: 'sort', title: c.title ?? c.name, onclick: () => order(c) }, el('span', {}, c.label), c.unit && el('span', { class: 'unit' }, c.unit))));
-    const grid = el('table', { class: `rows ${classes ?? ''}` }, el('caption', { class: 'unseen' }, label), el('thead', {}, el('tr', {}, heads)), body);
+    const grid = el('table', { class: `rows ${columns.length > MOST_ON_PAPER ? 'many' : ''}` }, el('caption', { class: 'unseen' }, label), el('thead', {}, el('tr', {}, heads)), body);
     const input = el('input', { type: 'search', placeholder, autocomplete: 'off', spellcheck: 'false', 'aria-describedby': error.id, oninput: () => { state.text = input.value; state.page = 0; update(); } });
     const back = button('Previous', () => turn(-1)), on = button('Next', () => turn(1));
     const sizes = select(SIZES.map(n => [String(n), String(n)]), String(size), v => { state.size = Number(v); state.page = 0; draw(); });
@@ -64,6 +66,7 @@
       const rows = shown.slice(at * step, (at + 1) * step);
       body.replaceChildren(...rows.map(line));
       said.textContent = shown.length ? `${numbers.count(at * step + 1)} to ${numbers.count(at * step + rows.length)} of ${numbers.count(shown.length)}${shown.length < count ? ` (filtered from ${numbers.count(count)})` : ''}` : `None of ${numbers.count(count)} rows meets the filter`;
+      if (paper && columns.length > MOST_ON_PAPER) said.textContent += `; ${MOST_ON_PAPER} of ${columns.length} columns`;
       back.disabled = at === 0;
       on.disabled = at >= last;
     }

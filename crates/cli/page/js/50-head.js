@@ -33,17 +33,25 @@
     })));
   }
 
+  const capital = text => text.slice(0, 1).toUpperCase() + text.slice(1);
+
+  /** A few values in a row, their unit once; what has no value comes last. */
+  function few(axis, at) {
+    const { unit } = page.axes.shown(at), some = axis.values.map((v, i) => (v === null ? null : page.axes.tick(at, i))).filter(v => v !== null);
+    return some.join(', ') + (unit && some.length ? numbers.THIN + unit : '') + (some.length < axis.values.length ? `${some.length ? ', ' : ''}none` : '');
+  }
+
   function settings() {
     const list = [...(data.study.settings ?? [])];
     for (const axis of data.axes ?? []) {
       const at = data.axes.indexOf(axis), n = axis.values.length;
       if (n < 1) continue;
-      const text = n === 1 ? page.axes.name(at, 0) : n <= 8 ? axis.values.map((_, i) => page.axes.tick(at, i)).join(', ') + (page.axes.shown(at).unit && numbers.THIN + page.axes.shown(at).unit)
+      const text = n === 1 ? page.axes.name(at, 0) : n <= 8 ? few(axis, at)
         : `${numbers.count(n)} ${axis.bins ? 'ranges' : 'values'}, ${page.axes.name(at, axis.values[0] === null ? 1 : 0)} to ${page.axes.name(at, n - 1)}`;
-      list.push({ label: axis.label[0].toUpperCase() + axis.label.slice(1), value: text, axis: true });
+      list.push({ label: axis.label, value: text });
     }
     if (!list.length) return null;
-    return section('settings', 'Settings', el('dl', { class: 'pairs' }, list.map(s => el('div', {}, el('dt', {}, s.label), el('dd', {}, s.value)))));
+    return section('settings', 'Settings', el('dl', { class: 'pairs' }, list.map(s => el('div', {}, el('dt', {}, capital(s.label)), el('dd', {}, s.value)))));
   }
 
   function failures() {

@@ -39,7 +39,7 @@
     const marks = (data.marks ?? []).filter(m => m.chart === 'history' && (m.measure === quantity || m.measure === `peak_${quantity}`) && mine.some(h => m.position === null || m.position === undefined || h.position === m.position) && (at < 0 || page.axes.fitsRow(m, at)))
       .map(m => ({ ...m, text: () => `${m.label}: ${numbers.quantity(m.y, mine[0].unit)}` }));
     const out = page.lines({ width, height: 260, series, marks, x: { title: 'time (s)' }, y: { title: numbers.axisTitle(axis, unit.unit), factor: unit.factor, reverse } });
-    return { ...out, note: mine[0].axes, legend: page.legend(series, marks) };
+    return { ...out, note: mine.length > 1 ? mine[0].axes : `${place} ${mine[0].position}: ${mine[0].axes}`, legend: page.legend(series, marks) };
   }
 
   page.histories = histories;

@@ -6,20 +6,20 @@
   const COLUMNS = [['statement', 'statement'], ['verdict', 'verdict'], ['expected', 'expected'], ['found', 'found'], ['deviation', 'deviation'], ['margin', 'margin'], ['note', 'note']];
 
   /** A verdict is good, bad or neither; the word says it too, not the colour alone. */
-  const tone = line => (/^falls? short$|^fail/i.test(line.verdict) ? 'bad' : /^holds?$/i.test(line.verdict) ? 'good' : 'plain');
+  const tone = line => (line.good === false || /^falls? short$/i.test(line.verdict) ? 'bad' : /^holds?$/i.test(line.verdict) ? 'good' : 'plain');
   const SIGN = { good: '\u2713', bad: '\u2717', plain: '\u2022' };
 
   function verdicts() {
     const { verdicts: v } = data;
     if (!v) return null;
     const used = COLUMNS.filter(([key]) => key === 'statement' || key === 'verdict' || v.lines.some(line => line[key]));
-    const short = v.lines.filter(line => /falls? short/i.test(line.verdict)).length, bad = v.lines.filter(line => tone(line) === 'bad').length;
+    const bad = v.lines.filter(line => tone(line) === 'bad').length, kinds = [...new Set(['falls short', ...v.lines.map(line => line.verdict)])];
     const table = el('table', { class: 'rows verdicts' }, el('caption', { class: 'unseen' }, 'Verdicts of the comparison'), el('thead', {}, el('tr', {}, used.map(([, title]) => el('th', { scope: 'col' }, title)))));
     const said = el('p', { class: 'count', role: 'status' });
 
     function draw(filter) {
       table.querySelectorAll('tbody').forEach(body => body.remove());
-      const lines = v.lines.filter(line => filter === 'all' || (filter === 'short' ? /falls? short/i.test(line.verdict) : tone(line) === filter));
+      const lines = v.lines.filter(line => filter === '' || line.verdict === filter);
       const roles = [...ROLES, ...[...new Set(lines.map(l => l.role))].filter(r => !ROLES.some(([k]) => k === r)).map(r => [r, r])];
       for (const [role, title] of roles) {
         const group = lines.filter(line => line.role === role);
@@ -30,11 +30,11 @@
       }
       said.textContent = lines.length ? `${lines.length} of ${v.lines.length} checks` : 'No check is of this kind.';
     }
-    const show = select([['all', 'all'], ['short', 'falls short'], ['good', 'holds']], 'all', draw);
+    const show = select([['', 'all'], ...kinds.map(kind => [kind, kind])], '', draw);
     show.id = 'verdict-filter';
-    draw('all');
+    draw('');
     return section('verdicts', 'Comparison with the reference', el('p', { class: 'sub' }, v.source),
-      el('p', { class: `lead ${v.good ? 'good' : 'bad'}` }, v.good ? `Nothing falls short that should hold${short ? `; ${short} known to fall short` : ''}.` : `${bad} ${bad === 1 ? 'check falls' : 'checks fall'} short that should hold.`),
+      el('p', { class: `lead ${v.good ? 'good' : 'bad'}` }, (v.good ? 'Nothing falls short that should hold' : `${bad} ${bad === 1 ? 'check is' : 'checks are'} not as it should be`) + (v.tally ? `: ${v.tally}.` : '.')),
       el('div', { class: 'controls' }, field('Show', show), said), scroller('Verdicts of the comparison', table));
   }
 
