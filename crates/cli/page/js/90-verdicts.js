@@ -26,7 +26,7 @@
         if (!group.length) continue;
         table.append(el('tbody', { 'data-role': role }, el('tr', { class: 'group' }, el('th', { scope: 'rowgroup', colspan: used.length }, `${title} (${group.length})`)),
           group.map(line => el('tr', { 'data-id': line.id }, used.map(([key], i) => el(i ? 'td' : 'th', { scope: i ? null : 'row', class: key === 'verdict' ? `verdict ${tone(line)}` : null },
-            key === 'verdict' && el('span', { class: 'sign', 'aria-hidden': 'true' }, SIGN[tone(line)]), line[key] ?? ''))))));
+            key === 'verdict' && el('span', { class: 'sign', 'aria-hidden': 'true' }, SIGN[tone(line)]), i ? line[key] ?? '' : [line.statement || line.id, line.statement && el('span', { class: 'id' }, line.id)]))))));
       }
       said.textContent = lines.length ? `${lines.length} of ${v.lines.length} checks` : 'No check is of this kind.';
     }
