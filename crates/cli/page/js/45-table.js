@@ -20,7 +20,7 @@
     };
 
     const body = el('tbody'), said = el('p', { class: 'count', role: 'status' }), error = el('p', { class: 'error', id: id('error'), role: 'alert' });
-    const heads = columns.map(c => el('th', { scope: 'col', class: c.kind === 'number' ? 'number' : null, 'aria-sort': 'none' },
+    const heads = columns.map((c, i) => el('th', { scope: 'col', class: c.kind === 'number' && i > 0 ? 'number' : null, 'aria-sort': 'none' },
       el('button', { type: 'button', class: 'sort', title: c.title ?? c.name, onclick: () => order(c) }, el('span', {}, c.label), c.unit && el('span', { class: 'unit' }, c.unit))));
     const grid = el('table', { class: `rows ${columns.length > MOST_ON_PAPER ? 'many' : ''}` }, el('caption', { class: 'unseen' }, label), el('thead', {}, el('tr', {}, heads)), body);
     const input = el('input', { type: 'search', placeholder, autocomplete: 'off', spellcheck: 'false', 'aria-describedby': error.id, oninput: () => { state.text = input.value; state.page = 0; update(); } });

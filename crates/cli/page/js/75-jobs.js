@@ -24,7 +24,7 @@
     if (!data.rows?.count) return null;
     const list = columns(), numeric = list.find(c => c.name === 'speed_m_s') ?? list.find(c => c.kind === 'number' && c.name !== 'job');
     const numbersOf = array(data.rows.job);
-    const table = page.table('Jobs', data.rows.count, list, { pick: row => page.pick(numbersOf[row], 'table'), placeholder: numeric ? `words, or ${numeric.name}>10` : 'words' });
+    const table = page.table('Jobs', data.rows.count, list, { pick: data.study.kind === 'modes' ? null : row => page.pick(numbersOf[row], 'table'), placeholder: numeric ? `words, or ${numeric.name}>10` : 'words' });
     const view = page.crossing();
     page.onPick((job, by) => {
       table.mark(page.rowOf(job), by !== 'table');
@@ -34,7 +34,7 @@
     const names = el('details', { class: 'help' }, el('summary', {}, 'How to filter'),
       el('p', {}, 'Words must be in the row; conditions compare a column: ', el('code', {}, numeric ? `${numeric.name}>10` : 'job<10'), ', with <, >, <=, >=, = or !=. Units may follow a number (', el('code', {}, '28mm'), ', ', el('code', {}, '200kN'), '), else it is in m, s, N. All must hold. Columns: ',
         list.map((c, i) => [i ? ', ' : '', el('code', {}, c.name)]), '.'));
-    const node = section('jobs', 'Job browser', el('p', { class: 'sub' }, `The table holds ${data.rows.note}.`, data.study.kind === 'crossing' ? ' Pick a job to see its crossing.' : ' Pick a job to see its line above.'), view?.node, table.node, names);
+    const node = section('jobs', 'Job browser', el('p', { class: 'sub' }, `The table holds ${data.rows.note}.`, { crossing: ' Pick a job to see its crossing.', static: ' Pick a job to see its line above.' }[data.study.kind]), view?.node, table.node, names);
     return node;
   }
 
@@ -42,11 +42,10 @@
   function frequencies() {
     const list = data.mode_table ?? [];
     if (!list.length) return null;
-    const shape = numbers.column(list.map(m => m.frequency_hz), 'Hz');
     const word = (name, label) => ({ name, label, unit: '', kind: 'word', value: r => list[r][name], write: r => list[r][name] ?? '\u2013' });
     const integer = (name, label) => ({ name, label, unit: '', kind: 'number', input: true, value: r => list[r][name], write: r => String(list[r][name]) });
     const table = page.table('Frequencies of the jobs', list.length, [integer('job', 'job'), word('axes', 'bridge'), integer('number', 'mode'),
-      { name: 'frequency_hz', label: 'frequency', unit: 'Hz', kind: 'number', value: r => list[r].frequency_hz, write: r => shape.write(list[r].frequency_hz) }, word('shape', 'shape')], { size: 25, placeholder: 'words, or frequency_hz<1' });
+      { name: 'frequency_hz', label: 'frequency', unit: 'Hz', kind: 'number', value: r => list[r].frequency_hz, write: r => list[r].frequency_hz.toFixed(4) }, word('shape', 'shape')], { size: 25, placeholder: 'words, or frequency_hz<1' });
     return section('frequencies', 'Natural frequencies', table.node);
   }
 

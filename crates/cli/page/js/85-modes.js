@@ -16,7 +16,9 @@
     const size = el('input', { type: 'range', min: 0, max: 3, step: 0.1, id: 'mode-amplitude', oninput: () => { amplitude = Number(size.value); draw(); } });
     size.value = 1;
     const choose = select(sets.map((s, i) => [String(i), s.label]), '0', v => { set = sets[Number(v)]; list(); pick(set.list[0]); });
-    const controls = el('div', { class: 'controls' }, el('div', { class: 'buttons' }, run), sets.length > 1 && field('Supports', choose), field('Amplitude', size));
+    const modesOf = field('Modes of', choose);
+    modesOf.classList.add('wide');
+    const controls = el('div', { class: 'controls' }, el('div', { class: 'buttons' }, run), sets.length > 1 && modesOf, field('Amplitude', size));
     const motion = animation(passed => { clock += passed; phase = Math.cos(clock / 450); draw(); });
     function start() { motion.start(); run.textContent = 'Pause'; }
     function pause() { motion.stop(); run.textContent = 'Play'; }
@@ -42,12 +44,14 @@
     /** The boxes' rest position, right to left and far to near, so that the near ones cover. */
     function build() {
       width = page.dom.room(stage) || 800;
-      const L = bridge.module_length_m * bridge.modules, span = L + 0.55 * bridge.breadth_m, s = (width - 20) / span, reach = 0.055 * L;
+      // A set of modes may be of another bridge of the study: its motion says how many modules it has.
+      const modules = array(mode.motion).length / 24, L = bridge.module_length_m * modules, reach = 0.055 * L;
+      const s = Math.min((width - 20) / (L + 0.55 * bridge.breadth_m + 2 * reach), 300 / (2.1 * reach + 2 * bridge.depth_m + 0.45 * bridge.breadth_m));
       const height = (2.1 * reach + bridge.depth_m * 2 + 0.45 * bridge.breadth_m) * s + 20;
-      view = { s, reach, X: (x, y) => 10 + (x + 0.55 * y) * s, Y: (y, z) => height - 10 - reach * s - (z + 0.45 * y) * s };
+      view = { s, reach, X: (x, y) => 10 + (reach + x + 0.55 * y) * s, Y: (y, z) => height - 10 - reach * s - (z + 0.45 * y) * s };
       faces = [];
       const nodes = [];
-      for (let m = 0; m < bridge.modules; m++) for (const [kind, corners] of FACES) { const node = svg('polygon', { class: `box ${kind}`, 'data-module': m + 1 }); faces.push({ m, corners, kind, node }); nodes.push(node); }
+      for (let m = 0; m < modules; m++) for (const [kind, corners] of FACES) { const node = svg('polygon', { class: `box ${kind}`, 'data-module': m + 1 }); faces.push({ m, corners, kind, node }); nodes.push(node); }
       const flat = (y, z) => [[0, y], [L, y]].map(([x, b]) => `${view.X(x, b).toFixed(1)},${view.Y(b, z).toFixed(1)}`);
       const outline = svg('polygon', { class: 'rest', points: [...flat(0, 0), ...flat(bridge.breadth_m, 0).reverse()].join(' ') });
       stage.replaceChildren(svg('svg', { class: 'boxes', viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': `Mode shape: ${mode.shape}` }, outline, nodes));

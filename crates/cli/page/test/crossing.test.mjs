@@ -117,6 +117,9 @@ test('mode shapes move when asked to, and are drawn as the data says', () => on(
     }
     assert.ok(unit > 5, 'upward is up');
   }
+  await page.selectOption('#modes .controls select', '1');
+  assert.equal((await deck()).length, 1, 'a bridge of one module in the same study');
+  await page.selectOption('#modes .controls select', '0');
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   const before = JSON.stringify(await deck());
   await page.click('#mode-play');

@@ -13,7 +13,7 @@ function rows(data) {
   const job = list(data.rows.job), ok = list(data.rows.ok), columns = data.rows.columns.map(c => [c.name, c.data.words ? list(c.data.index).map(i => (i === 65535 ? null : c.data.words[i])) : list(c.data).map(v => (Number.isNaN(v) ? null : v))]);
   return job.map((j, r) => ({ job: j, ok: ok[r], ...Object.fromEntries(columns.map(([name, values]) => [name, values[r]])) }));
 }
-const shown = page => page.$$eval('#jobs tbody .pick', all => all.map(b => Number(b.textContent)));
+const shown = page => page.$$eval('#jobs tbody th', all => all.map(b => Number(b.textContent)));
 /** All pages of the table, from the first. */
 async function all(page) {
   await page.selectOption('#jobs .table .controls select', '100');
@@ -102,7 +102,7 @@ test('frequencies and verdicts are shown and filtered', async () => {
     const { data } = sample('natural');
     await page.fill('#frequencies input[type="search"]', 'frequency_hz<1 vertical');
     const wanted = data.mode_table.filter(m => m.frequency_hz < 1 && m.shape.includes('vertical'));
-    assert.deepEqual(await page.$$eval('#frequencies tbody tr', all => all.map(r => [...r.children].map(c => c.textContent))), wanted.map(m => [String(m.job), m.axes, String(m.number), m.frequency_hz.toFixed(3), m.shape]));
+    assert.deepEqual(await page.$$eval('#frequencies tbody tr', all => all.map(r => [...r.children].map(c => c.textContent))), wanted.map(m => [String(m.job), m.axes, String(m.number), m.frequency_hz.toFixed(4), m.shape]));
     await page.selectOption('#modes .controls select', '1');
     assert.equal(await page.$$eval('#modes tbody tr', all => all.length), data.modes[1].list.length);
   });

@@ -195,7 +195,7 @@ export function natural() {
   return { ...data, study: { ...data.study, question: 'Which frequencies has the bridge of the paper?' }, envelope: null, cards: [],
     rows: { ...data.rows, profile: null, columns: [{ name: 'bridge.modules', label: 'modules', unit: '', kind: 'number', data: f32([15, 7]) }] },
     mode_table: [0, 1].flatMap(job => list.map(m => ({ job, axes: `modules ${job ? 7 : 15}`, number: m.number, frequency_hz: m.frequency_hz * (1 + job), shape: m.shape }))),
-    modes: [{ label: 'floating free', list }, { label: 'on its supports', list: list.slice(0, 3) }] };
+    modes: [{ label: 'floating free', list }, { label: 'one module', list: list.slice(0, 3).map(m => ({ ...m, motion: f32(Array.from({ length: 24 }, (_, i) => (i % 3 === 2 ? 1 : 0))) })) }] };
 }
 
 export function allFailed() {
