@@ -101,7 +101,7 @@
       show(current ? now.walk.step(current, ...move) : now.walk.first());
     });
     new ResizeObserver(() => Math.abs(page.dom.room(plot) - width) > 1 && redraw()).observe(plot);
-    const out = { node, redraw, get now() { return now; }, marks: () => now?.marks?.() ?? [] };
+    const out = { node, redraw, get now() { return now; } };
     figures.add(out);
     return out;
   }

@@ -4,7 +4,7 @@
   const { el, field, select, button, scroller, id } = page.dom, { numbers } = page;
   const SIZES = [10, 25, 50, 100];
   // As many columns as a sheet of paper takes; style.css leaves the others out there.
-  const MOST_ON_PAPER = 13;
+  const MOST_ON_PAPER = 12;
 
   /**
    * `columns`: { name, label, unit, kind, value(row), write(row), title }. The first is the row's header. `pick(row)` makes rows
