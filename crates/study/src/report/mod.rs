@@ -116,6 +116,8 @@ pub struct BridgeNote {
     pub breadth_m: f64,
     /// Its depth [m].
     pub depth_m: f64,
+    /// How deep it floats [m], where the bridge says so.
+    pub draft_m: Option<f64>,
     /// Places of the positions [m].
     pub position_x_m: Vec<f64>,
     /// Numbers of the joints.
@@ -327,6 +329,7 @@ fn bridge_note(design: &pontoon_core::bridge::BridgeDesign) -> BridgeNote {
         module_length_m: design.module.length_m,
         breadth_m: design.module.breadth_m,
         depth_m: design.module.depth_m,
+        draft_m: design.draft_m,
         position_x_m: (1..=design.positions())
             .map(|position| design.position_x_m(position))
             .collect(),
