@@ -4,10 +4,14 @@
 
 mod path;
 mod pretty;
+mod spot;
+#[cfg(test)]
+mod spot_tests;
 mod strict;
 mod typed;
 
 pub use path::{DocumentPath, leaves};
 pub use pretty::pretty;
+pub use spot::{Spot, SpotKind, spot};
 pub use strict::{canonical, canonical_text, read};
 pub use typed::typed;

@@ -6,6 +6,7 @@ use crate::refusal::Refusal;
 use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 use std::fmt;
+use std::ops::Range;
 use std::path::Path;
 
 /// Reads a file as one JSON document.
@@ -22,7 +23,7 @@ fn parse(file: &Path, text: &str) -> Result<Value, Refusal> {
     if text.trim().is_empty() {
         return Err(Refusal::new(file, "", "an empty file", "a JSON file"));
     }
-    if text.starts_with('\u{feff}') {
+    if text.starts_with(MARK) {
         return Err(Refusal::new(
             file,
             "",
@@ -30,22 +31,82 @@ fn parse(file: &Path, text: &str) -> Result<Value, Refusal> {
             "JSON without one",
         ));
     }
+    strict(text).map_err(|(key, error)| refusal(file, text, key, &Fault::new(text, &error)))
+}
+
+/// The value of a text, or the path of a key and what the reader says of it.
+fn strict(text: &str) -> Result<Value, (String, serde_json::Error)> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize::<_, Strict>(&mut reader).map_err(|error| {
         let path = error.path().to_string();
         let path = path.trim_end_matches('?').trim_end_matches('.');
-        refusal(file, text, path.to_owned(), error.inner())
+        (path.to_owned(), error.into_inner())
     })?;
-    reader.end().map_err(|e| refusal(file, text, String::new(), &e))?;
+    reader.end().map_err(|error| (String::new(), error))?;
     Ok(value.0)
 }
 
-fn refusal(file: &Path, text: &str, key: String, error: &serde_json::Error) -> Refusal {
-    let place = format!("line {}, column {}", error.line(), error.column());
-    let token = token_at(text, error.line(), error.column());
-    let message = error.to_string();
-    let message = message.split(" at line ").next().unwrap_or_default();
-    if let Some(name) = message.strip_prefix(TWICE) {
+/// What makes a text no JSON document.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    /// Its bytes; none at the end of a text that ends too early.
+    pub(super) bytes: Range<usize>,
+    /// What the reader says.
+    pub(super) message: String,
+    /// The key that is there twice, where that is what is wrong; it stands at `bytes`.
+    pub(super) twice: Option<String>,
+}
+
+impl Fault {
+    fn new(text: &str, error: &serde_json::Error) -> Self {
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default().to_owned();
+        let lines = text.split_inclusive('\n');
+        let before: usize = lines.take(error.line().saturating_sub(1)).map(str::len).sum();
+        let (from, to) = token_in(text.get(before..).unwrap_or_default(), error.column());
+        let end = text.trim_end().len();
+        let mut bytes = if error.is_eof() {
+            end..end
+        } else {
+            before + from..before + to
+        };
+        let twice = message.strip_prefix(TWICE).map(str::to_owned);
+        if let Some(name) = &twice {
+            // the reader has just read the second of the two
+            let written = Value::from(name.as_str()).to_string();
+            let read = text.get(..text.floor_char_boundary(before + error.column() + 1));
+            bytes = read
+                .and_then(|read| read.rfind(&written))
+                .map_or(bytes, |at| at..at + written.len());
+        }
+        Self { bytes, message, twice }
+    }
+}
+
+/// What makes a text no JSON document, if anything does. An empty one has no place to show.
+pub(super) fn fault(text: &str) -> Option<Fault> {
+    if text.starts_with(MARK) {
+        let message = "a byte order mark".to_owned();
+        return Some(Fault {
+            bytes: 0..MARK.len_utf8(),
+            message,
+            twice: None,
+        });
+    }
+    let (_, error) = strict(text).err().filter(|_| !text.trim().is_empty())?;
+    Some(Fault::new(text, &error))
+}
+
+/// What may stand before the text of a file and is no part of it.
+const MARK: char = '\u{feff}';
+
+fn refusal(file: &Path, text: &str, key: String, fault: &Fault) -> Refusal {
+    let before = text.get(..fault.bytes.start).unwrap_or_default();
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    let place = format!("line {line}, column {column}");
+    let message = &fault.message;
+    if let Some(name) = &fault.twice {
         return Refusal::new(file, key, format!("the key '{name}' twice ({place})"), "each key once");
     }
     if message.starts_with("recursion limit") {
@@ -56,16 +117,21 @@ fn refusal(file: &Path, text: &str, key: String, error: &serde_json::Error) -> R
             "at most 127 levels",
         );
     }
+    let token = text.get(fault.bytes.clone()).unwrap_or_default();
     let number = token.trim_start_matches(['-', '+']).to_ascii_lowercase();
     if message.contains("out of range") || number.starts_with("nan") || number.starts_with("inf") {
         return Refusal::new(file, key, format!("{token} ({place})"), "a finite number");
     }
-    Refusal::new(file, key, format!("'{token}' ({place}: {message})"), "JSON")
+    let token = if token.is_empty() {
+        "the end".to_owned()
+    } else {
+        format!("'{token}'")
+    };
+    Refusal::new(file, key, format!("{token} ({place}: {message})"), "JSON")
 }
 
-/// The bare word or number at a place that the reader complained about.
-fn token_at(text: &str, line: usize, column: usize) -> String {
-    let line = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+/// From where to where in a line the bare word or number is whose byte is at a column from 1; else the character there.
+fn token_in(line: &str, column: usize) -> (usize, usize) {
     let bare = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'+' | b'-' | b'_');
     let bytes = line.as_bytes();
     let mut from = column.saturating_sub(1).min(bytes.len());
@@ -77,10 +143,11 @@ fn token_at(text: &str, line: usize, column: usize) -> String {
         to += 1;
     }
     if from == to {
-        line.get(from..).unwrap_or_default().chars().take(1).collect()
-    } else {
-        line[from..to].to_owned()
+        from = line.floor_char_boundary(from);
+        let here = line[from..].chars().next().filter(|c| !c.is_control());
+        to = from + here.map_or(0, char::len_utf8);
     }
+    (from, to)
 }
 
 /// How the message of a key written twice begins.

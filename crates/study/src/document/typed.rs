@@ -72,11 +72,18 @@ fn translate(file: &Path, key: String, message: &str) -> Refusal {
         (m, Some((name, _))) if m.starts_with("missing field") => {
             Refusal::new(file, under(name), "nothing", "a value: this key is required")
         }
+        // a type's own words
+        (m, _) if let Some((found, allowed)) = own_words(m) => Refusal::new(file, key, found, allowed),
         (m, _) => match m.split_once(", expected ") {
             Some((found, expected)) => Refusal::new(file, key, plain_found(found), plain(expected)),
             None => Refusal::new(file, key, m, "a document after `pontoon schema`"),
         },
     }
+}
+
+/// What was found and what is allowed, where a type says it itself.
+fn own_words(message: &str) -> Option<(&str, &str)> {
+    message.strip_prefix("found ")?.split_once(", allowed: ")
 }
 
 /// What serde found, in the words of JSON.
