@@ -3,7 +3,9 @@
 //! Knows how lines are written down. Does not know how they came about.
 
 use crate::args::Format;
+use crate::terminal::{BAD, FAINT, GOOD, HEAD, Look, NOTABLE};
 use crate::words;
+use anstyle::Style;
 use anyhow::Result;
 use pontoon_study::compare::{Comparison, Line, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -26,23 +28,112 @@ fn cells(line: &Line) -> [String; 7] {
 /// A comparison in a format.
 pub fn written(compared: &Comparison, format: Format) -> Result<String> {
     Ok(match format {
-        Format::Text => text(compared),
+        Format::Text => text(compared, Look::of_results()),
         Format::Json => format!("{:#}\n", object(compared)),
         Format::Markdown => markdown(compared),
         Format::Junit => junit(compared)?,
     })
 }
 
-/// An aligned line a check, and the counts.
-pub fn text(compared: &Comparison) -> String {
-    let rows: Vec<Vec<Value>> = compared
-        .lines
+/// Verdicts in the order in which people read them: what asks for something is the last, beside the counts.
+const ORDER: [Verdict; 5] = [
+    Verdict::Record,
+    Verdict::Holds,
+    Verdict::ExpectedFail,
+    Verdict::NowHolds,
+    Verdict::FallsShort,
+];
+
+/// An aligned line a check with its verdict first, those of one verdict together, and the counts. Where lines are too long
+/// for a terminal, a check has several.
+pub fn text(compared: &Comparison, look: Look) -> String {
+    let lines: Vec<&Line> = ORDER
         .iter()
-        .map(|line| cells(line).map(Value::from).to_vec())
+        .flat_map(|&verdict| compared.lines.iter().filter(move |line| line.verdict == verdict))
         .collect();
-    let table = words::table(&COLUMNS.map(str::to_owned), &rows);
+    let rows: Vec<Vec<String>> = lines.iter().map(|line| verdict_first(line)).collect();
+    let heads = ["verdict", "check", "expected", "got", "deviation", "margin", "remark"].map(str::to_owned);
+    let table = words::table(&heads, &right(&heads, rows, &[4, 5]));
+    let fits = look
+        .width
+        .is_none_or(|width| table.lines().all(|line| line.chars().count() <= width));
+    let checks = if fits {
+        let mut written = table.lines();
+        let head = look.painted(HEAD, written.next().unwrap_or_default()) + "\n";
+        let painted = written.zip(&lines).map(|(text, line)| {
+            let (verdict, rest) = text.split_at(line.verdict.word().len().min(text.len()));
+            format!("{}{rest}\n", look.painted(style(line.verdict), verdict))
+        });
+        head + &painted.collect::<String>()
+    } else {
+        let longest = lines.iter().map(|line| line.verdict.word().len()).max().unwrap_or(0);
+        lines.iter().map(|line| several(line, longest, look)).collect()
+    };
     let Comparison { results, with, .. } = compared;
-    format!("{table}\n{results} against {with}: {}\n", compared.tally())
+    let held = format!("{results} against {with}: {}", compared.tally());
+    let held = words::wrapped(&words::printable(&held), look.width.unwrap_or(usize::MAX), 2);
+    let short = format!("{} fall short", compared.count(Verdict::FallsShort));
+    let held = if compared.good() {
+        held
+    } else {
+        held.replacen(&short, &look.painted(BAD, &short), 1)
+    };
+    format!("{checks}\n{held}")
+}
+
+fn verdict_first(line: &Line) -> Vec<String> {
+    let [check, expected, got, deviation, margin, verdict, remark] = cells(line);
+    vec![verdict, check, expected, got, deviation, margin, remark]
+}
+
+/// Rows as values, some columns to the right.
+fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec<Value>> {
+    let width = |i: usize| {
+        let longest = rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0);
+        longest.max(heads[i].len())
+    };
+    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
+    let cell = |(i, text): (usize, String)| {
+        if columns.contains(&i) {
+            format!("{text:>width$}", width = widths[i]).into()
+        } else {
+            text.into()
+        }
+    };
+    rows.into_iter()
+        .map(|row| row.into_iter().enumerate().map(cell).collect())
+        .collect()
+}
+
+/// A check over several lines, behind a verdict of at most `longest` characters.
+fn several(line: &Line, longest: usize, look: Look) -> String {
+    let [check, expected, got, deviation, margin, verdict, remark] = cells(line);
+    let width = look.width.unwrap_or(usize::MAX);
+    let told = [
+        ("expected", expected),
+        ("got", got),
+        ("deviation", deviation),
+        ("margin", margin),
+    ];
+    let told = told
+        .iter()
+        .filter(|(_, value)| value != "-")
+        .map(|(name, value)| format!("{name} {value}"));
+    let told: Vec<String> = told.chain(Some(remark)).map(|entry| words::printable(&entry)).collect();
+    let indent = if 4 * (longest + 2) > width { 2 } else { longest + 2 };
+    let verdict_wide = format!("{verdict:<longest$}  ");
+    let head = words::listed(&verdict_wide, Some(words::printable(&check)).iter(), width, indent);
+    let head = head.replacen(&verdict, &look.painted(style(line.verdict), &verdict), 1);
+    head + &words::listed(&" ".repeat(indent), told.iter(), width, indent)
+}
+
+fn style(verdict: Verdict) -> Style {
+    match verdict {
+        Verdict::Holds => GOOD,
+        Verdict::FallsShort => BAD,
+        Verdict::NowHolds => NOTABLE,
+        Verdict::ExpectedFail | Verdict::Record => FAINT,
+    }
 }
 
 /// A comparison as a JSON object, with its lines and whether nothing falls short.

@@ -3,23 +3,31 @@
 //! | module | charter |
 //! |---|---|
 //! | `args` | the words that are understood |
+//! | `axes` | the axes of a study for people |
 //! | `commands` | a file a command: what it asks of the study's rooms and how it answers |
 //! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
+//! | `excerpt` | the place of a file that a refusal is about, with its line and a mark under it |
 //! | `page` | the page of a report, whole |
 //! | `signals` | interrupts and questions from outside |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
 //! | `watching` | what is told of a sweep |
+//! | `summary` | what a run ends with: its summary as a person looks at it |
+//! | `terminal` | what the place is like where something is written: its width, whether it shows colours |
 //! | `words` | aligned tables, times, what goes where when a reader has left |
 //!
 //! Knows the exit status of every end: 0 all good; 1 done, but something fell short; 2 input refused; 3 could not go on; 130 interrupted. Does
 //! not know mechanics or files of results.
 
 mod args;
+mod axes;
 mod commands;
 mod comparison;
+mod excerpt;
 mod page;
 mod progress;
 mod signals;
+mod summary;
+mod terminal;
 mod watching;
 mod words;
 
@@ -30,6 +38,7 @@ use pontoon_study::calibrate::CalibrateError;
 use pontoon_study::sweep::SweepError;
 use pontoon_study::tables::ResultsError;
 use std::process::ExitCode;
+use terminal::Look;
 
 /// Commit of the sources that this program was built from, where they were a repository's.
 const COMMIT: Option<&str> = option_env!("PONTOON_COMMIT");
@@ -72,10 +81,35 @@ fn main() -> ExitCode {
         Ok(Ending::Good) => ExitCode::SUCCESS,
         Ok(Ending::Short) => ExitCode::from(1),
         Err(error) => {
-            words::note(&format!("pontoon: {error:#}"));
+            tell(&error, common.format);
             ExitCode::from(status_of(&error))
         }
     }
+}
+
+/// Says what is wrong: for people with the place in the file that was refused.
+fn tell(error: &anyhow::Error, format: Format) {
+    let look = Look::of_notes();
+    let message = words::printable(&format!("{error:#}"));
+    words::note(&format!("{} {message}", look.painted(terminal::BAD, "pontoon:")));
+    let place = refusal_of(error).filter(|_| format != Format::Json);
+    if let Some(place) = place.and_then(|refused| excerpt::excerpt(refused, look)) {
+        words::note(place.trim_end());
+    }
+}
+
+/// The refusal that an error is or holds.
+fn refusal_of(error: &anyhow::Error) -> Option<&Refusal> {
+    if let Some(SweepError::Refused(refused)) = error.downcast_ref() {
+        return Some(refused);
+    }
+    if let Some(CalibrateError::Refused(refused)) = error.downcast_ref() {
+        return Some(refused);
+    }
+    if let Some(ResultsError::Refused(refused)) = error.downcast_ref() {
+        return Some(refused);
+    }
+    error.downcast_ref()
 }
 
 /// The exit status of an error: 130 interrupted, 2 the input's, 3 any other.
@@ -84,9 +118,5 @@ fn status_of(error: &anyhow::Error) -> u8 {
     if matches!(swept, Some(SweepError::Interrupted { .. })) {
         return 130;
     }
-    let refused = error.is::<Refusal>()
-        || matches!(swept, Some(SweepError::Refused(_)))
-        || matches!(error.downcast_ref::<CalibrateError>(), Some(CalibrateError::Refused(_)))
-        || matches!(error.downcast_ref::<ResultsError>(), Some(ResultsError::Refused(_)));
-    if refused { 2 } else { 3 }
+    if refusal_of(error).is_some() { 2 } else { 3 }
 }

@@ -2,6 +2,7 @@
 //!
 //! Knows terminals. Does not know what runs.
 
+use crate::terminal::Look;
 use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon_study::run::{Progress, Tally};
@@ -13,42 +14,70 @@ use std::time::{Duration, Instant};
 pub enum Shown {
     /// Not at all.
     Not,
-    /// As a bar: jobs done, rate, time left.
-    Bar(ProgressBar),
+    /// As a bar with what a line says beside it.
+    Bar(ProgressBar, Mutex<Pace>),
     /// As lines, no more than one in a few seconds.
-    Lines(Mutex<Lines>),
+    Lines(Mutex<Pace>),
 }
 
-/// When lines were written.
-pub struct Lines {
+/// When jobs began, and what was last said of them.
+pub struct Pace {
     began: Instant,
     last: Instant,
+    most: usize,
 }
 
 /// Time between two lines of progress.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
+/// Characters of the longest bar and of the shortest that shows anything.
+const LONGEST_BAR: usize = 24;
+const SHORTEST_BAR: usize = 5;
+/// Characters of most lines beside the bar.
+const BESIDE_BAR: usize = 62;
+
+/// The bar that is on the terminal.
+static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// Writes on standard error with the bar out of the way.
+pub fn aside(write: impl FnOnce()) {
+    let bar = BAR.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    match bar {
+        Some(bar) => bar.suspend(write),
+        None => write(),
+    }
+}
+
+fn set_bar(bar: Option<&ProgressBar>) {
+    *BAR.lock().unwrap_or_else(PoisonError::into_inner) = bar.cloned();
+}
+
 impl Shown {
     /// What fits where standard error goes.
     pub fn fitting(quiet: bool) -> Self {
+        let now = Instant::now();
+        let pace = Mutex::new(Pace {
+            began: now,
+            last: now,
+            most: 0,
+        });
         match (quiet, std::io::stderr().is_terminal()) {
             (true, _) => Self::Not,
             (false, true) => {
                 let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(5));
                 bar.set_style(style("{spinner} {msg} ({elapsed})"));
                 bar.enable_steady_tick(Duration::from_millis(200));
-                Self::Bar(bar)
+                set_bar(Some(&bar));
+                Self::Bar(bar, pace)
             }
-            (false, false) => {
-                let now = Instant::now();
-                Self::Lines(Mutex::new(Lines { began: now, last: now }))
-            }
+            (false, false) => Self::Lines(pace),
         }
     }
 
     /// Takes the bar away.
     pub fn finish(&self) {
-        if let Self::Bar(bar) = self {
+        if let Self::Bar(bar, _) = self {
+            set_bar(None);
             bar.finish_and_clear();
         }
     }
@@ -58,75 +87,130 @@ fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
+/// Characters of the bar: none on a narrow terminal, where what is said is all.
+fn bar_length(width: Option<usize>) -> usize {
+    let left = width.map_or(LONGEST_BAR, |width| width.saturating_sub(BESIDE_BAR));
+    if left < SHORTEST_BAR { 0 } else { left.min(LONGEST_BAR) }
+}
+
+fn bar_style(width: Option<usize>) -> ProgressStyle {
+    match bar_length(width) {
+        0 => style("{msg}"),
+        length => style(&format!("{{bar:{length}}} {{msg}}")),
+    }
+}
+
 impl Progress for Shown {
     fn stage(&self, what: &str) {
         match self {
             Self::Not => {}
-            Self::Bar(bar) => bar.set_message(what.to_owned()),
+            Self::Bar(bar, _) => bar.set_message(what.to_owned()),
             Self::Lines(_) => words::note(what),
         }
     }
 
     fn jobs(&self, tally: Tally) {
+        let (Self::Bar(_, pace) | Self::Lines(pace)) = self else {
+            return;
+        };
+        let mut pace = pace.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = Instant::now();
+        if tally.ran == 0 {
+            pace.began = now;
+            pace.most = tally.done;
+        }
+        // tallies come in no order: what was said is not taken back
+        if tally.done < pace.most {
+            return;
+        }
+        pace.most = tally.done;
+        let seconds = now.duration_since(pace.began).as_secs_f64();
         match self {
-            Self::Not => {}
-            Self::Bar(bar) if tally.ran == 0 => {
-                bar.set_length(tally.total as u64);
-                bar.set_style(style("{bar:30} {pos}/{len} jobs, {per_sec}, {eta} left{msg}"));
-                bar.set_message("");
-                bar.reset();
-                bar.set_position(tally.done as u64);
-                bar.reset_eta();
-            }
-            Self::Bar(bar) => {
-                bar.set_position(bar.position().max(tally.done as u64));
-                if tally.failed > 0 {
-                    bar.set_message(format!(", {} failed", tally.failed));
-                }
-            }
-            Self::Lines(lines) => {
-                let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
-                let now = Instant::now();
+            Self::Bar(bar, _) => {
+                let width = Look::of_notes().width;
                 if tally.ran == 0 {
-                    lines.began = now;
-                } else if tally.done == tally.total || now.duration_since(lines.last) >= BETWEEN_LINES {
-                    lines.last = now;
-                    words::note(&line(tally, now.duration_since(lines.began).as_secs_f64()));
+                    bar.set_length(tally.total as u64);
+                    bar.set_style(bar_style(width));
                 }
+                bar.set_position(tally.done as u64);
+                bar.set_message(line(tally, seconds, width.map(|width| width - bar_length(Some(width)))));
             }
+            _ if tally.ran == 0 && tally.done == 0 => {}
+            _ if tally.ran == 0 || tally.done == tally.total || now.duration_since(pace.last) >= BETWEEN_LINES => {
+                pace.last = now;
+                words::note(&line(tally, seconds, None));
+            }
+            _ => {}
         }
     }
 }
 
-fn line(tally: Tally, seconds: f64) -> String {
+/// Done of all, failed so far, jobs a second, time left; of a run that goes on how many were there before. What does not fit
+/// a width is left out: first what was there before, then the rate.
+fn line(tally: Tally, seconds: f64, width: Option<usize>) -> String {
     let Tally {
         done,
         failed,
         total,
         ran,
     } = tally;
-    let rate = ran as f64 / seconds.max(1e-9);
-    let left = words::duration((total - done) as f64 / rate);
-    let failed = if failed > 0 {
-        format!(", {failed} failed")
-    } else {
-        String::new()
+    let before = match done.saturating_sub(ran) {
+        0 => String::new(),
+        before => format!(" ({before} before)"),
     };
-    format!("{done}/{total} jobs{failed}, {rate:.2} jobs/s, {left} left")
+    let (rate, left) = if ran == 0 {
+        Default::default()
+    } else {
+        let rate = ran as f64 / seconds.max(1e-9);
+        let left = words::duration(total.saturating_sub(done) as f64 / rate);
+        (format!(", {}", words::rate(rate)), format!(", {left} left"))
+    };
+    let said = |before: &str, rate: &str| format!("{done}/{total} jobs{before}, {failed} failed{rate}{left}");
+    let fits = |said: &String| width.is_none_or(|width| said.chars().count() < width);
+    let all = [said(&before, &rate), said("", &rate)];
+    all.into_iter().find(fits).unwrap_or_else(|| said("", ""))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_line_says_done_failed_rate_and_time_left() {
-        let tally = Tally {
-            done: 5,
+    fn tally(done: usize, ran: usize) -> Tally {
+        Tally {
+            done,
             failed: 1,
             total: 20,
-            ran: 5,
-        };
-        assert_eq!(line(tally, 10.0), "5/20 jobs, 1 failed, 0.50 jobs/s, 30 s left");
+            ran,
+        }
+    }
+
+    #[test]
+    fn a_line_says_done_failed_rate_and_time_left() {
+        let said = line(tally(5, 5), 10.0, None);
+        assert_eq!(said, "5/20 jobs, 1 failed, 0.50 jobs/s, 30 s left");
+    }
+
+    #[test]
+    fn jobs_recorded_before_count_as_done_but_not_for_the_rate() {
+        let said = line(tally(12, 2), 4.0, None);
+        assert_eq!(said, "12/20 jobs (10 before), 1 failed, 0.50 jobs/s, 16 s left");
+        assert_eq!(line(tally(10, 0), 0.0, None), "10/20 jobs (10 before), 1 failed");
+    }
+
+    #[test]
+    fn a_narrow_line_keeps_done_failed_and_time_left() {
+        let said = |width| line(tally(12, 2), 4.0, Some(width));
+        assert_eq!(said(50), "12/20 jobs, 1 failed, 0.50 jobs/s, 16 s left");
+        assert_eq!(said(40), "12/20 jobs, 1 failed, 16 s left");
+        assert_eq!(said(10), "12/20 jobs, 1 failed, 16 s left");
+    }
+
+    #[test]
+    fn the_bar_gives_way_on_a_narrow_terminal_and_has_an_end_on_a_wide_one() {
+        assert_eq!(
+            [0, 40, 66, 67, 80, 500].map(|w| bar_length(Some(w))),
+            [0, 0, 0, 5, 18, 24]
+        );
+        assert_eq!(bar_length(None), 24);
     }
 }

@@ -27,7 +27,9 @@ pub fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Resu
 
 /// Writes a line on standard error, where it is nobody's loss if nobody reads it.
 pub fn note(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
+    crate::progress::aside(|| {
+        let _ = writeln!(io::stderr().lock(), "{line}");
+    });
 }
 
 /// A table with its columns aligned, numbers to the right; a last line end.
@@ -65,6 +67,53 @@ pub fn printable(word: &str) -> String {
     word.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
+/// A text in lines of a width, broken at blanks; all but the first begin with blanks. A word that is longer stays whole.
+pub fn wrapped(text: &str, width: usize, indent: usize) -> String {
+    let mut lines = String::new();
+    let mut used = 0;
+    // blanks at the beginning are the text's own
+    let begin = text.len() - text.trim_start().len();
+    for (i, word) in text[begin..].split(' ').enumerate() {
+        let length = word.chars().count();
+        if i == 0 {
+            lines += &text[..begin];
+            used = begin;
+        } else if used + 1 + length > width {
+            lines.truncate(lines.trim_end().len());
+            lines += &format!("\n{}", " ".repeat(indent));
+            used = indent;
+        } else {
+            lines.push(' ');
+            used += 1;
+        }
+        lines += word;
+        used += length;
+    }
+    lines.truncate(lines.trim_end().len());
+    lines + "\n"
+}
+
+/// A list behind its beginning, in lines of a width, broken between its entries where they fit a line; empty ones left out.
+pub fn listed(begin: &str, entries: impl Iterator<Item = impl AsRef<str>>, width: usize, indent: usize) -> String {
+    const KEPT: &str = "\u{a0}";
+    let fits = |entry: &str| indent + entry.chars().count() < width;
+    let kept = |entry: &str| {
+        if fits(entry) {
+            entry.replace(' ', KEPT)
+        } else {
+            entry.to_owned()
+        }
+    };
+    let entries: Vec<String> = entries
+        .map(|entry| kept(entry.as_ref()))
+        .filter(|entry| !entry.is_empty())
+        .collect();
+    // a line may end behind the beginning
+    let end = if begin.ends_with(' ') { " " } else { "" };
+    let begin = begin.strip_suffix(' ').unwrap_or(begin).replace(' ', KEPT) + end;
+    wrapped(&format!("{begin}{}", entries.join(", ")), width, indent).replace(KEPT, " ")
+}
+
 /// How a cell is written for people: axes as they are, computed lengths to a tenth of a millimetre, forces to a newton.
 fn cell(column: &str, value: &Value) -> String {
     match value {
@@ -89,6 +138,24 @@ pub fn significant(x: f64) -> String {
     let digits = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
     let decimals = usize::try_from(5 - digits).unwrap_or(0);
     format!("{x:.decimals$}")
+}
+
+/// A count with its thousands apart.
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let first = digits.len() % 3;
+    let (first, rest) = digits.split_at(if first == 0 { 3.min(digits.len()) } else { first });
+    let groups = rest.as_bytes().chunks(3).map(String::from_utf8_lossy);
+    groups.fold(first.to_owned(), |text, group| text + "," + &group)
+}
+
+/// Jobs a second for people: three digits.
+pub fn rate(per_second: f64) -> String {
+    match per_second {
+        r if r < 10.0 => format!("{r:.2} jobs/s"),
+        r if r < 100.0 => format!("{r:.1} jobs/s"),
+        r => format!("{r:.0} jobs/s"),
+    }
 }
 
 /// A duration for people.
@@ -117,6 +184,31 @@ mod tests {
                         linear              3             0.1400\n\
                         nonlinear        6.09                  -\n";
         assert_eq!(table(&columns, &rows), expected);
+    }
+
+    #[test]
+    fn long_texts_are_broken_at_blanks_and_indented() {
+        assert_eq!(wrapped("one two  three four", 9, 2), "one two\n  three\n  four\n");
+        assert_eq!(
+            wrapped("#1  longer-than-that x", 9, 4),
+            "#1\n    longer-than-that\n    x\n"
+        );
+        assert_eq!(wrapped("  a b", 80, 2), "  a b\n");
+        assert_eq!(wrapped("", 80, 2), "\n");
+    }
+
+    #[test]
+    fn lists_are_broken_between_their_entries() {
+        let list = |width| listed("#1  ", ["gap 0.028 m", "", "load 5 N", "a b"].iter(), width, 4);
+        assert_eq!(list(80), "#1  gap 0.028 m, load 5 N, a b\n");
+        assert_eq!(list(24), "#1  gap 0.028 m,\n    load 5 N, a b\n");
+        assert_eq!(list(10), "#1  gap\n    0.028\n    m,\n    load 5\n    N, a b\n");
+    }
+
+    #[test]
+    fn thousands_stand_apart() {
+        let texts = [0, 7, 999, 1000, 47_555, 123_456, 1_200_000_000].map(grouped);
+        assert_eq!(texts, ["0", "7", "999", "1,000", "47,555", "123,456", "1,200,000,000"]);
     }
 
     #[test]

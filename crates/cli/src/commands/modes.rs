@@ -2,6 +2,7 @@
 
 use crate::Ending;
 use crate::args::{Common, Format, ModesArguments};
+use crate::terminal::Look;
 use crate::words;
 use anyhow::Result;
 use pontoon_study::Refusal;
@@ -38,8 +39,19 @@ pub fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
             ];
             let row = |mode: &Value| columns.iter().map(|column| mode[column].clone()).collect();
             let rows: Vec<Vec<Value>> = found.iter().map(|mode| row(&json!(mode))).collect();
-            words::table(&columns.map(str::to_owned), &rows)
+            fitting(&columns.map(str::to_owned), &rows)
         }
     })?;
     Ok(Ending::Good)
+}
+
+/// The table with as many of its shares as a terminal has room for.
+fn fitting(columns: &[String], rows: &[Vec<Value>]) -> String {
+    let table = |columns: &[String]| words::table(columns, rows);
+    let fits = |table: &String| {
+        let width = Look::of_results().width;
+        width.is_none_or(|width| table.lines().all(|line| line.chars().count() <= width))
+    };
+    let fewer = (3..=columns.len()).rev().map(|count| table(&columns[..count]));
+    fewer.into_iter().find(fits).unwrap_or_else(|| table(&columns[..3]))
 }

@@ -2,7 +2,8 @@
 
 use crate::Ending;
 use crate::args::{Common, Format, PlanArguments};
-use crate::words;
+use crate::terminal::{BAD, Look};
+use crate::{axes, words};
 use anyhow::Result;
 use pontoon_study::Study;
 use pontoon_study::run::Cache;
@@ -19,18 +20,32 @@ pub fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
     let forecast = forecast(&study, &out, threads, Cache::of_user().as_ref())?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(forecast)),
-        _ => text(&forecast, &out.display().to_string()),
+        _ => text(&study, &forecast, &out.display().to_string(), Look::of_results()),
     })?;
     Ok(Ending::Good)
 }
 
-fn text(forecast: &Forecast, out: &str) -> String {
+/// The longest of the names that are told of every study.
+const LONGEST: &str = "distinct bridges";
+
+/// What would run, what is there of it, what the rest takes.
+fn text(study: &Study, forecast: &Forecast, out: &str, look: Look) -> String {
     let plan = &forecast.plan;
-    let merged = plan.points - plan.jobs;
-    let merged = if merged > 0 {
-        format!(" ({merged} equal points merged)")
-    } else {
-        String::new()
+    let width = look.width.unwrap_or(usize::MAX);
+    let axes: Vec<(String, String)> = axes::of(study)
+        .into_iter()
+        .map(|(name, told)| (format!("  {name}"), told))
+        .collect();
+    let names = axes.iter().map(|(name, _)| name.chars().count()).chain([LONGEST.len()]);
+    let names = names.max().unwrap_or(0) + 2;
+    let line = |name: &str, told: &str| {
+        // beside each other where there is room
+        let indent = if 2 * names > width { 4 } else { names };
+        words::wrapped(&words::printable(&format!("{name:<names$}{told}")), width, indent)
+    };
+    let merged = match plan.points - plan.jobs {
+        0 => String::new(),
+        merged => format!(" ({} equal points merged)", words::grouped(merged as u64)),
     };
     let time = match forecast.expected_seconds {
         Some(seconds) => format!(
@@ -41,18 +56,27 @@ fn text(forecast: &Forecast, out: &str) -> String {
         ),
         None => "not known: the jobs that were tried failed, or are too long to try".to_owned(),
     };
-    let mut text = format!(
-        "study             {}\njobs              {}{merged}\ndistinct bridges  {}\ncondensations     {}\nsteps             {}\n",
-        plan.study, plan.jobs, plan.distinct_bridges, plan.condensations, plan.steps,
-    );
+    let mut text = line("study", &plan.study);
+    text += &line("jobs", &(words::grouped(plan.jobs as u64) + &merged));
+    for (name, told) in &axes {
+        text += &line(name, told);
+    }
+    text.push('\n');
+    text += &line(LONGEST, &words::grouped(plan.distinct_bridges as u64));
+    text += &line("condensations", &words::grouped(plan.condensations as u64));
+    text += &line("steps", &words::grouped(plan.steps));
+    text.push('\n');
     if let Some(found) = &forecast.found {
-        text += &format!(
-            "done              {} ({} failed), missing {}, in {out}\n",
-            found.done, found.failed, found.missing
-        );
+        let failed = format!("{} failed", found.failed);
+        let told = format!("{} ({failed}), missing {}, in {out}", found.done, found.missing);
+        let told = line("done", &told);
+        text += &match found.failed {
+            0 => told,
+            _ => told.replacen(&failed, &look.painted(BAD, &failed), 1),
+        };
         for why in &found.refused {
-            text += &format!("no use            {why}\n");
+            text += &look.painted(BAD, &line("no use", why));
         }
     }
-    text + &format!("expected time     {time}\n")
+    text + &line("expected time", &time)
 }

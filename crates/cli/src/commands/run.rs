@@ -3,8 +3,9 @@
 use crate::args::{Common, Format, RunArguments};
 use crate::progress::Shown;
 use crate::signals::Heard;
+use crate::terminal::Look;
 use crate::watching::Watching;
-use crate::{Ending, comparison, words};
+use crate::{Ending, comparison, summary, words};
 use anyhow::Result;
 use pontoon_study::compare::{Comparison, against_reference};
 use pontoon_study::plan::{Job, Jobs};
@@ -17,9 +18,6 @@ use serde::ser::{Serialize, Serializer};
 use serde_json::{Map, Value};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
-
-/// Rows of the summary that are written on standard output for people; all are in summary.csv.
-const ROWS_SHOWN: usize = 200;
 
 /// Checks every job, runs what is missing, writes the tables, prints the summary and, where asked, holds the results against
 /// a reference.
@@ -104,7 +102,11 @@ pub(super) fn answer(
         (Format::Markdown | Format::Junit, Some(compared)) => {
             words::result(&comparison::written(compared, common.format)?)
         }
-        (_, Some(compared)) => words::result(&format!("{}\n{}", text(swept, out), comparison::text(compared))),
+        (_, Some(compared)) => words::result(&format!(
+            "{}\n{}",
+            text(swept, out),
+            comparison::text(compared, Look::of_results())
+        )),
         (_, None) => words::result(&text(swept, out)),
     }?;
     if let Some(compared) = &compared {
@@ -133,33 +135,33 @@ fn failures(failures: &Failures) {
 
 fn text(swept: &Swept<'_>, out: &Path) -> String {
     let outcome = &swept.outcome;
+    let look = Look::of_results();
     let recorded = match outcome.jobs - outcome.ran {
         0 => String::new(),
         known => format!(" ({known} recorded before)"),
     };
-    let counts = format!(
-        "jobs {}{recorded}, failed {}; condensations {}, offline part {}, jobs {} on {} threads\n",
-        outcome.jobs,
-        outcome.failures.count,
-        outcome.preparation.condensations,
-        words::duration(outcome.offline_s),
-        words::duration(outcome.jobs_s),
-        outcome.threads,
+    let counts = words::wrapped(
+        &format!(
+            "jobs {}{recorded}, failed {}; condensations {}, offline part {}, jobs {} on {} threads",
+            outcome.jobs,
+            outcome.failures.count,
+            outcome.preparation.condensations,
+            words::duration(outcome.offline_s),
+            words::duration(outcome.jobs_s),
+            outcome.threads,
+        ),
+        look.width.unwrap_or(usize::MAX),
+        2,
     );
-    let Some(summary) = &swept.summary else {
+    let Some(summary_table) = &swept.summary else {
         let of = swept.jobs;
         return format!(
             "{counts}a share of {of} jobs in {}: `pontoon merge` puts shares together\n",
             out.display()
         );
     };
-    let shown: Vec<Vec<Value>> = summary.rows().take(ROWS_SHOWN).collect();
-    let more = match summary.len() - shown.len() {
-        0 => String::new(),
-        more => format!("and {more} more rows: see summary.csv\n"),
-    };
-    let table = words::table(summary.columns(), &shown);
-    format!("{table}{more}\n{counts}results in {}\n", out.display())
+    let table = summary::text(summary_table.columns(), || summary_table.rows(), look);
+    format!("{table}\n{counts}results in {}\n", out.display())
 }
 
 /// What a run says in JSON; the rows of its summary are made as they are written.

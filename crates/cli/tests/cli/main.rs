@@ -22,4 +22,6 @@ mod operator;
 mod refusals;
 mod report;
 mod results;
+mod shown_places;
 mod stage;
+mod terminal;

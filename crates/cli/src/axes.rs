@@ -1,0 +1,92 @@
+//! The axes of a study for people: which values, or from where to where and how many.
+//!
+//! Knows designs as points. Does not know what the points lead to.
+
+use crate::summary::told;
+use pontoon_study::Study;
+use serde_json::Value;
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// Values that are told one by one.
+const MOST_TOLD: usize = 6;
+
+/// What is seen of an axis.
+struct Seen {
+    name: String,
+    /// The first of its values.
+    first: Vec<Value>,
+    /// A number for each value.
+    known: HashSet<u64>,
+    /// The least and the largest, where all are numbers.
+    range: Option<(f64, f64)>,
+}
+
+/// Each axis and its values, in the order of their first point.
+pub fn of(study: &Study) -> Vec<(String, String)> {
+    let mut axes: Vec<Seen> = Vec::new();
+    for block in &study.blocks {
+        let places: Vec<usize> = block.axes.iter().map(|axis| place(&mut axes, &axis.name)).collect();
+        for point in block.points() {
+            places
+                .iter()
+                .zip(point.values())
+                .for_each(|(&i, (_, value))| axes[i].see(value));
+        }
+    }
+    axes.iter().map(|seen| (seen.name.clone(), seen.told())).collect()
+}
+
+fn place(axes: &mut Vec<Seen>, name: &str) -> usize {
+    axes.iter().position(|seen| seen.name == name).unwrap_or_else(|| {
+        axes.push(Seen {
+            name: name.to_owned(),
+            first: Vec::new(),
+            known: HashSet::new(),
+            range: Some((f64::INFINITY, f64::NEG_INFINITY)),
+        });
+        axes.len() - 1
+    })
+}
+
+impl Seen {
+    fn see(&mut self, value: &Value) {
+        let number = value.as_f64();
+        let mut hasher = DefaultHasher::new();
+        match number {
+            Some(x) => x.to_bits().hash(&mut hasher),
+            None => value.to_string().hash(&mut hasher),
+        }
+        if !self.known.insert(hasher.finish()) {
+            return;
+        }
+        if self.first.len() < MOST_TOLD {
+            self.first.push(value.clone());
+        }
+        let range = self.range.zip(number);
+        self.range = range.map(|((from, to), x)| (from.min(x), to.max(x)));
+    }
+
+    fn told(&self) -> String {
+        let mut first = self.first.clone();
+        let left = self.known.len() - first.len();
+        match self.range {
+            Some((from, to)) if left > 0 => {
+                let [from, to] = [from, to].map(|x| told(&x.into()));
+                return format!("{from} to {to}, {} values", self.known.len());
+            }
+            Some(_) => first.sort_by(|a, b| f64::total_cmp(&number(a), &number(b))),
+            None => {}
+        }
+        let first = first.iter().map(told).collect::<Vec<_>>().join(", ");
+        if left > 0 {
+            format!("{first}, and {left} more")
+        } else {
+            first
+        }
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_default()
+}

@@ -1,0 +1,102 @@
+//! The place of a file that a refusal is about, with its line and a mark under it.
+//!
+//! Knows how a place is shown and what is said at it. Does not know how it is found in the text.
+
+use crate::terminal::Look;
+use crate::words::printable;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, renderer::DecorStyle};
+use pontoon_study::Refusal;
+use pontoon_study::document::{Spot, SpotKind, spot};
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+
+/// Largest file that is read again to show a place of it [bytes].
+const LARGEST: u64 = 1 << 26;
+/// Longest label [characters]: what is longer is in the message above it.
+const LONGEST_LABEL: usize = 72;
+/// Characters of a line where the place does not say how many it has.
+const WIDTH: usize = 120;
+
+/// The place that a refusal is about, where it is one of a file that a person wrote. Ends in a line end.
+pub fn excerpt(refusal: &Refusal, look: Look) -> Option<String> {
+    let text = text_of(&refusal.file)?;
+    let spot = spot(&text, &refusal.key, &refusal.found)?;
+    Some(shown(
+        &refusal.file.display().to_string(),
+        &text,
+        &spot,
+        &label(refusal, &spot.kind),
+        look,
+    ))
+}
+
+/// The text of a file; none of what is no file of its own, of a manifest (which this program writes), and of one too large.
+fn text_of(file: &Path) -> Option<String> {
+    let known = fs::metadata(file).ok()?;
+    let written_here = file.file_name().is_some_and(|name| name == "manifest.json");
+    if !known.is_file() || known.len() > LARGEST || written_here {
+        return None;
+    }
+    fs::read_to_string(file).ok()
+}
+
+/// What is said at the place.
+fn label(refusal: &Refusal, kind: &SpotKind) -> String {
+    let allowed = || format!("allowed: {}", refusal.allowed);
+    let label = match kind {
+        SpotKind::Fault(message) if refusal.allowed == "JSON" => message.clone(),
+        SpotKind::Fault(_) => allowed(),
+        SpotKind::Twice(_) => "again here".to_owned(),
+        SpotKind::Around if refusal.found == "nothing" => {
+            let name = refusal.key.rsplit('.').next().unwrap_or_default();
+            format!("{name} is missing")
+        }
+        SpotKind::Around => refusal.found.clone(),
+        SpotKind::Key | SpotKind::Value => match &refusal.nearest {
+            Some(nearest) => format!("nearest known: {nearest}"),
+            None => allowed(),
+        },
+    };
+    let label = printable(&label);
+    if label.chars().count() <= LONGEST_LABEL {
+        return label;
+    }
+    match kind {
+        SpotKind::Key | SpotKind::Value => "not allowed".to_owned(),
+        _ => label.chars().take(LONGEST_LABEL - 3).collect::<String>() + "...",
+    }
+}
+
+/// A place of a text.
+fn shown(file: &str, text: &str, spot: &Spot, label: &str, look: Look) -> String {
+    let first = match &spot.kind {
+        SpotKind::Twice(first) => Some(first.clone()),
+        _ => None,
+    };
+    // the lines from the first mark to the last
+    let begin = first.as_ref().map_or(spot.bytes.start, |first| first.start);
+    let from = text[..begin].rfind('\n').map_or(0, |end| end + 1);
+    let to = text[spot.bytes.end..]
+        .find('\n')
+        .map_or(text.len(), |end| spot.bytes.end + end);
+    let within = |bytes: &Range<usize>| bytes.start - from..bytes.end - from;
+    let mut snippet = Snippet::source(text[from..to].trim_end_matches('\r'))
+        .line_start(1 + text[..from].matches('\n').count())
+        .path(file)
+        .annotation(AnnotationKind::Primary.span(within(&spot.bytes)).label(label));
+    if let Some(first) = &first {
+        snippet = snippet.annotation(AnnotationKind::Context.span(within(first)).label("first here"));
+    }
+    let renderer = if look.colour {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    let renderer = renderer
+        .term_width(look.width.unwrap_or(WIDTH))
+        .decor_style(DecorStyle::Ascii);
+    let report = &[Group::with_level(Level::ERROR).element(snippet)];
+    let lines = renderer.render(report);
+    lines.lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+}

@@ -1,0 +1,284 @@
+//! Peaks for people: deflection against speed (against the place of the load of static cases), a row a combination of the
+//! other axes; a list of all peaks where rows have too little in common for that.
+//!
+//! Knows how many rows a person looks at. Does not know where rows come from.
+
+use super::grid::{Cell, Grid, Names};
+use super::label::{axis, heads, label, peak, told};
+use super::survey::{PEAKS, Row, Survey, hash};
+use crate::terminal::{BAD, FAINT, Look, NOTABLE};
+use crate::words::{listed, wrapped};
+use anstyle::Style;
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// Lines of rows that are written at most, over all pieces of a table.
+const MOST_LINES: usize = 60;
+/// Rows that are written at most, and at least where there are pieces.
+const MOST_ROWS: usize = 40;
+const FEWEST_ROWS: usize = 5;
+
+/// What stands in a cell of a job that failed.
+const FAILED: &str = "failed";
+
+type Head = (String, Option<&'static str>);
+
+/// The peaks of a summary as a table and what is largest.
+pub fn peaks<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I, look: Look, width: usize) -> String {
+    let survey = Survey::new(columns, &rows);
+    let heads = heads(columns);
+    let mut text = String::new();
+    if let Some(first) = columns.iter().find(|column| PEAKS.contains(&column.as_str())) {
+        let (name, unit) = label(first);
+        let of = if survey.along.is_some() {
+            format!("{name} [{}]", unit.unwrap_or_default())
+        } else {
+            "peaks".to_owned()
+        };
+        let against = survey
+            .along
+            .as_ref()
+            .map_or(String::new(), |(i, _)| format!(" against {}", united(&heads[*i])));
+        text += &wrapped(&format!("{of}{against}"), width, 2);
+    }
+    let constant: Vec<String> = survey
+        .constant
+        .iter()
+        .map(|(i, value)| told(&heads[*i], value))
+        .collect();
+    if !constant.is_empty() {
+        text += &listed("throughout: ", constant.iter(), width, 2);
+    }
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    text += &match &survey.along {
+        Some((along, values)) => against(&survey, (*along, values), &heads, &rows, look, width),
+        None => list(&survey, columns, &heads, &rows, look, width),
+    };
+    text + &largest(&survey, columns, &heads, look, width)
+}
+
+fn united((name, unit): &Head) -> String {
+    unit.map_or(name.clone(), |unit| format!("{name} [{unit}]"))
+}
+
+/// Values of the axes that vary, as the names of rows; heads a word a line.
+fn names(axes: &[usize], heads: &[Head], rows: &[Row]) -> Vec<Names> {
+    let column = |&i: &usize| {
+        let (name, unit) = &heads[i];
+        let words = name.split(' ').map(str::to_owned);
+        let told = |row: &Row| {
+            if row[i].is_null() {
+                String::new()
+            } else {
+                told(&heads[i], &row[i])
+            }
+        };
+        Names {
+            head: words.chain(unit.map(|unit| format!("[{unit}]"))).collect(),
+            rows: rows.iter().map(|row| axis(&row[i])).collect(),
+            told: rows.iter().map(told).collect(),
+        }
+    };
+    axes.iter().map(column).collect()
+}
+
+/// The largest of its kind ends in a star; all others in a blank, so that their points stay under each other.
+fn cell(text: String, is_largest: bool) -> Cell {
+    if is_largest {
+        Cell {
+            text: text + "*",
+            style: NOTABLE,
+        }
+    } else {
+        Cell {
+            text: text + " ",
+            style: Style::new(),
+        }
+    }
+}
+
+fn of_peak(name: &str, value: &Value, is_largest: bool) -> Cell {
+    match value.as_f64() {
+        Some(x) => cell(peak(name, x), is_largest),
+        None => Cell {
+            style: BAD,
+            ..cell(FAILED.to_owned(), false)
+        },
+    }
+}
+
+/// The first peak against an axis.
+fn against<I: Iterator<Item = Row>>(
+    survey: &Survey,
+    (along, values): (usize, &[Value]),
+    heads: &[Head],
+    rows: &impl Fn() -> I,
+    look: Look,
+    width: usize,
+) -> String {
+    let Some((peak_at, name)) = survey.peak_column() else {
+        return "no job has a peak: all failed\n".to_owned();
+    };
+    let mut grid = Grid {
+        heads: values.iter().map(|value| vec![axis(value) + " "]).collect(),
+        gap: 1,
+        ..Grid::default()
+    };
+    let collect = |most: usize| {
+        let mut places: HashMap<u64, usize> = HashMap::new();
+        let (mut first, mut cells): (Vec<Row>, Vec<Vec<Cell>>) = Default::default();
+        for row in rows() {
+            let next = places.len();
+            let known = hash(&row, &survey.varying);
+            let place = match places.get(&known) {
+                Some(&place) => place,
+                None if next < most => {
+                    places.insert(known, next);
+                    cells.push(vec![Cell::default(); values.len()]);
+                    first.push(row.clone());
+                    next
+                }
+                None => continue,
+            };
+            let at = values.iter().position(|value| *value == row[along]);
+            let is_largest = survey.is_largest(peak_at, &row);
+            if let Some(cell) = at.and_then(|at| cells[place].get_mut(at)) {
+                *cell = of_peak(name, &row[peak_at], is_largest);
+            }
+        }
+        (first, cells)
+    };
+    let (first, cells) = collect(MOST_ROWS);
+    grid.names = names(&survey.varying, heads, &first);
+    grid.rows = cells;
+    let shown = fitting(&mut grid, width);
+    grid.written(width, look) + &more(survey.combinations - shown, "combinations", look)
+}
+
+/// Cuts a table to as many rows as a person looks at in all its pieces; how many are left.
+fn fitting(grid: &mut Grid, width: usize) -> usize {
+    let most = (MOST_LINES / grid.pieces(width).max(1)).clamp(FEWEST_ROWS, MOST_ROWS);
+    grid.rows.truncate(most);
+    grid.names.iter_mut().for_each(|names| names.rows.truncate(most));
+    grid.rows.len()
+}
+
+fn more(left: usize, of: &str, look: Look) -> String {
+    match left {
+        0 => String::new(),
+        left => look.painted(FAINT, &format!("and {left} more {of}: see summary.csv")) + "\n",
+    }
+}
+
+/// All peaks of jobs: in their order, of more than a person looks at those with the largest deflections.
+fn list<I: Iterator<Item = Row>>(
+    survey: &Survey,
+    columns: &[String],
+    heads: &[Head],
+    rows: &impl Fn() -> I,
+    look: Look,
+    width: usize,
+) -> String {
+    let peaks: Vec<usize> = survey.peaks(columns);
+    let Some(&first) = peaks.first() else {
+        return "no rows\n".to_owned();
+    };
+    let mut shown: Vec<Row> = Vec::new();
+    if survey.rows <= MOST_ROWS {
+        shown = rows().collect();
+    } else {
+        let mut order: Vec<(f64, usize)> = rows()
+            .map(|row| row[first].as_f64().unwrap_or(f64::NEG_INFINITY))
+            .zip(0..)
+            .collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let places: HashMap<usize, usize> = order.iter().take(MOST_ROWS).map(|o| o.1).zip(0..).collect();
+        let mut kept: Vec<(usize, Row)> = rows()
+            .enumerate()
+            .filter_map(|(i, row)| places.get(&i).map(|&place| (place, row)))
+            .collect();
+        kept.sort_by_key(|(place, _)| *place);
+        shown.extend(kept.into_iter().map(|(_, row)| row));
+    }
+    let mut grid = Grid {
+        gap: 1,
+        names: names(&survey.varying, heads, &shown),
+        heads: peaks
+            .iter()
+            .map(|&i| {
+                let (name, unit) = label(columns[i].trim_start_matches("peak_"));
+                vec![name + " ", unit.map_or(String::new(), |unit| format!("[{unit}] "))]
+            })
+            .collect(),
+        rows: shown
+            .iter()
+            .map(|row| {
+                peaks
+                    .iter()
+                    .map(|&i| of_peak(&columns[i], &row[i], survey.is_largest(i, row)))
+                    .collect()
+            })
+            .collect(),
+    };
+    let shown = fitting(&mut grid, width);
+    let of = if survey.rows > MOST_ROWS {
+        "jobs with less deflection"
+    } else {
+        "jobs"
+    };
+    grid.written(width, look) + &more(survey.rows - shown, of, look)
+}
+
+/// The largest of each peak and where it is.
+fn largest(survey: &Survey, columns: &[String], heads: &[Head], look: Look, width: usize) -> String {
+    let along = survey.along.iter().map(|(i, _)| *i);
+    let axes: Vec<usize> = along.chain(survey.varying.iter().copied()).collect();
+    let parts: Vec<(String, String, Vec<String>)> = survey
+        .largest
+        .iter()
+        .map(|(i, most, row)| {
+            let (name, unit) = label(&columns[*i]);
+            let at = axes
+                .iter()
+                .filter(|&&i| !row[i].is_null())
+                .map(|&i| told(&heads[i], &row[i]));
+            let at: Vec<String> = at.collect();
+            let value = format!("{} {}", peak(&columns[*i], *most), unit.unwrap_or_default());
+            (name.trim_start_matches("peak ").to_owned(), value, at)
+        })
+        .collect();
+    if parts.is_empty() || survey.rows < 2 {
+        return String::new();
+    }
+    let name = parts.iter().map(|part| part.0.len()).max().unwrap_or(0);
+    let value = parts.iter().map(|part| part.1.len()).max().unwrap_or(0);
+    let line = |(of, most, at): &(String, String, Vec<String>)| {
+        let begin = format!("largest {of:<name$}  {most:>value$}");
+        let indent = begin.len() + 2;
+        let indent = if 2 * indent > width { 4 } else { indent };
+        let begin = if at.is_empty() { begin } else { begin + "  " };
+        listed(&begin, at.iter(), width, indent).replacen(most.as_str(), &look.painted(NOTABLE, most), 1)
+    };
+    format!("\n{}", parts.iter().map(line).collect::<String>())
+}
+
+impl Survey {
+    /// Whether the peak of a row is the largest, above nothing and not the only one.
+    fn is_largest(&self, column: usize, row: &Row) -> bool {
+        let mut largest = self.largest.iter();
+        self.rows > 1 && largest.any(|(i, most, of)| *i == column && *most > 0.0 && of == row)
+    }
+
+    /// Places of the columns of peaks.
+    fn peaks(&self, columns: &[String]) -> Vec<usize> {
+        let place = |name: &&str| columns.iter().position(|column| column == name);
+        PEAKS.iter().filter_map(place).collect()
+    }
+
+    /// The column of the first peak and its name, where some job has one.
+    fn peak_column(&self) -> Option<(usize, &'static str)> {
+        self.largest.first().map(|(i, ..)| (*i, PEAKS[0]))
+    }
+}

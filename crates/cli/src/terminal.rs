@@ -1,0 +1,67 @@
+//! What the place is like where something is written: its width, whether it shows colours.
+//!
+//! Knows terminals, `NO_COLOR` and `TERM`. Does not know what is written.
+
+use anstyle::{AnsiColor, Style};
+use std::io::{IsTerminal, stderr, stdout};
+use terminal_size::{Width, terminal_size_of};
+
+/// The looks of a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Look {
+    /// Whether it shows colours.
+    pub colour: bool,
+    /// Characters of a line; none where lines may be of any length, as in a file.
+    pub width: Option<usize>,
+}
+
+/// What is good.
+pub const GOOD: Style = AnsiColor::Green.on_default();
+/// What falls short.
+pub const BAD: Style = AnsiColor::Red.on_default().bold();
+/// What has changed or is the largest.
+pub const NOTABLE: Style = AnsiColor::Yellow.on_default().bold();
+/// Heads of tables.
+pub const HEAD: Style = Style::new().bold();
+/// What is of lesser weight.
+pub const FAINT: Style = Style::new().dimmed();
+
+impl Look {
+    /// Of standard output, where results go.
+    pub fn of_results() -> Self {
+        Self::new(
+            stdout().is_terminal(),
+            terminal_size_of(stdout()).map(|(width, _)| width),
+        )
+    }
+
+    /// Of standard error, where progress and errors go.
+    pub fn of_notes() -> Self {
+        Self::new(
+            stderr().is_terminal(),
+            terminal_size_of(stderr()).map(|(width, _)| width),
+        )
+    }
+
+    fn new(terminal: bool, width: Option<Width>) -> Self {
+        let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+        let dumb = set("TERM").is_none_or(|term| term == "dumb");
+        Self {
+            colour: terminal && !dumb && set("NO_COLOR").is_none(),
+            // a terminal that does not tell its width is not written to as if it were narrow
+            width: width
+                .filter(|_| terminal)
+                .map(|Width(width)| usize::from(width))
+                .filter(|&width| width > 0),
+        }
+    }
+
+    /// A text in a style, where colours are shown.
+    pub fn painted(self, style: Style, text: &str) -> String {
+        if self.colour && !text.is_empty() {
+            format!("{style}{text}{style:#}")
+        } else {
+            text.to_owned()
+        }
+    }
+}
