@@ -125,6 +125,14 @@ pub enum Command {
     /// The JSON Schema of a file, for an editor or a checker.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
+    /// Writes what makes a shell complete the words of this program.
+    #[command(
+        after_help = "Examples:\n  pontoon completions bash > ~/.local/share/bash-completion/completions/pontoon\n  pontoon completions zsh > ~/.zfunc/_pontoon\n  pontoon completions fish > ~/.config/fish/completions/pontoon.fish"
+    )]
+    Completions(CompletionsArguments),
+    /// Writes manual pages, one a command.
+    #[command(after_help = "Example:\n  pontoon man --to ~/.local/share/man/man1      then: man pontoon-run")]
+    Man(ManArguments),
 }
 
 /// What `run` takes.
@@ -375,6 +383,22 @@ pub enum SchemaOf {
     Reference,
     /// A file of parameters for `calibrate`.
     Parameters,
+}
+
+/// What `completions` takes.
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// Of which shell.
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+/// What `man` takes.
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// Folder of the pages; made where it is missing. Pages of the same names are replaced.
+    #[arg(long, value_name = "DIR")]
+    pub to: PathBuf,
 }
 
 #[cfg(test)]

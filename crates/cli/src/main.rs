@@ -76,6 +76,8 @@ fn main() -> ExitCode {
         Command::Report(report) => commands::report::report(&report, common),
         Command::Export(export) => commands::export::export(&export, common),
         Command::Schema(schema) => commands::schema::schema(&schema),
+        Command::Completions(completions) => commands::completions::completions(&completions),
+        Command::Man(man) => commands::man::man(&man, common),
     };
     match ended {
         Ok(Ending::Good) => ExitCode::SUCCESS,

@@ -2,8 +2,10 @@
 
 pub mod calibrate;
 pub mod compare;
+pub mod completions;
 pub mod explain;
 pub mod export;
+pub mod man;
 pub mod merge;
 pub mod modes;
 pub mod plan;

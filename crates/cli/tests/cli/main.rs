@@ -22,6 +22,7 @@ mod operator;
 mod refusals;
 mod report;
 mod results;
+mod shells;
 mod shown_places;
 mod stage;
 mod terminal;

@@ -1,0 +1,57 @@
+//! `pontoon man`: manual pages, one a command.
+
+use crate::Ending;
+use crate::args::{Arguments, Common, Format, ManArguments};
+use crate::words;
+use anyhow::{Context, Result};
+use clap::{Command, CommandFactory};
+use clap_mangen::Man;
+use pontoon_study::Refusal;
+use pontoon_study::tables::Folder;
+use serde_json::json;
+
+/// Writes the pages of the definitions that words are understood by.
+pub fn man(arguments: &ManArguments, common: Common) -> Result<Ending> {
+    let to = &arguments.to;
+    if to.exists() && !to.is_dir() {
+        return Err(Refusal::new(to, "", "a file", "a folder for the pages").into());
+    }
+    let folder = Folder::create(to).context("no place for the pages")?;
+    let mut names = Vec::new();
+    for command in commands() {
+        let name = format!("{}.1", name(&command));
+        let page = page(command).context("no page")?;
+        folder
+            .write(&name, |file| file.write_all(&page))
+            .context("page not written")?;
+        names.push(name);
+    }
+    words::result(&match common.format {
+        Format::Json => format!("{:#}\n", json!({ "to": to.display().to_string(), "pages": names })),
+        _ => format!("{} pages in {}\n", names.len(), to.display()),
+    })?;
+    Ok(Ending::Good)
+}
+
+/// The program and each of its commands, named as their pages are; hidden ones left out.
+fn commands() -> Vec<Command> {
+    let mut program = Arguments::command().disable_help_subcommand(true);
+    program.build();
+    let commands = program
+        .get_subcommands()
+        .filter(|command| !command.is_hide_set())
+        .cloned();
+    let commands: Vec<Command> = commands.collect();
+    [vec![program], commands].concat()
+}
+
+/// The name of a command's page: `pontoon-run`.
+fn name(command: &Command) -> &str {
+    command.get_display_name().unwrap_or(command.get_name())
+}
+
+fn page(command: Command) -> std::io::Result<Vec<u8>> {
+    let mut page = Vec::new();
+    Man::new(command).manual("pontoon").render(&mut page)?;
+    Ok(page)
+}
