@@ -20,7 +20,7 @@ pub(super) struct History {
 
 /// The moments of a crossing that matter at one position.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Moments {
+pub(crate) struct Moments {
     pub speed_m_s: f64,
     /// When the vehicle's centre is at the position [s].
     pub arrival_s: f64,
@@ -29,7 +29,7 @@ pub(super) struct Moments {
 }
 
 /// The moments of the crossing in a row of the table of jobs.
-pub(super) fn moments_of(results: &Results, row: usize, position: usize) -> Result<Moments, String> {
+pub(crate) fn moments_of(results: &Results, row: usize, position: usize) -> Result<Moments, String> {
     let speed_m_s = results
         .jobs()
         .number("speed_m_s", row)

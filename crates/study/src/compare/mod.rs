@@ -11,6 +11,7 @@ mod old;
 mod quantity;
 mod tolerances;
 
+pub(crate) use history::moments_of;
 pub(crate) use judge::Judge;
 pub use line::{Case, Comparison, Line, Verdict};
 pub use old::against_old;

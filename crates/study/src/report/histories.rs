@@ -109,7 +109,7 @@ pub(super) fn histories(
 }
 
 /// Places of a list that keep its first, its last, and the smallest and the largest of each stretch.
-fn thinned(values: &[f64]) -> Vec<usize> {
+pub(crate) fn thinned(values: &[f64]) -> Vec<usize> {
     if values.len() <= 2 * STRETCHES {
         return (0..values.len()).collect();
     }

@@ -35,6 +35,7 @@ pub use axes::{Axis, AxisKind};
 pub use cards::{Card, FailureNote};
 pub use cells::{Cells, Measure};
 pub use histories::HistoryLine;
+pub(crate) use histories::thinned;
 pub use open::Found;
 pub use packed::{Packed, Scaled};
 pub use plays::{AxlePatch, Play};

@@ -1,0 +1,299 @@
+//! Families of jobs: those that differ in one axis, to be lines of one figure.
+//!
+//! Knows that with the linear connection the gaps have no meaning, so that one linear line is compared with every gap. Does
+//! not know what is drawn.
+
+use super::sheet::{Sheet, said};
+use crate::document::canonical_text;
+use crate::report::words;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Axes that the linear connection does not have.
+const GAPS: [&str; 2] = ["gap_tension_m", "gap_compression_m"];
+
+/// Lines of a figure, beside the linear one; and lines of a figure of all jobs.
+const MOST_LINES: usize = 6;
+
+/// Families by one axis that become figures.
+const MOST_FAMILIES: usize = 6;
+
+/// Jobs that are lines of one figure.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Family {
+    /// The axis in which they differ; none where the family is all jobs.
+    pub by: Option<String>,
+    /// What sets it apart from other families by that axis, as a name of files has it; empty of the only one.
+    pub suffix: String,
+    /// The lines.
+    pub lines: Vec<FamilyLine>,
+}
+
+/// A line: one job, or where the figure runs along an axis, one job a value of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FamilyLine {
+    pub label: String,
+    pub style: usize,
+    pub rows: Vec<usize>,
+}
+
+impl Family {
+    /// What the labels are values of.
+    pub(super) fn legend(&self) -> String {
+        self.by.as_deref().map(words::label).unwrap_or_default()
+    }
+
+    /// All rows.
+    pub(super) fn rows(&self) -> Vec<usize> {
+        self.lines.iter().flat_map(|line| line.rows.iter().copied()).collect()
+    }
+
+    /// A name of files.
+    pub(super) fn name(&self, of: &str) -> String {
+        let by = self
+            .by
+            .as_ref()
+            .map(|by| format!("-by-{}", plain(by)))
+            .unwrap_or_default();
+        format!("{of}{by}{}", self.suffix)
+    }
+}
+
+/// A word as a name of files has it.
+pub(super) fn plain(word: &str) -> String {
+    const LONGEST: usize = 60;
+    let allowed = |c: char| c.is_ascii_alphanumeric() || ['.', '_', '-'].contains(&c);
+    let kept = word.chars().map(|c| if allowed(c) { c } else { '_' });
+    let text: String = kept.take(LONGEST).collect();
+    // a name that begins with a dot is hidden
+    text.trim_start_matches('.').to_owned()
+}
+
+/// The families of a sheet whose figures run along an axis; none of single lines. Last, where they are few and no family
+/// is all of them, all jobs.
+pub(super) fn families(sheet: &mut Sheet<'_>, along: Option<&str>) -> Vec<Family> {
+    let varying: Vec<String> = sheet
+        .varying
+        .iter()
+        .filter(|axis| Some(axis.as_str()) != along)
+        .cloned()
+        .collect();
+    let gaps_vary = varying.iter().any(|axis| GAPS.contains(&axis.as_str()));
+    let mut found = Vec::new();
+    for by in varying.iter().filter(|axis| *axis != "connection" || !gaps_vary) {
+        let mut of_axis = by_axis(sheet, &varying, by, along);
+        if of_axis.len() > MOST_FAMILIES {
+            let axes: Vec<String> = varying
+                .iter()
+                .filter(|axis| *axis != by)
+                .map(|axis| words::label(axis))
+                .collect();
+            sheet.left_out.push(format!(
+                "by {}: {} of {} families, one for each {}",
+                words::label(by),
+                of_axis.len() - MOST_FAMILIES,
+                of_axis.len(),
+                axes.join(", ")
+            ));
+            of_axis.truncate(MOST_FAMILIES);
+        }
+        found.extend(of_axis);
+    }
+    let all = all_jobs(sheet, &varying);
+    if all.lines.len() > MOST_LINES {
+        if found.is_empty() {
+            sheet.left_out.push(format!(
+                "{} combinations of {}, no two of which differ in one axis alone",
+                all.lines.len(),
+                varying
+                    .iter()
+                    .map(|axis| words::label(axis))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ));
+        }
+    } else if !found.iter().any(|family| family.lines.len() == all.lines.len()) {
+        found.push(all);
+    }
+    found
+}
+
+/// Rows by what they have in some axes, in the order of their first row.
+fn grouped<'s>(
+    sheet: &Sheet<'_>,
+    rows: impl Iterator<Item = usize>,
+    axes: impl Iterator<Item = &'s String> + Clone,
+) -> Vec<(Vec<String>, Vec<usize>)> {
+    let mut groups: Vec<(Vec<String>, Vec<usize>)> = Vec::new();
+    let mut place: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+    for row in rows {
+        let key: Vec<String> = axes
+            .clone()
+            .map(|axis| canonical_text(&sheet.cell(axis, row)))
+            .collect();
+        let i = *place.entry(key.clone()).or_insert_with(|| {
+            groups.push((key, Vec::new()));
+            groups.len() - 1
+        });
+        groups[i].1.push(row);
+    }
+    groups
+}
+
+/// The families that differ in one axis alone.
+fn by_axis(sheet: &Sheet<'_>, varying: &[String], by: &str, along: Option<&str>) -> Vec<Family> {
+    let gap = GAPS.contains(&by);
+    let others: Vec<&String> = varying.iter().filter(|axis| *axis != by).collect();
+    let rows = sheet.rows.iter().copied().filter(|row| !sheet.cell(by, *row).is_null());
+    let mut groups: Vec<(Vec<String>, Vec<Vec<usize>>)> = Vec::new();
+    for (key, rows) in grouped(sheet, rows, others.iter().copied()) {
+        let by = by.to_owned();
+        let mut values: Vec<Vec<usize>> = grouped(sheet, rows.into_iter(), std::iter::once(&by))
+            .into_iter()
+            .map(|(_, rows)| rows)
+            .collect();
+        if values.len() < 2 || !meet(sheet, &values, along) {
+            continue;
+        }
+        let value = |rows: &Vec<usize>| sheet.number(&by, rows[0]);
+        if values.iter().all(|rows| value(rows).is_some()) {
+            values.sort_by(|a, b| value(a).unwrap_or_default().total_cmp(&value(b).unwrap_or_default()));
+        }
+        groups.push((key, values));
+    }
+    // only what differs between families is part of their names
+    let differs = |i: usize| groups.iter().any(|(key, _)| key[i] != groups[0].0[i]);
+    let named: Vec<usize> = (0..others.len())
+        .filter(|i| !groups.is_empty() && differs(*i))
+        .collect();
+    let family = |(_, values): &(Vec<String>, Vec<Vec<usize>>)| {
+        let first = values[0][0];
+        let suffix = named.iter().map(|i| {
+            format!(
+                "-{}-{}",
+                plain(others[*i]),
+                plain(&text(&sheet.cell(others[*i], first)))
+            )
+        });
+        let mut lines = Vec::new();
+        if gap {
+            lines.extend(linear_line(sheet, &others, first));
+        }
+        let chosen = super::sheet::spread(values.len(), MOST_LINES);
+        lines.extend(chosen.into_iter().enumerate().map(|(i, place)| FamilyLine {
+            label: words::value(by, &sheet.cell(by, values[place][0])),
+            style: i + 1,
+            rows: values[place].clone(),
+        }));
+        Family {
+            by: Some(by.to_owned()),
+            suffix: suffix.collect(),
+            lines,
+        }
+    };
+    groups.iter().map(family).collect()
+}
+
+/// Whether at some place along an axis there are jobs of more than one value, so that there is something to compare.
+fn meet(sheet: &Sheet<'_>, values: &[Vec<usize>], along: Option<&str>) -> bool {
+    let Some(along) = along else { return true };
+    let mut of_value = BTreeMap::new();
+    values.iter().enumerate().any(|(i, rows)| {
+        let place = |row: &usize| sheet.number(along, *row).map(f64::to_bits);
+        rows.iter()
+            .filter_map(place)
+            .any(|place| *of_value.entry(place).or_insert(i) != i)
+    })
+}
+
+/// The linear jobs that have what a row has in all axes but the gaps.
+fn linear_line(sheet: &Sheet<'_>, others: &[&String], like: usize) -> Option<FamilyLine> {
+    let compared = others
+        .iter()
+        .filter(|axis| **axis != "connection" && !GAPS.contains(&axis.as_str()));
+    let same = |row: &usize| {
+        sheet.is_linear(*row)
+            && compared
+                .clone()
+                .all(|axis| canonical_text(&sheet.cell(axis, *row)) == canonical_text(&sheet.cell(axis, like)))
+    };
+    let rows: Vec<usize> = sheet.rows.iter().copied().filter(same).collect();
+    (!rows.is_empty()).then(|| FamilyLine {
+        label: "linear connection".to_owned(),
+        style: 0,
+        rows,
+    })
+}
+
+/// All jobs, a line each combination of the axes.
+fn all_jobs(sheet: &Sheet<'_>, varying: &[String]) -> Family {
+    let groups = grouped(sheet, sheet.rows.iter().copied(), varying.iter());
+    let (linear, others): (Vec<_>, Vec<_>) = groups
+        .into_iter()
+        .map(|(_, rows)| rows)
+        .partition(|rows| sheet.is_linear(rows[0]));
+    let several = !others.is_empty() && linear.len() == 1;
+    let line = |(i, rows): (usize, Vec<usize>)| FamilyLine {
+        label: label(sheet, varying, rows[0]),
+        style: if several { i } else { i + 1 },
+        rows,
+    };
+    Family {
+        by: None,
+        suffix: String::new(),
+        lines: linear.into_iter().chain(others).enumerate().map(line).collect(),
+    }
+}
+
+/// A job in the words of the axes that vary.
+fn label(sheet: &Sheet<'_>, varying: &[String], row: usize) -> String {
+    let has = |axis: &str| varying.iter().any(|name| name == axis) && !sheet.cell(axis, row).is_null();
+    let both = GAPS.iter().all(|gap| has(gap));
+    let mut said_of: Vec<String> = Vec::new();
+    if both {
+        let [tension, compression] = GAPS.map(|gap| words::value(gap, &sheet.cell(gap, row)));
+        let (tension, unit) = tension.rsplit_once(' ').unwrap_or((&tension, ""));
+        said_of.push(match compression.strip_suffix(unit) {
+            Some(number) => format!("gaps {tension} / {} {unit}", number.trim_end()),
+            None => format!("gaps {tension} {unit} / {compression}"),
+        });
+    }
+    for axis in varying
+        .iter()
+        .filter(|axis| has(axis) && !(both && GAPS.contains(&axis.as_str())))
+    {
+        match axis.as_str() {
+            "connection" if sheet.is_linear(row) || !GAPS.iter().any(|gap| has(gap)) => {
+                said_of.insert(0, said(axis, &sheet.cell(axis, row)));
+            }
+            "connection" => {}
+            "load_n" => said_of.push(words::value(axis, &sheet.cell(axis, row))),
+            _ => said_of.push(said(axis, &sheet.cell(axis, row))),
+        }
+    }
+    if said_of.is_empty() {
+        "calculated".to_owned()
+    } else {
+        said_of.join(", ")
+    }
+}
+
+fn text(value: &Value) -> String {
+    match value {
+        Value::String(word) => word.clone(),
+        Value::Number(number) => words::number(number.as_f64().unwrap_or_default()),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_have_no_letters_that_a_shell_or_a_page_reads() {
+        assert_eq!(plain("bridge.x <b>&\"/1"), "bridge.x__b____1");
+        assert_eq!(plain("..hidden"), "hidden");
+        assert!(plain(&"x".repeat(500)).len() <= 60);
+    }
+}

@@ -1,0 +1,134 @@
+//! A figure as numbers: panels of lines, marks and moments, in the units that their axes name.
+//!
+//! Knows nothing of tables or of drawing.
+
+use super::marks::Origin;
+use serde::Serialize;
+
+/// A figure.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Figure {
+    /// Its name, of which its files are made: letters, digits, `.`, `_` and `-`.
+    pub name: String,
+    /// What a paper would write under it.
+    pub caption: String,
+    /// What the words of its lines are values of; empty where they say it themselves.
+    pub legend: String,
+    /// Its panels in the order of reading.
+    pub panels: Vec<Panel>,
+}
+
+/// A pair of axes with what is drawn between them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Panel {
+    /// What sets it apart from the others; empty where it is the only one.
+    pub title: String,
+    /// The axis across.
+    pub x: Axis,
+    /// The axis up or, where its numbers count downward, down.
+    pub y: Axis,
+    /// Lines, in the order of the legend.
+    pub lines: Vec<Line>,
+    /// Points of a reference.
+    pub marks: Vec<PlottedMark>,
+    /// Places across where something happens.
+    pub moments: Vec<Moment>,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Axis {
+    /// What it counts.
+    pub label: String,
+    /// In which unit; empty of words.
+    pub unit: String,
+    /// Whether its numbers grow downward.
+    pub down: bool,
+    /// Where its places are words: the word at 0, 1, ...
+    pub words: Vec<String>,
+}
+
+/// A line.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// Its words in the legend; lines of one figure with equal words are one entry.
+    pub label: String,
+    /// How it is drawn: 0 for what others are compared with, then by number.
+    pub style: usize,
+    /// Whether its points are joined.
+    pub joined: bool,
+    /// The jobs that it is of.
+    pub jobs: Vec<u64>,
+    /// Its points, in the units of the axes.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A point of a reference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlottedMark {
+    /// Its words in the legend.
+    pub label: String,
+    /// Whether it was measured.
+    pub origin: Origin,
+    /// Id of the measurement or check.
+    pub id: String,
+    /// In the units of the axes.
+    pub point: [f64; 2],
+}
+
+/// A place across a panel where something happens.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Moment {
+    /// What happens.
+    pub label: String,
+    /// Where.
+    pub x: f64,
+}
+
+/// A quantity as figures have it: its words, its unit, what a number of the tables is multiplied by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Measure {
+    pub label: &'static str,
+    pub unit: &'static str,
+    pub factor: f64,
+    pub down: bool,
+}
+
+impl Measure {
+    const fn up(label: &'static str, unit: &'static str, factor: f64) -> Self {
+        Self {
+            label,
+            unit,
+            factor,
+            down: false,
+        }
+    }
+
+    /// Deflection, drawn downward.
+    pub(super) const DEFLECTION: Self = Self {
+        label: "Deflection",
+        unit: "cm",
+        factor: 100.0,
+        down: true,
+    };
+    pub(super) const PEAK_DEFLECTION: Self = Self::up("Peak deflection", "cm", 100.0);
+    pub(super) const PEAK_UPLIFT: Self = Self::up("Peak uplift", "cm", 100.0);
+    /// A joint's force, tension upward.
+    pub(super) const FORCE: Self = Self::up("Joint force, tension positive", "kN", 1e-3);
+    pub(super) const PEAK_COMPRESSION: Self = Self::up("Peak compression of a joint", "kN", 1e-3);
+    pub(super) const PEAK_TENSION: Self = Self::up("Peak tension of a joint", "kN", 1e-3);
+    pub(super) const ALONG: Self = Self::up("Distance along the bridge", "m", 1.0);
+    pub(super) const TIME: Self = Self::up("Time", "s", 1.0);
+    pub(super) const SPEED: Self = Self::up("Speed", "m/s", 1.0);
+    pub(super) const FREQUENCY: Self = Self::up("Frequency", "Hz", 1.0);
+
+    /// The axis that counts it.
+    pub(super) fn axis(self) -> Axis {
+        Axis {
+            label: self.label.to_owned(),
+            unit: self.unit.to_owned(),
+            down: self.down,
+            words: Vec::new(),
+        }
+    }
+}
