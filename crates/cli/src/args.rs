@@ -108,10 +108,11 @@ pub enum Command {
     ///
     /// The page is one HTML file that carries all it needs: summary, peaks against speed, heat maps, envelope, histories, a
     /// browser of jobs that plays their crossings, mode shapes and, with a reference, the experiment's points and the
-    /// verdicts. A folder whose run is not done gives a page of what is there. Exit status 1 where a check falls short or
-    /// a job failed.
+    /// verdicts. A folder whose run is not done gives a page of what is there. Figures are deflected lines, histories, peaks
+    /// against speed, envelopes, frequencies, each of jobs that differ in one axis alone. Exit status 1 where a check falls
+    /// short or a job failed.
     #[command(
-        after_help = "Examples:\n  pontoon report results/fig09_static --with studies/fig09_static\n  pontoon report results/fu2005 --out fu2005.html"
+        after_help = "Examples:\n  pontoon report results/fig09_static --with studies/fig09_static\n  pontoon report results/fu2005 --out fu2005.html\n  pontoon report results/fig09_static --with studies/fig09_static --figures figures/fig09_static"
     )]
     Report(ReportArguments),
     /// Mode shapes, static cases and crossings as VTK files for ParaView.
@@ -242,6 +243,10 @@ pub struct ReportArguments {
     /// Crossings that can be played, at most; they are solved once more.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u16).range(0..=400))]
     pub plays: u16,
+    /// Folder to write figures for papers into: SVG, PNG, their captions in figures.md, the numbers plotted in figures.json.
+    /// The page is then written where --out asks for it.
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
 }
 
 /// What `calibrate` takes.

@@ -7,6 +7,7 @@
 //! | `commands` | a file a command: what it asks of the study's rooms and how it answers |
 //! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
 //! | `excerpt` | the place of a file that a refusal is about, with its line and a mark under it |
+//! | `figures` | figures for papers: SVG and PNG |
 //! | `page` | the page of a report, whole |
 //! | `signals` | interrupts and questions from outside |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
@@ -23,6 +24,7 @@ mod axes;
 mod commands;
 mod comparison;
 mod excerpt;
+mod figures;
 mod page;
 mod progress;
 mod signals;
@@ -50,6 +52,13 @@ enum Ending {
     Good,
     /// Something fell short.
     Short,
+}
+
+impl Ending {
+    /// How two things ended that were asked for at once.
+    fn and(self, other: Self) -> Self {
+        if self == Self::Good { other } else { self }
+    }
 }
 
 fn main() -> ExitCode {

@@ -1,11 +1,11 @@
-//! `pontoon report`: results as a page.
+//! `pontoon report`: results as a page, and as figures for papers.
 
 use crate::args::{Common, Format, ReportArguments};
-use crate::{Ending, page, words};
+use crate::{Ending, figures, page, words};
 use anyhow::Result;
 use pontoon_study::Refusal;
 use pontoon_study::compare::{Comparison, against_reference};
-use pontoon_study::figures::marks;
+use pontoon_study::figures::{Figures, marks};
 use pontoon_study::reference::Reference;
 use pontoon_study::report::{Found, Report, ReportSetting};
 use pontoon_study::run::Cache;
@@ -21,8 +21,47 @@ const MODES: usize = 16;
 /// Bytes of a file in which it shows whether it is a page.
 const HEAD: u64 = 4096;
 
-/// Opens results, gathers what a page tells of them and writes it.
+/// Writes figures where they are asked for, and a page unless they alone are.
 pub fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
+    match &arguments.figures {
+        Some(folder) => {
+            let drawn = draw(arguments, folder, common)?;
+            match arguments.out {
+                Some(_) => Ok(page_of(arguments, common)?.and(drawn)),
+                None => Ok(drawn),
+            }
+        }
+        None => page_of(arguments, common),
+    }
+}
+
+/// Opens results and draws their figures.
+fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<Ending> {
+    let Found { results, notes, .. } = Found::open(&arguments.results, true)?;
+    let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
+    let made = Figures::of(&results, reference.as_ref())?;
+    let files = figures::write(&made, folder)?;
+    let paths: Vec<String> = files
+        .iter()
+        .map(|file| folder.join(file).display().to_string())
+        .collect();
+    words::result(&match common.format {
+        Format::Json => format!("{:#}\n", json!({ "files": paths, "left_out": made.left_out })),
+        _ => paths.iter().map(|path| format!("{path}\n")).collect(),
+    })?;
+    if !common.quiet {
+        notes.iter().for_each(|note| words::note(note));
+        for line in &made.left_out {
+            words::note(&format!("left out: {line}"));
+        }
+    }
+    let jobs = results.jobs();
+    let failed = (0..jobs.rows()).any(|row| jobs.cell("status", row) == "failed");
+    Ok(if failed { Ending::Short } else { Ending::Good })
+}
+
+/// Opens results, gathers what a page tells of them and writes it.
+fn page_of(arguments: &ReportArguments, common: Common) -> Result<Ending> {
     let out = page_file(arguments)?;
     let found = Found::open(&arguments.results, arguments.with.is_some())?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
@@ -55,10 +94,7 @@ pub fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
 
 /// The page's file, which is no folder and no other file that somebody may miss.
 fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| arguments.results.join(PAGE));
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.results.join(PAGE));
     let refuse = |found: &str| {
         Err(Refusal::new(
             &out,

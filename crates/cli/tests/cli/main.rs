@@ -17,6 +17,7 @@ mod designs;
 mod export;
 mod export_input;
 mod export_stage;
+mod figures;
 mod old_results;
 mod operator;
 mod refusals;
