@@ -137,7 +137,10 @@ fn write(report: &Report, out: &Path) -> Result<u64, FolderError> {
 
 fn text(report: &Report, compared: Option<&Comparison>, out: &Path, bytes: u64) -> String {
     let jobs = report.jobs;
-    let count = |n: usize, what: &str| (n > 0).then(|| format!(", {n} {what}")).unwrap_or_default();
+    let count = |n: usize, what: &str| match n {
+        0 => String::new(),
+        n => format!(", {n} {what}"),
+    };
     let mut text = format!(
         "jobs {}{}{}; {} crossings to play, {} mode shapes\n",
         jobs.total,
