@@ -15,14 +15,17 @@
 
   const bare = (at, value) => (value === null ? 'none' : data.axes[at].kind === 'word' ? String(value) : numbers.plain(value * shown(at).factor));
 
+  /** An end or the middle of a range: no finer than a range is. */
+  const edge = (at, value) => bare(at, Number(value.toPrecision(4)));
+
   /** The number of a value for a tick: without its unit. */
-  const tick = (at, index) => bare(at, data.axes[at].values[index]);
+  const tick = (at, index) => (data.axes[at].bins?.[index] ? edge : bare)(at, data.axes[at].values[index]);
 
   /** A value in full: with its unit, as a range where values were binned. */
   function name(at, index) {
     const axis = data.axes[at], value = axis.values[index], unit = shown(at).unit, bin = axis.bins?.[index];
     if (value === null) return 'none';
-    const text = bin ? `${bare(at, bin[0])} to ${bare(at, bin[1])}` : bare(at, value);
+    const text = bin && bin[0] < bin[1] ? `${edge(at, bin[0])} to ${edge(at, bin[1])}` : bare(at, value);
     return unit ? text + numbers.THIN + unit : text;
   }
 

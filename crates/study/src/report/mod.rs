@@ -245,7 +245,7 @@ impl Report {
         let said = |row: usize| cards::axes_in_words(jobs, &of_words, row);
         if cells::coarsen(&mut axes, jobs.rows()) {
             notes.push(format!(
-                "{} jobs in aggregate: neighbouring values of some axes are put together, and of each range the largest and smallest are shown.",
+                "All {} jobs in aggregate: neighbouring values of some axes are put together, and of each range the largest and smallest are shown.",
                 jobs.rows()
             ));
         }
