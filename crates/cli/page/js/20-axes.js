@@ -59,7 +59,10 @@
     return parts.join('; ');
   }
 
-  const near = (a, b) => a === b || (typeof a === 'number' && typeof b === 'number' && Math.abs(a - b) <= 1e-6 * Math.max(Math.abs(a), Math.abs(b)));
+  // Lists stand as text in the rows.
+  const text = v => (Array.isArray(v) ? JSON.stringify(v) : v);
+  const same = (a, b) => a === b || (typeof a === 'number' && typeof b === 'number' && Math.abs(a - b) <= 1e-6 * Math.max(Math.abs(a), Math.abs(b)));
+  const near = (a, b) => same(text(a), text(b));
   /** The index of a value on an axis as an experiment's mark names it, or -1. */
   const find = (at, value) => data.axes[at].values.findIndex((v, i) => near(v, value) || (typeof value === 'number' && data.axes[at].bins && data.axes[at].bins[i] && value >= data.axes[at].bins[i][0] && value <= data.axes[at].bins[i][1]));
 

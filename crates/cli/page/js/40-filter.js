@@ -2,17 +2,17 @@
 (page => {
   'use strict';
   const TERM = /^(.*?[^<>=!~])(<=|>=|!=|<|>|=)(.+)$/;
-  const FACTORS = { mm: 1e-3, cm: 1e-2, kN: 1e3, MN: 1e6, GN: 1e9, ms: 1e-3, kPa: 1e3, MPa: 1e6, GPa: 1e9, mrad: 1e-3 };
+  const FACTORS = { '': 1, m: 1, N: 1, s: 1, Pa: 1, rad: 1, kg: 1, Hz: 1, 'm/s': 1, 'N/m': 1, 'kg/m': 1, 'Pa/m': 1, 'kPa/m': 1e3, mm: 1e-3, cm: 1e-2, kN: 1e3, MN: 1e6, GN: 1e9, ms: 1e-3, kPa: 1e3, MPa: 1e6, GPa: 1e9, mrad: 1e-3 };
   const TEST = { '<': (a, b) => a < b, '>': (a, b) => a > b, '<=': (a, b) => a <= b, '>=': (a, b) => a >= b, '=': page.axes.near, '!=': (a, b) => !page.axes.near(a, b) };
   // A value of 32 bits is not the number that was typed: 0.1 is met by 0.10000000149.
   const slack = { '<=': (a, b) => a < b || page.axes.near(a, b), '>=': (a, b) => a > b || page.axes.near(a, b), '<': (a, b) => a < b && !page.axes.near(a, b), '>': (a, b) => a > b && !page.axes.near(a, b) };
 
-  /** A number as a person types it: 200000, 200,000, 200kN, 28mm, 2e5. */
+  /** A number as a person types it: 200000, 200,000, 200kN, 28mm, 2e5; null where it is none, or its unit is not known. */
   function number(text) {
     const match = /^([-\u2212+]?[\d.,]+(?:e[-+]?\d+)?)\s*([a-zA-Z/]*)$/i.exec(text.trim());
     if (!match) return null;
     const value = Number(match[1].replace(/,/g, '').replace('\u2212', '-'));
-    return Number.isFinite(value) ? value * (FACTORS[match[2]] ?? 1) : null;
+    return Number.isFinite(value) && Object.hasOwn(FACTORS, match[2]) ? value * FACTORS[match[2]] : null;
   }
 
   /** The pieces of a filter: cut at spaces, but not beside an operator nor within quotes. */
@@ -42,7 +42,7 @@
         continue;
       }
       const limit = number(wanted);
-      if (limit === null) { error ??= `"${wanted}" is not a number.`; continue; }
+      if (limit === null) { error ??= `"${wanted}" is no number with a unit that is known here (${Object.keys(FACTORS).filter(Boolean).join(', ')}).`; continue; }
       const holds = slack[sign] ?? TEST[sign];
       tests.push(row => { const v = column.value(row); return v !== null && holds(v, limit); });
     }

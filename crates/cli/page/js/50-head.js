@@ -44,10 +44,10 @@
   function settings() {
     const list = [...(data.study.settings ?? [])];
     for (const axis of data.axes ?? []) {
-      const at = data.axes.indexOf(axis), n = axis.values.length;
-      if (n < 1) continue;
-      const text = n === 1 ? page.axes.name(at, 0) : n <= 8 ? few(axis, at)
-        : `${numbers.count(n)} ${axis.bins ? 'ranges' : 'values'}, ${page.axes.name(at, axis.values[0] === null ? 1 : 0)} to ${page.axes.name(at, n - 1)}`;
+      const at = data.axes.indexOf(axis), there = axis.values.map((v, i) => (v === null ? -1 : i)).filter(i => i >= 0), n = there.length;
+      if (axis.values.length < 1) continue;
+      const text = axis.values.length === 1 ? page.axes.name(at, 0) : n <= 8 ? few(axis, at)
+        : `${numbers.count(n)} ${axis.bins ? 'ranges' : 'values'}, ${page.axes.name(at, there[0])} to ${page.axes.name(at, there[n - 1])}${n < axis.values.length ? ', and none' : ''}`;
       list.push({ label: axis.label, value: text });
     }
     if (!list.length) return null;

@@ -5,8 +5,7 @@
   const most = lists => lists.reduce((a, list) => list.reduce((b, v) => (Number.isNaN(v) ? b : Math.max(b, Math.abs(v))), a), 0);
 
   function envelope() {
-    const profile = data.rows?.profile;
-    if (!data.envelope && !profile) return null;
+    if (!data.envelope) return null;
     const charts = [page.figure('envelope-deflection', { title: 'Deflection and uplift along the bridge', draw: deflection }), page.figure('envelope-force', { title: 'Connector forces along the bridge', draw: force })];
     page.onPick(() => charts.forEach(chart => chart.redraw()));
     return section('envelope', data.study.kind === 'static' ? 'Deflected line and envelope' : 'Envelope along the bridge', charts.map(c => c.node));
@@ -25,17 +24,16 @@
   }
 
   function deflection(width) {
-    const { envelope: all, bridge } = data, xs = all?.x_m ?? bridge.position_x_m, n = bridge.position_x_m.length;
+    // Of jobs with more and with fewer modules it is the longest bridge; profiles are as wide.
+    const { envelope: all } = data, xs = all.x_m, n = xs.length;
     const say = what => (i, v) => `position ${i + 1}, x ${numbers.quantity(xs[i], 'm')}: ${what} ${numbers.quantity(v, 'm')}`;
     const list = [], job = page.picked;
-    if (all) {
-      list.push(series('deflection', 'deflection, all jobs', xs, array(all.deflection_m), 1, { color: 'var(--envelope)', dash: 'none', area: true, dots: false, symbol: null }, say('largest deflection of all jobs')));
-      list.push(series('uplift', 'uplift, all jobs', xs, array(all.uplift_m), -1, { color: 'var(--envelope)', dash: '6 3', area: true, dots: false, symbol: null }, say('largest uplift of all jobs')));
-    }
+    list.push(series('deflection', 'deflection, all jobs', xs, array(all.deflection_m), 1, { color: 'var(--envelope)', dash: 'none', area: true, dots: false, symbol: null }, say('largest deflection of all jobs')));
+    list.push(series('uplift', 'uplift, all jobs', xs, array(all.uplift_m), -1, { color: 'var(--envelope)', dash: '6 3', area: true, dots: false, symbol: null }, say('largest uplift of all jobs')));
     const down = own('deflection_m', n), up = own('uplift_m', n), line = own('signed_m', n);
-    if (down) list.push(series('job-deflection', `deflection, job ${job}`, bridge.position_x_m, down, 1, { color: 'var(--job)', dash: 'none', symbol: 'circle' }, say(`job ${job}: deflection`)));
-    if (up) list.push(series('job-uplift', `uplift, job ${job}`, bridge.position_x_m, up, -1, { color: 'var(--job)', dash: '6 3', symbol: 'square' }, say(`job ${job}: uplift`)));
-    if (line) list.push(series('job-line', `deflected line, job ${job}`, bridge.position_x_m, line, 1, { color: 'var(--line-3)', dash: '2 3', symbol: 'diamond' }, say(`job ${job}: deflected line`)));
+    if (down) list.push(series('job-deflection', `deflection, job ${job}`, xs, down, 1, { color: 'var(--job)', dash: 'none', symbol: 'circle' }, say(`job ${job}: deflection`)));
+    if (up) list.push(series('job-uplift', `uplift, job ${job}`, xs, up, -1, { color: 'var(--job)', dash: '6 3', symbol: 'square' }, say(`job ${job}: uplift`)));
+    if (line) list.push(series('job-line', `deflected line, job ${job}`, xs, line, 1, { color: 'var(--line-3)', dash: '2 3', symbol: 'diamond' }, say(`job ${job}: deflected line`)));
     const at = job === null ? -1 : page.rowOf(job);
     const marks = (data.marks ?? []).filter(m => m.chart === 'profile' && !m.measure.endsWith('_n') && (at < 0 || page.axes.fitsRow(m, at)))
       .map(m => ({ ...m, y: m.measure === 'peak_uplift_m' ? -m.y : m.y, text: () => `${m.label}${m.x === null ? '' : `, x ${numbers.quantity(m.x, 'm')}`}: ${numbers.quantity(m.y, 'm')}` }));
@@ -45,14 +43,12 @@
   }
 
   function force(width) {
-    const { envelope: all, bridge } = data, n = bridge.joints.length, xs = all?.joint_x_m ?? bridge.joints.map(j => bridge.position_x_m[j - 1]);
+    const { envelope: all } = data, xs = all.joint_x_m, n = xs.length;
     if (!n) return { empty: 'A bridge of one module has no joints.' };
-    const say = what => (i, v) => `joint ${bridge.joints[i]}, x ${numbers.quantity(xs[i], 'm')}: ${what} ${numbers.quantity(v, 'N')}`;
+    const say = what => (i, v) => `joint ${i + 2}, x ${numbers.quantity(xs[i], 'm')}: ${what} ${numbers.quantity(v, 'N')}`;
     const list = [], job = page.picked;
-    if (all) {
-      list.push(series('compression', 'compression, all jobs', xs, array(all.compression_n), -1, { color: 'var(--compression)', dash: 'none', symbol: null, dots: false, area: true }, say('largest compression of all jobs')));
-      list.push(series('tension', 'tension, all jobs', xs, array(all.tension_n), 1, { color: 'var(--tension)', dash: '6 3', symbol: null, dots: false, area: true }, say('largest tension of all jobs')));
-    }
+    list.push(series('compression', 'compression, all jobs', xs, array(all.compression_n), -1, { color: 'var(--compression)', dash: 'none', symbol: null, dots: false, area: true }, say('largest compression of all jobs')));
+    list.push(series('tension', 'tension, all jobs', xs, array(all.tension_n), 1, { color: 'var(--tension)', dash: '6 3', symbol: null, dots: false, area: true }, say('largest tension of all jobs')));
     const push = own('compression_n', n), pull = own('tension_n', n);
     if (push) list.push(series('job-compression', `compression, job ${job}`, xs, push, -1, { color: 'var(--job)', dash: 'none', symbol: 'circle' }, say(`job ${job}: compression`)));
     if (pull) list.push(series('job-tension', `tension, job ${job}`, xs, pull, 1, { color: 'var(--job)', dash: '6 3', symbol: 'square' }, say(`job ${job}: tension`)));

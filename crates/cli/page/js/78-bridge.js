@@ -10,8 +10,10 @@
   const ring = size => `M0 ${-0.75 * size}a${0.75 * size} ${0.75 * size} 0 1 1 -0.01 0z`;
   const path = (state, size) => (state === 0 ? ring(size) : glyph(state, size));
 
-  function legend() {
-    return el('ul', { class: 'legend joints' }, STATES.map((s, i) => el('li', {}, svg('svg', { width: 18, height: 14, viewBox: '-9 -7 18 14', 'aria-hidden': 'true' }, svg('path', { class: `joint ${s}`, d: path(i, 5.5) })), i === 0 ? 'joint open' : `in ${WORDS[i]}`)));
+  /** The states that a play has, and the three that any may have. */
+  function legend(state) {
+    const shown = state.includes(3) ? STATES : STATES.slice(0, 3);
+    return el('ul', { class: 'legend joints' }, shown.map((s, i) => el('li', {}, svg('svg', { width: 18, height: 14, viewBox: '-9 -7 18 14', 'aria-hidden': 'true' }, svg('path', { class: `joint ${s}`, d: path(i, 5.5) })), i === 0 ? 'joint open' : `in ${WORDS[i]}`)));
   }
 
   /** Places between: the value of `list` at row `f` (a fraction of a frame), column `i` of `n`. */
@@ -21,7 +23,7 @@
   }
 
   function scene(play, stage, exaggeration) {
-    const { bridge } = data, xs = bridge.position_x_m, P = xs.length, J = bridge.joints.length, length = xs[P - 1], module = bridge.module_length_m;
+    const bridge = play.bridge ?? data.bridge, xs = bridge.position_x_m, P = xs.length, J = bridge.joints.length, length = xs[P - 1], module = bridge.module_length_m;
     const w = array(play.deflection_m), force = array(play.force_n), state = array(play.state), front = array(play.front_x_m);
     const down = w.reduce((a, v) => Math.max(a, v), 0), up = w.reduce((a, v) => Math.max(a, -v), 0), most = force.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
     const tall = Math.max(1, Math.round((0.024 * length) / bridge.depth_m));
@@ -59,7 +61,7 @@
         J > 0 && svg('g', { class: 'ruler' }, svg('line', { x1: X(0), x2: X(length), y1: bars, y2: bars }), svg('text', { x: 2, y: bars - reach - 6 }, `tension, bar to ${numbers.quantity(most, 'N', 3)}`), svg('text', { x: 2, y: bars + reach + 16 }, 'compression')),
         part.forces);
       part.reach = reach;
-      stage.replaceChildren(node, legend(), el('p', { class: 'sub scale' }, `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of the unloaded bridge.' : 'The water line is drawn at half the depth.'}`));
+      stage.replaceChildren(node, legend(state), el('p', { class: 'sub scale' }, `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of the unloaded bridge.' : 'The water line is drawn at half the depth.'}`));
       part.node = node;
     }
 

@@ -6,7 +6,7 @@
 
   /** The frame in which the bridge is deepest. */
   function peakFrame(play) {
-    const w = array(play.deflection_m), width = data.bridge.position_x_m.length;
+    const w = array(play.deflection_m), width = (play.bridge ?? data.bridge).position_x_m.length;
     let best = 0;
     for (let i = 0; i < w.length; i++) if (w[i] > w[best]) best = i;
     return Math.floor(best / width);
@@ -87,7 +87,7 @@
       time = array(play.time_s);
       peak = peakFrame(play);
       scrub.max = play.frames - 1;
-      const deepest = array(play.deflection_m).reduce((a, v) => Math.max(a, Math.abs(v)), 0), length = data.bridge.position_x_m.at(-1) || 1;
+      const deepest = array(play.deflection_m).reduce((a, v) => Math.max(a, Math.abs(v)), 0), length = (play.bridge ?? data.bridge).position_x_m.at(-1) || 1;
       if (deepest > 0) scale.value = String(SCALES.filter(s => s * deepest <= Math.max(0.1 * length, (70 * length) / (stage.clientWidth || 800))).at(-1) ?? 1);
       scene = page.bridgeScene(play, stage, Number(scale.value));
       readout.replaceChildren(...scene.names.flatMap(name => el('div', {}, el('dt', {}, name), el('dd'))));

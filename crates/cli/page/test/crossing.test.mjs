@@ -26,7 +26,7 @@ const scrub = (page, frame) => page.$eval('#scrub', (node, f) => { node.value = 
 
 /** Holds a drawing against frame `f` of a play. */
 function check(data, play, f, d) {
-  const xs = data.bridge.position_x_m, P = xs.length, J = data.bridge.joints.length, length = xs.at(-1), s = (d.right - d.left) / length;
+  const bridge = play.bridge ?? data.bridge, xs = bridge.position_x_m, P = xs.length, J = bridge.joints.length, length = xs.at(-1), s = (d.right - d.left) / length;
   const w = list(play.deflection_m).slice(f * P, (f + 1) * P), force = list(play.force_n), F = force.slice(f * J, (f + 1) * J), state = list(play.state).slice(f * J, (f + 1) * J), t = list(play.time_s)[f], front = list(play.front_x_m)[f];
   assert.ok(Math.abs(d.time - t) < 1e-9 && d.readout[0] === `${t.toFixed(2)} s`, 'time');
   // Points are written with two decimals.
@@ -35,7 +35,7 @@ function check(data, play, f, d) {
     assert.ok(Math.abs(points[c][0] - d.left - xs[p] * s) < 0.011, `module ${i + 1}: x`);
   }));
   d.joints.forEach((joint, j) => {
-    assert.equal(joint.joint, data.bridge.joints[j]);
+    assert.equal(joint.joint, bridge.joints[j]);
     assert.equal(joint.state, STATES[state[j] & 3], `joint ${joint.joint}`);
     const p = joint.joint - 1;
     assert.ok(Math.abs(joint.at[0] - d.left - xs[p] * s) < 0.011 && Math.abs(joint.at[1] - d.bank - w[p] * d.exaggeration * s) < 0.011, `place of joint ${joint.joint}`);

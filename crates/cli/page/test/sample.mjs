@@ -58,7 +58,7 @@ function study(kind, name, jobs, axisNames, measureNames, options = {}) {
   jobs.forEach(job => (job.answers = failed(job) ? null : answer(job, draw)));
   const axes = axisNames.map(axis => {
     const base = { ...AXES[axis] }, values = [...new Set(jobs.map(j => j[axis] ?? null))];
-    values.sort((a, b) => (a === null ? -1 : b === null ? 1 : a < b ? -1 : 1));
+    values.sort((a, b) => (a === null ? 1 : b === null ? -1 : a < b ? -1 : 1));
     return { ...base, values, bins: null, constant: values.length < 2, ...(options.axis?.[axis] ?? {}) };
   });
   const where = axes.map(axis => new Map(axis.values.map((v, i) => [v, i])));
@@ -220,6 +220,13 @@ export function markup() {
   return data;
 }
 
+/** Results of a study that the program cannot read any more: no bridge, nothing that was solved again. */
+export function unread() {
+  const data = crossing();
+  data.notes = ['This program cannot read the study any more: crossings and shapes are left out.'];
+  return { ...data, bridge: null, study: { ...data.study, settings: [] }, plays: [], modes: [], marks: data.marks.filter(m => m.chart !== 'history') };
+}
+
 /** A run that is not done. */
 export function half() {
   const data = crossing();
@@ -228,4 +235,4 @@ export function half() {
   return { ...data, verdicts: null, histories: [], modes: [] };
 }
 
-export const samples = { crossing, big, wide, still, natural, allFailed, oneJob, oneAxis, markup, half };
+export const samples = { crossing, big, wide, still, natural, allFailed, oneJob, oneAxis, markup, half, unread };

@@ -39,6 +39,10 @@ pub fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
 fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<Ending> {
     let Found { results, notes, .. } = Found::open(&arguments.results, true)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
+    let compared = reference
+        .as_ref()
+        .map(|reference| against_reference(&results, reference))
+        .transpose()?;
     let made = Figures::of(&results, reference.as_ref())?;
     let files = figures::write(&made, folder)?;
     let paths: Vec<String> = files
@@ -57,7 +61,8 @@ fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<En
     }
     let jobs = results.jobs();
     let failed = (0..jobs.rows()).any(|row| jobs.cell("status", row) == "failed");
-    Ok(if failed { Ending::Short } else { Ending::Good })
+    let good = compared.as_ref().is_none_or(Comparison::good) && !failed;
+    Ok(if good { Ending::Good } else { Ending::Short })
 }
 
 /// Opens results, gathers what a page tells of them and writes it.
@@ -106,8 +111,8 @@ fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
     if out.is_dir() {
         return refuse("a folder");
     }
-    if out.file_name().is_none() {
-        return refuse("no name of a file");
+    if out.file_name().and_then(|name| name.to_str()).is_none() {
+        return refuse("no name of a file in Unicode");
     }
     if out.exists() {
         let mut head = Vec::new();

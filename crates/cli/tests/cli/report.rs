@@ -4,6 +4,7 @@ use crate::stage::{Stage, is_refused, reference, stderr, stdout};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -416,31 +417,102 @@ fn a_large_study_is_told_in_aggregate() {
     let rows = data["rows"]["count"].as_u64().unwrap();
     assert!((1_500..=2_000).contains(&rows), "{rows}");
     assert_eq!(data["plays"].as_array().unwrap().len(), 7);
-    // every job is within the ranges of its cell, and no job of a cell is above its largest
+    // the cells worked out anew from the ranges' edges: each holds its jobs, the largest of them, the smallest
     let (speed, gap) = (
         stage.numbers("r/jobs.parquet", "speed_m_s"),
         stage.numbers("r/jobs.parquet", "gap_tension_m"),
     );
-    let bins = |name: &str| data["axes"][index_of(&data, "axes", name)]["bins"].clone();
-    let within = |bin: &Value, x: f64| bin[0].as_f64().unwrap() <= x && x <= bin[1].as_f64().unwrap();
+    let bins = |name: &str| -> Vec<[f64; 2]> {
+        let of = |bin: &Value| [0, 1].map(|end| bin[end].as_f64().unwrap());
+        let axis = &data["axes"][index_of(&data, "axes", name)];
+        axis["bins"].as_array().unwrap().iter().map(of).collect()
+    };
+    let place = |bins: &[[f64; 2]], x: f64| bins.iter().position(|bin| x < bin[1]).unwrap_or(bins.len() - 1);
     let (speeds, gaps) = (bins("speed_m_s"), bins("gap_tension_m"));
+    let mut expected: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    for job in 0..3000 {
+        let key = (place(&gaps, gap[job].unwrap()), place(&speeds, speed[job].unwrap()));
+        expected.entry(key).or_default().push(job);
+    }
     let of_cell = |name: &str| u16s(&data["cells"]["axis"][index_of(&data, "axes", name)]);
     let (cell_speed, cell_gap) = (of_cell("speed_m_s"), of_cell("gap_tension_m"));
-    let largest = f32s(&data["cells"]["max"][index_of(&data, "measures", "peak_deflection_m")]);
-    for cell in 0..largest.len() {
-        let (of_speed, of_gap) = (&speeds[cell_speed[cell]], &gaps[cell_gap[cell]]);
-        let inside = |job: &usize| within(of_speed, speed[*job].unwrap()) && within(of_gap, gap[*job].unwrap());
-        let most = (0..3000)
-            .filter(inside)
-            .filter_map(|job| table[job])
-            .fold(0.0_f64, f64::max);
-        // a value on the edge of two ranges is counted in one of them
-        assert!(
-            largest[cell] <= single(Some(most)),
-            "cell {cell}: {:?} above {most}",
-            largest[cell]
-        );
+    let measure = index_of(&data, "measures", "peak_deflection_m");
+    let numbers = |of: &str| f32s(&data["cells"][of][measure]);
+    let (largest, smallest, at) = (numbers("max"), numbers("min"), u32s(&data["cells"]["at"][measure]));
+    let (jobs, count) = (u32s(&data["cells"]["jobs"]), largest.len());
+    assert_eq!(count, expected.len());
+    for cell in 0..count {
+        let own = &expected[&(cell_gap[cell], cell_speed[cell])];
+        let values = || own.iter().filter_map(|&job| table[job]);
+        assert_eq!(jobs[cell] as usize, own.len(), "cell {cell}");
+        assert_eq!(largest[cell], single(values().reduce(f64::max)), "cell {cell}");
+        assert_eq!(smallest[cell], single(values().reduce(f64::min)), "cell {cell}");
+        assert_eq!(single(table[at[cell] as usize]), largest[cell], "cell {cell}");
     }
-    let whole = largest.iter().flatten().fold(0.0_f64, |most, x| most.max(*x));
-    assert_eq!(Some(whole), single(table.iter().flatten().copied().reduce(f64::max)));
+    // the job with the largest deflection of all is the first to be played
+    let deepest = (0..3000)
+        .max_by(|&a, &b| table[a].unwrap().total_cmp(&table[b].unwrap()))
+        .unwrap();
+    let one = report(&stage, "r", &["--plays", "1"]);
+    assert_eq!(one["plays"].as_array().unwrap().len(), 1);
+    assert_eq!(one["plays"][0]["job"], deepest);
+}
+
+#[test]
+fn failed_jobs_are_in_their_cells_and_bridges_may_differ() {
+    let mut stage = Stage::new();
+    stage.study["analysis"]["step_limit"] = 200.into();
+    stage.study["design"] = json!([{ "grid": { "bridge.modules": [2, 3], "speed_m_s": [4, 10, 20], "load_n": 1e5 } }]);
+    stage.study["record"] = json!({});
+    let output = stage.write().pontoon(&["run", "study.json", "--out", "r", "--quiet"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let data = report(&stage, "r", &[]);
+    let (jobs, failed) = (u32s(&data["cells"]["jobs"]), u32s(&data["cells"]["failed"]));
+    assert_eq!(jobs, [1; 6]);
+    let told = data["jobs"]["failed"].as_u64().unwrap();
+    assert!(told > 0 && told < 6, "{told}");
+    assert_eq!(u64::from(failed.iter().sum::<u32>()), told);
+    // their reasons differ in numbers alone
+    assert_eq!(
+        (
+            data["failures"].as_array().unwrap().len(),
+            &data["failures"][0]["count"]
+        ),
+        (1, &json!(told))
+    );
+    // profiles are as wide as the longest bridge, the shorter one's end in nothing
+    let ends = stage.numbers("r/positions.parquet", "position");
+    let of_job = stage.numbers("r/positions.parquet", "job");
+    let deflection = stage.numbers("r/positions.parquet", "peak_deflection_m");
+    let profile = f32s(&data["rows"]["profile"]["deflection_m"]);
+    assert_eq!(profile.len(), 6 * 4);
+    let mut expected = vec![None; 6 * 4];
+    for ((job, end), value) in of_job.iter().zip(&ends).zip(&deflection) {
+        expected[job.unwrap() as usize * 4 + end.unwrap() as usize - 1] = single(*value);
+    }
+    assert_eq!(profile, expected);
+    for play in data["plays"].as_array().unwrap() {
+        let modules = if play["job"].as_u64() < Some(3) { 2 } else { 3 };
+        let own = if play["bridge"].is_null() {
+            &data["bridge"]
+        } else {
+            &play["bridge"]
+        };
+        assert_eq!(own["modules"], modules, "{}", play["job"]);
+        let frames = play["frames"].as_u64().unwrap() as usize;
+        assert_eq!(samples(&play["deflection_m"]).len(), frames * (modules + 1));
+    }
+    // positions at different places make no line
+    stage.study["analysis"] = json!({ "kind": "crossing", "time_step_s": 0.02, "tail_s": 1.0 });
+    stage.study["design"] =
+        json!([{ "grid": { "bridge.module.length_m": [6.7, 6.8], "speed_m_s": 20, "load_n": 1e5 } }]);
+    stage.bridge["module"]["stiffeners"]["transverse_x_m"] = json!([0.0, 3.35]);
+    stage.ran("s");
+    let data = report(&stage, "s", &[]);
+    assert!(data["envelope"].is_null() && data["rows"]["profile"].is_null());
+    assert!(
+        data["notes"][0].as_str().unwrap().contains("different places"),
+        "{}",
+        data["notes"]
+    );
 }

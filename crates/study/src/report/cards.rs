@@ -4,6 +4,7 @@
 
 use super::cells::Measure;
 use super::words;
+use crate::run::words_of_reason;
 use crate::tables::Table;
 use serde::Serialize;
 use serde_json::Value;
@@ -57,14 +58,14 @@ pub struct Card {
     pub axes: String,
 }
 
-/// Jobs that failed for one reason.
+/// Jobs that failed for one cause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FailureNote {
     /// How many.
     pub count: usize,
     /// The first of them.
     pub job: u32,
-    /// Why.
+    /// Why that one did.
     pub reason: String,
 }
 
@@ -95,23 +96,27 @@ pub(super) fn cards(jobs: &Table, measures: &[Measure], said: &dyn Fn(usize) -> 
     CARDS.into_iter().filter_map(card).collect()
 }
 
-/// Why jobs failed, the commonest reason first.
-pub(super) fn failures(jobs: &Table) -> Vec<FailureNote> {
-    let mut causes: BTreeMap<String, (usize, u32)> = BTreeMap::new();
+/// Why jobs failed, the commonest cause first, and how many causes there are. Reasons that differ in numbers alone are one
+/// cause.
+pub(super) fn failures(jobs: &Table) -> (Vec<FailureNote>, usize) {
+    let mut causes: BTreeMap<String, FailureNote> = BTreeMap::new();
     for row in (0..jobs.rows()).filter(|&row| super::failed(jobs, row)) {
         let reason = match jobs.cell("reason", row) {
             Value::String(reason) => reason,
             _ => "no reason".to_owned(),
         };
-        causes.entry(reason).or_insert((0, super::job(jobs, row))).0 += 1;
+        let first = || FailureNote {
+            count: 0,
+            job: super::job(jobs, row),
+            reason: reason.clone(),
+        };
+        causes.entry(words_of_reason(&reason)).or_insert_with(first).count += 1;
     }
-    let mut notes: Vec<FailureNote> = causes
-        .into_iter()
-        .map(|(reason, (count, job))| FailureNote { count, job, reason })
-        .collect();
+    let found = causes.len();
+    let mut notes: Vec<FailureNote> = causes.into_values().collect();
     notes.sort_by_key(|note| (std::cmp::Reverse(note.count), note.job));
     notes.truncate(MOST_CAUSES);
-    notes
+    (notes, found)
 }
 
 /// A job's axes in words: those that differ between jobs, or all where none does.

@@ -61,9 +61,9 @@ pub struct Cells {
     pub count: usize,
     /// For each axis the bin of each cell.
     pub axis: Vec<Packed>,
-    /// Jobs of each cell that did not fail.
+    /// Jobs of each cell, the failed ones among them.
     pub jobs: Packed,
-    /// Jobs that failed.
+    /// Jobs of each that failed.
     pub failed: Packed,
     /// For each measure the largest value in each cell.
     pub max: Vec<Packed>,
@@ -119,11 +119,11 @@ impl Cells {
                 failed: 0,
                 measures: vec![None; measures.len()],
             });
+            cell.jobs += 1;
             if super::failed(jobs, row) {
                 cell.failed += 1;
                 continue;
             }
-            cell.jobs += 1;
             let job = super::job(jobs, row);
             for (kept, column) in cell.measures.iter_mut().zip(&columns) {
                 let Some(x) = column.get(row).copied().flatten() else {

@@ -45,6 +45,7 @@ pub use verdicts::{VerdictLine, Verdicts};
 
 use crate::compare::Comparison;
 use crate::figures::Mark;
+use crate::plan::Job;
 use crate::run::Cache;
 use crate::spec::Kind;
 use crate::tables::{ResultsError, Table};
@@ -123,6 +124,23 @@ pub struct BridgeNote {
     pub position_x_m: Vec<f64>,
     /// Numbers of the joints.
     pub joints: Vec<usize>,
+}
+
+impl BridgeNote {
+    fn of(job: &Job) -> Self {
+        let design = &job.bridge.design;
+        Self {
+            modules: design.modules,
+            module_length_m: design.module.length_m,
+            breadth_m: design.module.breadth_m,
+            depth_m: design.module.depth_m,
+            draft_m: design.draft_m,
+            position_x_m: (1..=design.positions())
+                .map(|position| design.position_x_m(position))
+                .collect(),
+            joints: (2..=design.modules).collect(),
+        }
+    }
 }
 
 /// A point of a reference.
@@ -251,7 +269,7 @@ impl Report {
         }
         let measures = cells::measures(jobs);
         let chosen = rows::chosen(jobs, &measures);
-        let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen)?;
+        let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen, &mut notes)?;
         let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(jobs, row)).collect();
         let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
         if histories.len() < recorded {
@@ -274,7 +292,10 @@ impl Report {
         notes.extend(played.notes);
         let (modes, without) = shapes::mode_sets(&all, &results, &said, setting.modes);
         notes.extend(without);
-        let failures = cards::failures(jobs);
+        let (failures, causes) = cards::failures(jobs);
+        if failures.len() < causes {
+            notes.push(format!("{} of {causes} causes of failures are listed.", failures.len()));
+        }
         let failed = (0..jobs.rows()).filter(|&row| failed(jobs, row)).count();
         let question = study.as_ref().and_then(|study| study.spec.question.clone());
         let kind = study.as_ref().map(|study| study.spec.analysis.kind);
@@ -290,7 +311,7 @@ impl Report {
                 kind: kind.unwrap_or_else(|| kind_of(&results.study)),
                 settings: study.as_ref().map(settings::settings).unwrap_or_default(),
             },
-            bridge: all.first().map(|job| bridge_note(&job.bridge.design)),
+            bridge: all.first().map(BridgeNote::of),
             jobs: Counts {
                 total: jobs.rows() + missing,
                 ok: jobs.rows() - failed,
@@ -321,19 +342,5 @@ fn kind_of(study: &Value) -> Kind {
         Some("static") => Kind::Static,
         Some("modes") => Kind::Modes,
         _ => Kind::Crossing,
-    }
-}
-
-fn bridge_note(design: &pontoon_core::bridge::BridgeDesign) -> BridgeNote {
-    BridgeNote {
-        modules: design.modules,
-        module_length_m: design.module.length_m,
-        breadth_m: design.module.breadth_m,
-        depth_m: design.module.depth_m,
-        draft_m: design.draft_m,
-        position_x_m: (1..=design.positions())
-            .map(|position| design.position_x_m(position))
-            .collect(),
-        joints: (2..=design.modules).collect(),
     }
 }

@@ -2,9 +2,10 @@
 //!
 //! Knows which jobs are worth it and how many frames an eye needs. Does not know how a crossing is solved.
 
+use super::BridgeNote;
 use super::cells::Measure;
 use super::packed::{Packed, Scaled};
-use super::rows::severest;
+use super::rows::{severest, spread};
 use crate::plan::{Job, Task};
 use crate::run::{Cache, HistoryRows, JobRecord, replay};
 use crate::spec::{ModelSpec, Study};
@@ -37,6 +38,9 @@ pub struct AxlePatch {
 pub struct Play {
     /// The job.
     pub job: u32,
+    /// Its bridge, where that is not the first job's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bridge: Option<BridgeNote>,
     /// Number of frames.
     pub frames: usize,
     /// Time of each frame [s].
@@ -51,7 +55,7 @@ pub struct Play {
     pub deflection_m: Scaled,
     /// Force of each joint, its connectors added, tension positive [N].
     pub force_n: Scaled,
-    /// State of each joint: 0 open, 1 in compression, 2 in tension, by the sum of its connectors.
+    /// State of each joint by the sum of its connectors: 0 open, 1 in compression, 2 in tension.
     pub state: Packed,
 }
 
@@ -78,12 +82,7 @@ pub(super) fn plays(
     let able: Vec<(usize, &Job)> = rows.iter().filter_map(crossing).collect();
     let light = |job: &Job| job.steps() <= MOST_STEPS && job.analysis.spec.model == ModelSpec::SuperElement;
     let fit: Vec<(usize, &Job)> = able.iter().copied().filter(|(_, job)| light(job)).collect();
-    let mut chosen: BTreeSet<usize> = choose(jobs, measures, &fit, most);
-    let mut integrated = 0;
-    chosen.retain(|&at| {
-        integrated += usize::from(!fit[at].1.by_operator());
-        fit[at].1.by_operator() || integrated <= MOST_INTEGRATED
-    });
+    let chosen = choose(jobs, measures, &fit, most);
     let mut played = Played::default();
     if chosen.len() < able.len() && most > 0 {
         played.notes.push(format!(
@@ -105,7 +104,7 @@ pub(super) fn plays(
         {
             furthest = furthest.max((now - told).abs() / told);
         }
-        played.plays.extend(play(job, &record));
+        played.plays.extend(play(job, &record, all.first()));
     });
     if furthest > 0.0 {
         played.notes.push(format!(
@@ -117,28 +116,37 @@ pub(super) fn plays(
     played
 }
 
-/// Places in `fit` of the jobs to be played: all where they are few, else those with the largest values and an even sample.
+/// Places in `fit` of the jobs to be played: all where they are few, else in turn the one with the largest value of each
+/// measure, then the second ones, up to half of them, and an even sample. Of those by the reference solver only the first few.
 fn choose(jobs: &Table, measures: &[Measure], fit: &[(usize, &Job)], most: usize) -> BTreeSet<usize> {
-    if fit.len() <= most {
-        return (0..fit.len()).collect();
+    let rows: Vec<usize> = fit.iter().map(|(row, _)| *row).collect();
+    let ranked: Vec<Vec<usize>> = measures.iter().take(4).map(|m| severest(jobs, m.name, &rows)).collect();
+    let severe = (0..most.div_ceil(2)).flat_map(|rank| ranked.iter().filter_map(move |list| list.get(rank).copied()));
+    let all = if fit.len() <= most { most } else { most.div_ceil(2) };
+    let (mut chosen, mut integrated) = (BTreeSet::new(), 0);
+    let mut take = |chosen: &mut BTreeSet<usize>, at: usize| {
+        if chosen.contains(&at) {
+            return;
+        }
+        integrated += usize::from(!fit[at].1.by_operator());
+        if fit[at].1.by_operator() || integrated <= MOST_INTEGRATED {
+            chosen.insert(at);
+        }
+    };
+    for at in severe {
+        if chosen.len() < all {
+            take(&mut chosen, at);
+        }
     }
-    let mut chosen = BTreeSet::new();
-    let each = most.div_ceil(8);
-    for measure in measures.iter().take(4) {
-        let severe = severest(jobs, measure.name, each);
-        chosen.extend(
-            severe
-                .iter()
-                .filter_map(|row| fit.iter().position(|(other, _)| other == row)),
-        );
+    let left: Vec<usize> = (0..fit.len()).filter(|at| !chosen.contains(at)).collect();
+    for place in spread(left.len(), most.saturating_sub(chosen.len())) {
+        take(&mut chosen, left[place]);
     }
-    let left = most.saturating_sub(chosen.len());
-    chosen.extend((0..left).map(|i| i * fit.len() / left));
-    chosen.into_iter().take(most).collect()
+    chosen
 }
 
 /// The frames of a record; none where it failed this time.
-fn play(job: &Job, record: &JobRecord) -> Option<Play> {
+fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
     let Task::Crossing { speed_m_s } = job.task else {
         return None;
     };
@@ -185,6 +193,7 @@ fn play(job: &Job, record: &JobRecord) -> Option<Play> {
         });
     Some(Play {
         job: u32::try_from(job.number).unwrap_or(u32::MAX),
+        bridge: Some(BridgeNote::of(job)).filter(|own| first.map(BridgeNote::of).as_ref() != Some(own)),
         frames: frames.len(),
         time_s: Packed::numbers(frames.iter().map(|frame| Some(time(frame)))),
         front_x_m: Packed::numbers(frames.iter().map(|frame| Some(speed_m_s * time(frame)))),

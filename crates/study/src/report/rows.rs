@@ -143,13 +143,15 @@ pub(super) fn chosen(jobs: &Table, measures: &[Measure]) -> (Vec<usize>, String)
     if all <= MOST_ROWS {
         return ((0..all).collect(), format!("all {all} jobs"));
     }
+    let every: Vec<usize> = (0..all).collect();
     let mut rows: BTreeSet<usize> = BTreeSet::new();
     rows.extend((0..all).filter(|&row| super::failed(jobs, row)).take(MOST_FAILED));
     for measure in measures.iter().take(4) {
-        rows.extend(severest(jobs, measure.name, SEVEREST));
+        rows.extend(severest(jobs, measure.name, &every).into_iter().take(SEVEREST));
     }
-    let (severe, left) = (rows.len(), MOST_ROWS - rows.len());
-    rows.extend((0..left).map(|i| i * all / left));
+    let severe = rows.len();
+    let left: Vec<usize> = (0..all).filter(|row| !rows.contains(row)).collect();
+    rows.extend(spread(left.len(), MOST_ROWS - severe).map(|place| left[place]));
     let note = format!(
         "{} of {all} jobs: {severe} that failed or have the largest values, and an even sample",
         rows.len()
@@ -157,16 +159,21 @@ pub(super) fn chosen(jobs: &Table, measures: &[Measure]) -> (Vec<usize>, String)
     (rows.into_iter().collect(), note)
 }
 
-/// The rows with the largest values of a column, the largest first.
-pub(super) fn severest(jobs: &Table, column: &str, most: usize) -> Vec<usize> {
+/// Places among `rows` in falling order of a column's values; rows without a value are left out.
+pub(super) fn severest(jobs: &Table, column: &str, rows: &[usize]) -> Vec<usize> {
     let Some(numbers) = jobs.numbers(column) else {
         return Vec::new();
     };
-    let mut rows: Vec<usize> = (0..numbers.len()).filter(|&row| numbers[row].is_some()).collect();
-    let value = |row: usize| numbers[row].unwrap_or_default();
-    rows.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
-    rows.truncate(most);
-    rows
+    let mut places: Vec<usize> = (0..rows.len()).filter(|&at| numbers[rows[at]].is_some()).collect();
+    let value = |at: usize| numbers[rows[at]].unwrap_or_default();
+    places.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
+    places
+}
+
+/// `most` of `count` places, evenly spread from the first to the last; all where they are no more.
+pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    let some = most.min(count);
+    (0..some).map(move |i| if some == 1 { 0 } else { i * (count - 1) / (some - 1) })
 }
 
 impl Rows {
@@ -179,12 +186,22 @@ impl Rows {
         axes: &[String],
         measures: &[Measure],
         (rows, note): &(Vec<usize>, String),
+        notes: &mut Vec<String>,
     ) -> Result<(Self, Option<Envelope>), ResultsError> {
         let jobs = results.jobs();
         let outcomes = measures.iter().map(|measure| measure.name).chain(FURTHER);
         let there = |name: &String| jobs.kind(name).is_some();
         let names = axes.iter().cloned().chain(outcomes.map(str::to_owned)).filter(there);
-        let (profile, envelope) = along(results, rows)?.unzip();
+        let lines = match along(results, rows)? {
+            Along::Lines(lines) => Some(*lines),
+            Along::Nothing => None,
+            Along::Bridges => {
+                notes
+                    .push("The jobs' bridges have positions at different places: no envelope, no profiles.".to_owned());
+                None
+            }
+        };
+        let (profile, envelope) = lines.unzip();
         let listed = Self {
             count: rows.len(),
             note: note.clone(),
@@ -264,27 +281,44 @@ impl Lines {
     }
 }
 
-/// Profiles of the chosen rows and the envelope; none where the study leaves no table of positions.
-fn along(results: &Results, rows: &[usize]) -> Result<Option<(Profile, Envelope)>, ResultsError> {
+/// Distance below which places are one [m].
+const SAME_PLACE_M: f64 = 1e-6;
+
+/// What there is along the bridge.
+enum Along {
+    /// The study leaves no table of positions.
+    Nothing,
+    /// Jobs have bridges whose positions are at other places.
+    Bridges,
+    /// Profiles of the chosen rows and the envelope of all.
+    Lines(Box<(Profile, Envelope)>),
+}
+
+fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
     let listed: HashMap<u64, usize> = rows
         .iter()
         .enumerate()
         .map(|(i, &row)| (u64::from(super::job(results.jobs(), row)), i))
         .collect();
-    let mut x_m: Vec<f64> = Vec::new();
+    let (mut x_m, mut differ): (Vec<f64>, bool) = (Vec::new(), false);
     results.scan(TableName::Positions, &["position", "x_m"], |part| {
         for row in 0..part.rows() {
             let place = whole(part, "position", row).saturating_sub(1);
             if place >= x_m.len() {
                 x_m.resize(place + 1, f64::NAN);
             }
+            let own = part.number("x_m", row).unwrap_or(f64::NAN);
+            differ |= (own - x_m[place]).abs() > SAME_PLACE_M;
             if x_m[place].is_nan() {
-                x_m[place] = part.number("x_m", row).unwrap_or(f64::NAN);
+                x_m[place] = own;
             }
         }
     })?;
     if x_m.is_empty() {
-        return Ok(None);
+        return Ok(Along::Nothing);
+    }
+    if differ {
+        return Ok(Along::Bridges);
     }
     let places = x_m.len();
     let take = |name: TableName, place: &str, first: usize, columns: &[&str]| {
@@ -326,7 +360,7 @@ fn along(results: &Results, rows: &[usize]) -> Result<Option<(Profile, Envelope)
         compression_n: at_joints.envelope(0),
         tension_n: at_joints.envelope(1),
     };
-    Ok(Some((profile, envelope)))
+    Ok(Along::Lines(Box::new((profile, envelope))))
 }
 
 fn whole(table: &Table, column: &str, row: usize) -> usize {

@@ -8,17 +8,22 @@ use pontoon_core::vehicle::Inertia;
 
 /// The settings of a study, its axes apart.
 pub(super) fn settings(study: &Study) -> Vec<Item> {
+    // what an axis changes is not what every job has
+    let apart = |root: &str, text: String| match study.path_axes().iter().any(|axis| axis.starts_with(root)) {
+        true => format!("{text}; where no axis says otherwise"),
+        false => text,
+    };
     let mut list = vec![
-        Item::new("bridge", bridge(study)),
+        Item::new("bridge", apart("bridge.", bridge(study))),
         Item::new("connectors", connectors(study)),
     ];
     if study.spec.analysis.kind != Kind::Modes {
-        list.push(Item::new("vehicle", vehicle(study)));
+        list.push(Item::new("vehicle", apart("vehicle.", vehicle(study))));
     }
     let checked = study.spec.analysis.clone().checked();
     list.push(Item::new(
         "analysis",
-        analysis(checked.as_ref().unwrap_or(&study.spec.analysis)),
+        apart("analysis.", analysis(checked.as_ref().unwrap_or(&study.spec.analysis))),
     ));
     list
 }

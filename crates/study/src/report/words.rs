@@ -55,7 +55,7 @@ pub fn label(name: &str) -> String {
     path.replace(['.', '_'], " ")
 }
 
-/// A number with at most five significant digits, without zeros that say nothing.
+/// A number with five significant digits, whole ones in full, without zeros that say nothing.
 pub fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{}", x + 0.0);

@@ -26,6 +26,7 @@ pub use cache::Cache;
 pub use canary::CanaryError;
 pub use cut::Batch;
 pub use ledger::Ledger;
+pub(crate) use outcome::words as words_of_reason;
 pub use outcome::{Cause, Failures, Outcome, PoolError, Preparation, RunError};
 pub use probe::{Measured, measure};
 pub use progress::{Progress, Silent, Tally};

@@ -123,8 +123,8 @@ impl Failures {
     }
 }
 
-/// A reason without its numbers.
-fn words(reason: &str) -> String {
+/// A reason without its numbers: what is the same for all jobs that fail for it.
+pub(crate) fn words(reason: &str) -> String {
     let numeric = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
     let mut words = String::new();
     for word in reason.split_whitespace() {
