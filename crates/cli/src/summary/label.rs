@@ -1,36 +1,15 @@
 //! Names of columns and values as heads and cells of a table for people.
 //!
-//! Knows the units that names end in. Does not know what is in a table.
+//! Knows which part of a name tells columns apart. Does not know what is in a table.
 
 use crate::words::printable;
+use pontoon_study::report::words;
 use serde_json::Value;
 
-/// Ends of names and the units they mean; longer ones first.
-const UNITS: [(&str, &str); 15] = [
-    ("_kg_m3", "kg/m3"),
-    ("_kg_m2", "kg/m2"),
-    ("_pa_m", "Pa/m"),
-    ("_kg_m", "kg/m"),
-    ("_n_m", "N/m"),
-    ("_m_s", "m/s"),
-    ("_rad", "rad"),
-    ("_m2", "m2"),
-    ("_m4", "m4"),
-    ("_hz", "Hz"),
-    ("_kg", "kg"),
-    ("_pa", "Pa"),
-    ("_m", "m"),
-    ("_n", "N"),
-    ("_s", "s"),
-];
-
-/// A name in words and the unit that it ends in, if any: `gap_tension_m` is "gap tension" in "m".
+/// A name in words and the unit that it ends in, if any: `gap_tension_m` is "tension gap" in "m".
 pub fn label(name: &str) -> (String, Option<&'static str>) {
-    let unit = UNITS
-        .iter()
-        .find(|(end, _)| name.len() > end.len() && name.ends_with(end));
-    let bare = unit.map_or(name, |(end, _)| &name[..name.len() - end.len()]);
-    (printable(&bare.replace('_', " ")), unit.map(|(_, unit)| *unit))
+    let unit = Some(words::unit(name)).filter(|unit| !unit.is_empty());
+    (printable(&words::label(name)), unit)
 }
 
 /// Names of axes as heads: of a path its last part, where no other axis ends in the same.
@@ -43,7 +22,7 @@ pub fn heads(names: &[String]) -> Vec<(String, Option<&'static str>)> {
     names.iter().map(short).collect()
 }
 
-/// A value of an axis with its name and unit: "gap tension 0.028 m".
+/// A value of an axis with its name and unit: "tension gap 0.028 m".
 pub fn told((name, unit): &(String, Option<&str>), value: &Value) -> String {
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
     format!("{name} {}{unit}", axis(value))
@@ -91,14 +70,14 @@ mod tests {
 
     #[test]
     fn names_are_words_and_units() {
-        assert_eq!(label("gap_tension_m"), ("gap tension".to_owned(), Some("m")));
+        assert_eq!(label("gap_tension_m"), ("tension gap".to_owned(), Some("m")));
         assert_eq!(label("speed_m_s"), ("speed".to_owned(), Some("m/s")));
         assert_eq!(label("hydrostatic_stiffness_pa_m").1, Some("Pa/m"));
         assert_eq!(label("connection"), ("connection".to_owned(), None));
         assert_eq!(label("y_m[0]"), ("y m[0]".to_owned(), None));
         let names = ["bridge.a.depth_m", "bridge.b.depth_m", "bridge.b.width_m"].map(str::to_owned);
         let heads: Vec<String> = heads(&names).into_iter().map(|(name, _)| name).collect();
-        assert_eq!(heads, ["bridge.a.depth", "bridge.b.depth", "width"]);
+        assert_eq!(heads, ["a depth", "b depth", "width"]);
     }
 
     #[test]

@@ -59,19 +59,19 @@ fn crossings() -> Vec<Vec<Value>> {
 fn speeds_are_columns_and_what_is_constant_is_told_once() {
     let expected = "\
 peak deflection [m] against speed [m/s]
-throughout: gap compression 0.0055 m, load 230300 N
+throughout: compression gap 0.0055 m, load 230300 N
 
-                gap
             tension
+                gap
 connection      [m]       3     7.5      15
 linear        -      0.1500  0.1600  0.1700
 nonlinear     0.028  0.2000  0.2100  0.2200*
 nonlinear     0      0.1800  0.1900  0.2000
 
-largest deflection    0.2200 m  speed 15 m/s, connection nonlinear, gap tension 0.028 m
-largest uplift        0.0220 m  speed 15 m/s, connection nonlinear, gap tension 0.028 m
-largest compression  1100000 N  speed 15 m/s, connection nonlinear, gap tension 0.028 m
-largest tension       220000 N  speed 15 m/s, connection nonlinear, gap tension 0.028 m
+largest deflection    0.2200 m  speed 15 m/s, connection nonlinear, tension gap 0.028 m
+largest uplift        0.0220 m  speed 15 m/s, connection nonlinear, tension gap 0.028 m
+largest compression  1100000 N  speed 15 m/s, connection nonlinear, tension gap 0.028 m
+largest tension       220000 N  speed 15 m/s, connection nonlinear, tension gap 0.028 m
 ";
     assert_eq!(written(COLUMNS, &crossings(), PLAIN), expected);
 }
@@ -85,8 +85,8 @@ linear        -      0.1500  0.1600
 nonlinear     0.028  0.2000  0.2100
 nonlinear     0      0.1800  0.1900
 
-                gap
             tension
+                gap
 connection      [m]      15
 linear        -      0.1700
 nonlinear     0.028  0.2200*
@@ -101,9 +101,9 @@ fn numbers_stand_for_names_that_leave_no_room() {
     let table = "\
 #1 connection linear
 #2 connection nonlinear,
-   gap tension 0.028 m
+   tension gap 0.028 m
 #3 connection nonlinear,
-   gap tension 0 m
+   tension gap 0 m
 
         3     7.5      15
 #1 0.1500  0.1600  0.1700
@@ -118,10 +118,10 @@ fn of_one_speed_all_peaks_are_listed() {
     let rows: Vec<Vec<Value>> = crossings().into_iter().filter(|row| row[4] == 15.0).collect();
     let expected = "\
 peaks
-throughout: gap compression 0.0055 m, load 230300 N, speed 15 m/s
+throughout: compression gap 0.0055 m, load 230300 N, speed 15 m/s
 
-                gap
-            tension  deflection  uplift  compression  tension
+            tension
+                gap  deflection  uplift  compression  tension
 connection      [m]         [m]     [m]          [N]      [N]
 linear        -          0.1700  0.0170       850000   170000
 nonlinear     0.028      0.2200* 0.0220*     1100000*  220000*
@@ -218,7 +218,7 @@ fn two_hundred_combinations_are_cut_and_the_largest_is_still_told() {
     );
     assert!(text.lines().count() < 60, "{text}");
     assert!(
-        text.contains("largest deflection    0.3990 m  speed 10 m/s, gap tension 0.199 m\n"),
+        text.contains("largest deflection    0.3990 m  speed 10 m/s, tension gap 0.199 m\n"),
         "{text}"
     );
 }
@@ -301,7 +301,7 @@ fn static_cases_go_along_the_places_of_the_load() {
     }
     let expected = "\
 peak deflection [m] against load position
-throughout: gap tension 0.01 m, gap compression 0.01 m, load 100000 N
+throughout: tension gap 0.01 m, compression gap 0.01 m, load 100000 N
 
 connection       1       2       3
 linear      0.1000  0.2000  0.3000*
@@ -314,7 +314,7 @@ largest deflection  0.3000 m  load position 3, connection linear
     rows.iter_mut().for_each(|row| row[3] = Value::Null);
     let text = written(names, &rows, PLAIN);
     assert!(
-        text.contains("against load x [m]") && text.contains("connection       0     6.7    13.4\n"),
+        text.contains("against load place [m]") && text.contains("connection       0     6.7    13.4\n"),
         "{text}"
     );
 }

@@ -44,16 +44,16 @@ fn a_run_ends_with_peaks_against_speed_and_where_the_largest_are() {
     let (stage, text) = ran();
     let begins = "\
 peak deflection [m] against speed [m/s]
-throughout: gap compression 0.0055 m, load 100000 N
+throughout: compression gap 0.0055 m, load 100000 N
 
-                gap
             tension
+                gap
 connection      [m]       5      10
 linear        -      0.0266  0.0337
 nonlinear     0.028  0.0840  0.0978*
 nonlinear     0      0.0762  0.0944
 
-largest deflection   0.0978 m  speed 10 m/s, connection nonlinear, gap tension 0.028 m
+largest deflection   0.0978 m  speed 10 m/s, connection nonlinear, tension gap 0.028 m
 ";
     assert!(text.starts_with(begins), "{text}");
     assert!(

@@ -42,8 +42,7 @@ pub fn label(name: &str) -> String {
     match name {
         "gap_tension_m" | "bridge.connectors.gap_tension_m" => return "tension gap".to_owned(),
         "gap_compression_m" | "bridge.connectors.gap_compression_m" => return "compression gap".to_owned(),
-        "load_x_m" => return "load at x".to_owned(),
-        "load_position" => return "load at position".to_owned(),
+        "load_x_m" => return "load place".to_owned(),
         "min_contact_force_n" => return "smallest contact force".to_owned(),
         _ => {}
     }
