@@ -63,7 +63,7 @@ test('the filter takes words and conditions', () => on(sample('crossing'), {}, a
     assert.deepEqual(await all(page), data.filter(holds).map(r => r.job), text);
     assert.equal(await page.isVisible('#jobs .error'), false, text);
   }
-  for (const [text, word] of [['speeed>3', 'no column'], ['speed_m_s>fast', 'not a number'], ['connection>linear', 'a word']]) {
+  for (const [text, word] of [['speeed>3', 'no column'], ['speed_m_s>fast', 'no number'], ['gap_tension_m>28um', 'no number'], ['connection>linear', 'a word']]) {
     await page.fill('#jobs input[type="search"]', text);
     assert.ok((await page.textContent('#jobs .error')).includes(word), text);
   }

@@ -54,7 +54,8 @@ test('names full of markup stay text', () => on(sample('markup'), {}, async page
 test('each kind shows what fits it', async () => {
   const has = async name => { let list; await on(sample(name), {}, async page => { list = await ids(page); }); return list; };
   assert.deepEqual(await has('crossing'), ['summary', 'settings', 'failures', 'speed', 'heat', 'envelope', 'histories', 'jobs', 'modes', 'verdicts', 'provenance']);
-  assert.deepEqual(await has('still'), ['summary', 'settings', 'speed', 'heat', 'envelope', 'jobs', 'modes', 'provenance']);
+  assert.deepEqual(await has('still'), ['summary', 'settings', 'failures', 'speed', 'heat', 'envelope', 'jobs', 'modes', 'provenance']);
+  assert.deepEqual(await has('unread'), ['summary', 'settings', 'failures', 'speed', 'heat', 'envelope', 'histories', 'jobs', 'verdicts', 'provenance']);
   assert.deepEqual(await has('natural'), ['settings', 'frequencies', 'jobs', 'modes', 'provenance']);
   assert.deepEqual(await has('allFailed'), ['nothing', 'settings', 'failures', 'jobs', 'provenance']);
   assert.deepEqual(await has('oneJob'), ['summary', 'settings', 'speed', 'envelope', 'histories', 'jobs', 'modes', 'provenance']);
