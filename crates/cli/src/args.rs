@@ -244,6 +244,7 @@ pub struct ReportArguments {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u16).range(0..=400))]
     pub plays: u16,
     /// Folder to write figures for papers into: SVG, PNG, their captions in figures.md, the numbers plotted in figures.json.
+    /// Earlier figures there are replaced, other files left alone.
     /// The page is then written where --out asks for it.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,

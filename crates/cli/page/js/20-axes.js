@@ -13,7 +13,10 @@
     return units.get(at);
   }
 
-  const bare = (at, value) => (value === null ? 'none' : data.axes[at].kind === 'word' ? String(value) : numbers.plain(value * shown(at).factor));
+  // A linear connection has no gap.
+  const NOTHING = { gap_tension_m: 'linear', gap_compression_m: 'linear' };
+  const nothing = at => NOTHING[data.axes[at].name] ?? 'none';
+  const bare = (at, value) => (value === null ? nothing(at) : data.axes[at].kind === 'word' ? String(value) : numbers.plain(value * shown(at).factor));
 
   /** An end or the middle of a range: no finer than a range is. */
   const edge = (at, value) => bare(at, Number(value.toPrecision(4)));
@@ -24,7 +27,7 @@
   /** A value in full: with its unit, as a range where values were binned. */
   function name(at, index) {
     const axis = data.axes[at], value = axis.values[index], unit = shown(at).unit, bin = axis.bins?.[index];
-    if (value === null) return 'none';
+    if (value === null) return nothing(at);
     const text = bin && bin[0] < bin[1] ? `${edge(at, bin[0])} to ${edge(at, bin[1])}` : bare(at, value);
     return unit ? text + numbers.THIN + unit : text;
   }

@@ -16,7 +16,8 @@
   }
 
   /** The pieces of a filter: cut at spaces, but not beside an operator nor within quotes. */
-  const pieces = text => text.replace(/\s*(<=|>=|!=|<|>|=)\s*/g, '$1').match(/(?:[^\s"]+|"[^"]*")+/g) ?? [];
+  const UNITS = Object.keys(FACTORS).filter(Boolean).sort((a, b) => b.length - a.length).join('|');
+  const pieces = text => text.replace(/\s*(<=|>=|!=|<|>|=)\s*/g, '$1').replace(new RegExp(`([<>=][-\u2212+\\d.,eE]+)\\s+(${UNITS})(?=\\s|$)`, 'g'), '$1$2').match(/(?:[^\s"]+|"[^"]*")+/g) ?? [];
 
   /**
    * Compiles a filter over columns ({ name, label, kind, value(row) }). Answers { test(row), error }. All pieces must hold.

@@ -38,7 +38,7 @@
   /** A few values in a row, their unit once; what has no value comes last. */
   function few(axis, at) {
     const { unit } = page.axes.shown(at), some = axis.values.map((v, i) => (v === null ? null : page.axes.tick(at, i))).filter(v => v !== null);
-    return some.join(', ') + (unit && some.length ? numbers.THIN + unit : '') + (some.length < axis.values.length ? `${some.length ? ', ' : ''}none` : '');
+    return some.join(', ') + (unit && some.length ? numbers.THIN + unit : '') + (some.length < axis.values.length ? `${some.length ? ', ' : ''}${page.axes.name(at, axis.values.indexOf(null))}` : '');
   }
 
   function settings() {

@@ -4,12 +4,13 @@
   const { data, numbers, axes, cells } = page, { el, section, field, select } = page.dom;
 
   function speed() {
-    const numeric = data.axes.map((_, i) => i).filter(i => data.axes[i].kind === 'number' && data.axes[i].values.some(v => v !== null));
+    const numeric = data.axes.map((_, i) => i).filter(i => data.axes[i].kind === 'number' && data.axes[i].values.some(v => v !== null)), several = i => data.axes[i].values.filter(v => v !== null).length > 1;
     if (!data.cells?.count || !data.measures.length || !numeric.length) return null;
     const varying = cells.varying(), prefer = names => names.map(cells.axis).find(i => varying.includes(i));
-    const x = prefer(['speed_m_s']) ?? numeric.find(i => varying.includes(i)) ?? Math.max(cells.axis('speed_m_s'), numeric[0]);
+    const x = prefer(['speed_m_s', 'load_position', 'load_x_m']) ?? numeric.find(several) ?? numeric.find(i => varying.includes(i)) ?? Math.max(cells.axis('speed_m_s'), numeric[0]);
     const others = varying.filter(i => i !== x);
-    const line = [prefer(['gap_tension_m', 'load_n', 'gap_compression_m']), ...others].find(i => i !== undefined && i !== x && others.includes(i));
+    // Lines of ranges zigzag where a design is drawn at random: one line to begin with.
+    const line = [prefer(['gap_tension_m', 'load_n', 'gap_compression_m']), ...others].find(i => i !== undefined && i !== x && others.includes(i) && !(data.axes[i].bins && data.axes[x].bins));
     const has = name => cells.measure(name), first = Math.max(0, has('peak_deflection_m')), second = has('peak_compression_n') >= 0 ? has('peak_compression_n') : Math.min(1, data.measures.length - 1);
     const state = { x, line: line ?? -1, fixed: cells.usual(), measures: [first, second] };
     const controls = el('div', { class: 'controls' }), stops = el('div', { class: 'controls stops' });
@@ -56,7 +57,7 @@
     series.forEach((s, i) => Object.assign(s, page.look(i, series.length)));
     const title = `${measure.label[0].toUpperCase()}${measure.label.slice(1)} against ${data.axes[x].label}`, note = [axes.choice(fixed, [x, line]), nl > MOST_LINES && `${series.length} of ${nl} lines are drawn`].filter(Boolean).join('; ');
     if (!series.length) return { title, note, empty: part.failed.some(n => n > 0) ? 'Every job of this choice failed.' : 'No job has this combination: choose other stops.' };
-    const marks = data.axes[x].name === 'speed_m_s' ? (data.marks ?? []).filter(k => k.chart === 'speed' && k.measure === measure.name && axes.fits(k, fixed)).map(k => {
+    const marks = data.axes[x].name === 'speed_m_s' ? (data.marks ?? []).filter(k => k.chart === 'speed' && (k.table ?? 'jobs') === 'jobs' && k.measure === measure.name && axes.fits(k, fixed)).map(k => {
       const of = line < 0 ? null : series.find(s => k.axes?.[data.axes[line].name] !== undefined && axes.find(line, k.axes[data.axes[line].name]) === s.at);
       return { ...k, color: of?.color, text: () => `${k.label}${k.position ? ` at position ${k.position}` : ''}${k.x === null ? '' : `, ${numbers.quantity(k.x, data.axes[x].unit)}`}: ${numbers.quantity(k.y, measure.unit)}` };
     }) : [];

@@ -6,7 +6,8 @@
   function heat() {
     const varying = cells.varying();
     if (!data.cells?.count || !data.measures.length || varying.length < 2) return null;
-    const rank = ['gap_tension_m', 'speed_m_s', 'gap_compression_m', 'load_n'].map(cells.axis).filter(i => varying.includes(i));
+    const several = i => data.axes[i].values.filter(v => v !== null).length > 1;
+    const rank = ['gap_tension_m', 'speed_m_s', 'load_position', 'load_x_m', 'gap_compression_m', 'load_n'].map(cells.axis).filter(i => varying.includes(i)).sort((a, b) => several(b) - several(a));
     const [x, y] = [...rank, ...varying.filter(i => !rank.includes(i))];
     const state = { x: y, y: x, measure: Math.max(0, cells.measure('peak_deflection_m')), statistic: 'max', own: false, fixed: cells.usual() };
     const controls = el('div', { class: 'controls' }), stops = el('div', { class: 'controls stops' });

@@ -2,7 +2,7 @@
 (page => {
   'use strict';
   const { data, numbers, array } = page, { el, field, select, button, animation, motionless } = page.dom;
-  const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4], SCALES = [1, 2, 5, 10, 20, 50, 100, 200, 500];
+  const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4], SCALES = [0.001, 0.01, 0.1, 1, 2, 5, 10, 20, 50, 100, 200, 500];
 
   /** The frame in which the bridge is deepest. */
   function peakFrame(play) {
@@ -88,7 +88,7 @@
       peak = peakFrame(play);
       scrub.max = play.frames - 1;
       const deepest = array(play.deflection_m).reduce((a, v) => Math.max(a, Math.abs(v)), 0), length = (play.bridge ?? data.bridge).position_x_m.at(-1) || 1;
-      if (deepest > 0) scale.value = String(SCALES.filter(s => s * deepest <= Math.max(0.1 * length, (70 * length) / (stage.clientWidth || 800))).at(-1) ?? 1);
+      if (deepest > 0) scale.value = String(SCALES.filter(s => s * deepest <= Math.max(0.1 * length, (70 * length) / (stage.clientWidth || 800))).at(-1) ?? SCALES[0]);
       scene = page.bridgeScene(play, stage, Number(scale.value));
       readout.replaceChildren(...scene.names.flatMap(name => el('div', {}, el('dt', {}, name), el('dd'))));
       const alive = by !== 'start' && !motionless.matches;

@@ -11,7 +11,7 @@ use pontoon_study::report::{Found, Report, ReportSetting};
 use pontoon_study::run::Cache;
 use pontoon_study::tables::{Folder, FolderError, PAGE};
 use serde_json::json;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -99,7 +99,9 @@ fn page_of(arguments: &ReportArguments, common: Common) -> Result<Ending> {
 
 /// The page's file, which is no folder and no other file that somebody may miss.
 fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
-    let out = arguments.out.clone().unwrap_or_else(|| arguments.results.join(PAGE));
+    let asked = arguments.out.clone().unwrap_or_else(|| arguments.results.join(PAGE));
+    // through a link to the file that it names
+    let out = fs::canonicalize(&asked).unwrap_or(asked);
     let refuse = |found: &str| {
         Err(Refusal::new(
             &out,
@@ -114,7 +116,13 @@ fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
     if out.file_name().and_then(|name| name.to_str()).is_none() {
         return refuse("no name of a file in Unicode");
     }
+    if out.is_symlink() {
+        return refuse("a link to nothing");
+    }
     if out.exists() {
+        if !out.is_file() {
+            return refuse("no regular file");
+        }
         let mut head = Vec::new();
         let read = File::open(&out).and_then(|file| file.take(HEAD).read_to_end(&mut head));
         let is_page = head

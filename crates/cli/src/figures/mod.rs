@@ -24,9 +24,11 @@ mod style;
 
 use anyhow::{Context, Result};
 use letters::Letters;
+use pontoon_study::Refusal;
 use pontoon_study::figures::Figures;
 use pontoon_study::tables::Folder;
-use serde_json::json;
+use serde_json::{Value, json};
+use std::fs;
 use std::path::Path;
 
 /// The file of captions, and that of the numbers plotted.
@@ -34,26 +36,52 @@ const CAPTIONS: &str = "figures.md";
 const NUMBERS: &str = "figures.json";
 
 /// Writes figures into a folder: of each NAME.svg and NAME.png, of all `figures.md`, their captions, and `figures.json`, the
-/// numbers plotted. Each file is replaced whole; other files of the folder are left alone. Returns the names of the files.
+/// numbers plotted. Each file is replaced whole; what earlier figures left in the folder and these do not is removed; other
+/// files are left alone. Returns the names of the files.
 ///
 /// # Errors
-/// What the system says of the folder or of a file.
+/// [`Refusal`] where a file stands under one of these names that is no earlier figure; what the system says of the folder or of
+/// a file.
 pub fn write(figures: &Figures, folder: &Path) -> Result<Vec<String>> {
-    let folder = Folder::create(folder)?;
+    let earlier = of_earlier(folder);
     let letters = Letters::new();
-    let mut files = Vec::new();
-    let mut file = |name: String, bytes: &[u8]| {
-        folder.write(&name, |out| out.write_all(bytes))?;
-        files.push(name);
-        Ok::<(), anyhow::Error>(())
-    };
+    let numbers = format!("{:#}\n", json!(figures)).into_bytes();
+    // the list first: whatever becomes of the process, the folder says what in it is figures
+    let mut files = vec![(NUMBERS.to_owned(), numbers)];
     for figure in &figures.figures {
         let svg = page::svg(figure, &letters).with_context(|| figure.name.clone())?;
         let png = letters.png(&svg).with_context(|| figure.name.clone())?;
-        file(format!("{}.svg", figure.name), svg.as_bytes())?;
-        file(format!("{}.png", figure.name), &png)?;
+        files.push((format!("{}.svg", figure.name), svg.into_bytes()));
+        files.push((format!("{}.png", figure.name), png));
     }
-    file(CAPTIONS.to_owned(), captions::markdown(figures).as_bytes())?;
-    file(NUMBERS.to_owned(), format!("{:#}\n", json!(figures)).as_bytes())?;
-    Ok(files)
+    files.push((CAPTIONS.to_owned(), captions::markdown(figures).into_bytes()));
+    for (name, _) in &files {
+        let path = folder.join(name);
+        if path.exists() && !earlier.contains(name) {
+            return Err(Refusal::new(&path, "", "another file", "a new file, or one of earlier figures").into());
+        }
+    }
+    let folder = Folder::create(folder)?;
+    for name in earlier.iter().filter(|old| !files.iter().any(|(name, _)| name == *old)) {
+        folder.remove(name)?;
+    }
+    for (name, bytes) in &files {
+        folder.write(name, |out| out.write_all(bytes))?;
+    }
+    files.rotate_left(1);
+    Ok(files.into_iter().map(|(name, _)| name).collect())
+}
+
+/// The files that earlier figures left in a folder: its `figures.json` names them.
+fn of_earlier(folder: &Path) -> Vec<String> {
+    let numbers = fs::read(folder.join(NUMBERS)).ok();
+    let numbers: Option<Value> = numbers.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let Some(figures) = numbers.as_ref().and_then(|numbers| numbers["figures"].as_array()) else {
+        return Vec::new();
+    };
+    let names = figures.iter().filter_map(|figure| figure["name"].as_str());
+    let pictures = names.flat_map(|name| ["svg", "png"].map(|kind| format!("{name}.{kind}")));
+    // a name in that file is no path out of the folder
+    let within = pictures.filter(|name| !name.contains(['/', '\\']));
+    within.chain([CAPTIONS.to_owned(), NUMBERS.to_owned()]).collect()
 }

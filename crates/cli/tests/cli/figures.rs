@@ -332,7 +332,6 @@ fn the_same_results_give_the_same_bytes_and_other_files_stay() {
     stage.ran("r");
     fs::create_dir(stage.path("f")).unwrap();
     fs::write(stage.path("f/mine.txt"), "mine").unwrap();
-    fs::write(stage.path("f/figures.md"), "of an earlier run").unwrap();
     let made = figures(&stage, &[]);
     let output = stage.pontoon(&["report", "r", "--figures", "g", "--format", "json"]);
     let told: Value = serde_json::from_str(&stdout(&output)).unwrap();
@@ -344,6 +343,24 @@ fn the_same_results_give_the_same_bytes_and_other_files_stay() {
         assert_eq!(f, g, "{name}");
     }
     assert_eq!(fs::read_to_string(stage.path("f/mine.txt")).unwrap(), "mine");
+    // figures that the next ones do not have go with them
+    let mut numbers: Value = serde_json::from_slice(&fs::read(stage.path("f/figures.json")).unwrap()).unwrap();
+    let mut older = numbers["figures"][0].clone();
+    older["name"] = "older".into();
+    numbers["figures"].as_array_mut().unwrap().push(older);
+    fs::write(stage.path("f/figures.json"), numbers.to_string()).unwrap();
+    fs::write(stage.path("f/older.svg"), "of an earlier run").unwrap();
+    figures(&stage, &[]);
+    assert!(!stage.path("f/older.svg").exists() && stage.path("f/mine.txt").exists());
+    // a file of somebody else's under one of their names stays
+    fs::create_dir(stage.path("h")).unwrap();
+    fs::write(stage.path("h/figures.json"), "mine").unwrap();
+    is_refused(
+        &stage.pontoon(&["report", "r", "--figures", "h"]),
+        &["h/figures.json", "another file"],
+    );
+    assert_eq!(fs::read_to_string(stage.path("h/figures.json")).unwrap(), "mine");
+    assert_eq!(fs::read_dir(stage.path("h")).unwrap().count(), 1);
     let hidden = fs::read_dir(stage.path("f"))
         .unwrap()
         .filter(|e| e.as_ref().unwrap().file_name().to_str().unwrap().starts_with('.'));

@@ -227,6 +227,23 @@ fn the_same_results_give_the_same_bytes_and_a_page_replaces_none_but_a_page() {
         );
         assert_eq!(fs::read(stage.path(out)).ok(), before);
     }
+    // a link leads to its page and stays a link; what is no file is not waited for
+    std::os::unix::fs::symlink("r/report.html", stage.path("link.html")).unwrap();
+    assert_eq!(
+        stage.pontoon(&["report", "r", "--out", "link.html"]).status.code(),
+        Some(0)
+    );
+    assert!(stage.path("link.html").is_symlink());
+    assert_eq!(first, fs::read(stage.path("r/report.html")).unwrap());
+    let made = std::process::Command::new("mkfifo")
+        .arg(stage.path("pipe"))
+        .status()
+        .unwrap();
+    assert!(made.success());
+    is_refused(
+        &stage.pontoon(&["report", "r", "--out", "pipe"]),
+        &["pipe", "no regular file"],
+    );
     // and results that are set aside take their page with them
     let again = stage.pontoon(&["run", "study.json", "--out", "moved", "--quiet"]);
     assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
@@ -298,10 +315,10 @@ fn a_run_that_is_not_done_gives_a_page_that_says_so() {
         fs::remove_file(stage.path("r").join(name)).unwrap();
     }
     let data = report(&stage, "r", &[]);
+    let note = data["notes"][0].as_str().unwrap();
     assert!(
-        data["notes"][0].as_str().unwrap().contains("6 of 6 jobs are recorded"),
-        "{}",
-        data["notes"]
+        note.contains("6 of 6 jobs are recorded: the tables are not there"),
+        "{note}"
     );
     for part in ["cells", "rows", "cards", "plays", "envelope", "histories"] {
         assert_eq!(data[part], whole[part], "{part}");

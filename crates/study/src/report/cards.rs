@@ -52,8 +52,8 @@ pub struct Card {
     /// Where and when.
     #[serde(rename = "where")]
     pub place: String,
-    /// Its job.
-    pub job: u32,
+    /// Its job; null where the value is 0, for it is nobody's.
+    pub job: Option<u32>,
     /// The job's axes in words.
     pub axes: String,
 }
@@ -89,8 +89,8 @@ pub(super) fn cards(jobs: &Table, measures: &[Measure], said: &dyn Fn(usize) -> 
             value: of(row)?,
             unit: measure.unit,
             place: [at, when].into_iter().flatten().collect::<Vec<_>>().join(" "),
-            job: super::job(jobs, row),
-            axes: said(row),
+            job: (of(row) != Some(0.0)).then(|| super::job(jobs, row)),
+            axes: if of(row) == Some(0.0) { String::new() } else { said(row) },
         })
     };
     CARDS.into_iter().filter_map(card).collect()

@@ -44,11 +44,11 @@ pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{VerdictLine, Verdicts};
 
 use crate::compare::Comparison;
-use crate::figures::Mark;
+use crate::figures::{Chart, Mark};
 use crate::plan::Job;
 use crate::run::Cache;
 use crate::spec::Kind;
-use crate::tables::{ResultsError, Table};
+use crate::tables::{ResultsError, Table, TableName};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -251,7 +251,14 @@ impl Report {
             provenance,
         } = found;
         let jobs = results.jobs();
-        let names = results.axes();
+        let mut names = results.axes();
+        // a position says its place
+        if jobs
+            .numbers("load_position")
+            .is_some_and(|list| list.iter().all(Option::is_some))
+        {
+            names.retain(|name| name != "load_x_m");
+        }
         let cells_of = |name: &String| (0..jobs.rows()).map(|row| jobs.cell(name, row)).collect::<Vec<Value>>();
         let mut axes: Vec<Axis> = names.iter().map(|name| Axis::new(name, &cells_of(name))).collect();
         let listed: Vec<String> = axes
@@ -296,6 +303,7 @@ impl Report {
         if failures.len() < causes {
             notes.push(format!("{} of {causes} causes of failures are listed.", failures.len()));
         }
+        notes.extend(undrawn(&marks, jobs));
         let failed = (0..jobs.rows()).filter(|&row| failed(jobs, row)).count();
         let question = study.as_ref().and_then(|study| study.spec.question.clone());
         let kind = study.as_ref().map(|study| study.spec.analysis.kind);
@@ -335,6 +343,25 @@ impl Report {
             measures,
         })
     }
+}
+
+/// What is to be said of points that no chart shows: those of one position or joint against speed, as the charts show the
+/// largest of the bridge, and those of no job.
+fn undrawn(marks: &[Mark], jobs: &Table) -> Vec<String> {
+    let ids = |list: Vec<&Mark>| {
+        let mut ids: Vec<&str> = list.iter().map(|mark| mark.id.as_str()).collect();
+        ids.dedup();
+        ids.join(", ")
+    };
+    let alone = |mark: &&Mark| mark.chart == Chart::Speed && mark.table != TableName::Jobs;
+    let nobodys = |mark: &&Mark| !alone(mark) && !(0..jobs.rows()).any(|row| mark.belongs_to(jobs, row));
+    let said = |list: Vec<&Mark>, why: &str| (!list.is_empty()).then(|| format!("Not drawn, {why}: {}.", ids(list)));
+    let of_one = said(
+        marks.iter().filter(alone).collect(),
+        "as charts against speed show the largest of the bridge",
+    );
+    let of_none = said(marks.iter().filter(nobodys).collect(), "as no job has their axes");
+    of_one.into_iter().chain(of_none).collect()
 }
 
 fn kind_of(study: &Value) -> Kind {

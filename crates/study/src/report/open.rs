@@ -100,9 +100,13 @@ impl Found {
         } = found;
         let results = Results::of_run(&study, &jobs, &records, folder).map_err(|e| damaged(folder, e))?;
         let share = shard.map(|shard| format!(" This folder is the share {shard} of them."));
+        let known = jobs.len();
+        let state = match known < of {
+            true => "the run is not done, and this page shows what is there",
+            false => "the tables are not there, and this page is made of the journal; the same run again writes them",
+        };
         let note = format!(
-            "{} of {of} jobs are recorded: the run is not done, and this page shows what is there.{}",
-            jobs.len(),
+            "{known} of {of} jobs are recorded: {state}.{}",
             share.unwrap_or_default()
         );
         let provenance = [

@@ -85,8 +85,13 @@ pub(super) fn plays(
     let chosen = choose(jobs, measures, &fit, most);
     let mut played = Played::default();
     if chosen.len() < able.len() && most > 0 {
+        let which = match (fit.len() > most, fit.len() < able.len()) {
+            (true, _) => "the ones with the largest values and an even sample",
+            (false, true) => "crossings of full models and very long ones are not solved again",
+            (false, false) => "few crossings by the reference solver are solved again",
+        };
         played.notes.push(format!(
-            "{} of {} crossings listed can be played: the ones with the largest values and an even sample; full models and very long crossings cannot.",
+            "{} of {} crossings listed can be played: {which}.",
             chosen.len(),
             able.len()
         ));

@@ -141,7 +141,12 @@ pub struct Envelope {
 pub(super) fn chosen(jobs: &Table, measures: &[Measure]) -> (Vec<usize>, String) {
     let all = jobs.rows();
     if all <= MOST_ROWS {
-        return ((0..all).collect(), format!("all {all} jobs"));
+        let note = if all == 1 {
+            "the one job".to_owned()
+        } else {
+            format!("all {all} jobs")
+        };
+        return ((0..all).collect(), note);
     }
     let every: Vec<usize> = (0..all).collect();
     let mut rows: BTreeSet<usize> = BTreeSet::new();
