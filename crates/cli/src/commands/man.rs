@@ -4,6 +4,7 @@ use crate::Ending;
 use crate::args::{Arguments, Common, Format, ManArguments};
 use crate::words;
 use anyhow::{Context, Result};
+use clap::builder::Resettable;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use pontoon_study::Refusal;
@@ -50,8 +51,19 @@ fn name(command: &Command) -> &str {
     command.get_display_name().unwrap_or(command.get_name())
 }
 
+/// A page; examples stand as they are typed, which a paragraph of its text would not keep.
 fn page(command: Command) -> std::io::Result<Vec<u8>> {
+    let examples = command.get_after_help().map(ToString::to_string);
     let mut page = Vec::new();
+    let command = command.after_help(Resettable::Reset);
     Man::new(command).manual("pontoon").render(&mut page)?;
+    if let Some(examples) = examples {
+        page.extend(b".SH EXAMPLES\n.nf\n");
+        for line in examples.lines().skip(1) {
+            let line = line.trim().replace('\\', "\\e").replace('-', "\\-");
+            page.extend(format!("{line}\n").bytes());
+        }
+        page.extend(b".fi\n");
+    }
     Ok(page)
 }

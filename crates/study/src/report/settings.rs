@@ -59,6 +59,7 @@ fn connectors(study: &Study) -> String {
 fn vehicle(study: &Study) -> String {
     let vehicle = &study.spec.vehicle;
     let inertia = match vehicle.inertia {
+        _ if study.spec.analysis.kind == Kind::Static => "standing",
         Inertia::None => "moving weight without inertia",
         Inertia::Local => "moving mass with local inertia",
         Inertia::Convective => "moving mass with convective inertia",
