@@ -121,14 +121,14 @@ impl Subject {
         let table = results.jobs();
         let number = match request.job {
             Some(number) => number,
-            None => largest(source, table)?,
+            None => largest(source, &results)?,
         };
         let rows = table.rows();
         let row = results.row_of_job(number as u64).ok_or_else(|| {
             let allowed = format!("the number of a job, {rows} of which are there, from 0");
             Refusal::new(source, "--job", number, allowed)
         })?;
-        if table.cell("status", row) == json!("failed") {
+        if results.is_failed(row) {
             let reason = table.cell("reason", row);
             let found = format!("job {number}, which failed: {}", reason.as_str().unwrap_or("no reason"));
             return Err(Refusal::new(source, "--job", found, "a job that did not fail").into());
@@ -204,21 +204,16 @@ fn axes(results: &Results, job: &Job) -> Value {
 }
 
 /// The job with the largest deflection, the first of equals; of modes the first.
-fn largest(source: &Path, table: &Table) -> Result<usize, Refusal> {
+fn largest(source: &Path, results: &Results) -> Result<usize, Refusal> {
+    let table = results.jobs();
     let mut best: Option<(f64, usize)> = None;
-    for row in 0..table.rows() {
-        if table.cell("status", row) != json!("ok") {
-            continue;
-        }
+    for row in (0..table.rows()).filter(|row| !results.is_failed(*row)) {
         let peak = table.number("peak_deflection_m", row).unwrap_or_default();
-        if let Some(number) = table
-            .number("job", row)
-            .filter(|_| best.is_none_or(|(most, _)| peak > most))
-        {
-            best = Some((peak, number as usize));
+        if best.is_none_or(|(most, _)| peak > most) {
+            best = Some((peak, row));
         }
     }
-    best.map(|(_, number)| number).ok_or_else(|| {
+    best.map(|(_, row)| results.job_of_row(row) as usize).ok_or_else(|| {
         let reason = (0..table.rows()).find_map(|row| table.cell("reason", row).as_str().map(str::to_owned));
         let found = match reason {
             Some(reason) => format!("failed jobs alone, the first of them: {reason}"),

@@ -30,6 +30,7 @@ pub use marks::{Chart, Mark, Origin, marks};
 
 use crate::reference::Reference;
 use crate::refusal::Refusal;
+use crate::spec::Kind;
 use crate::tables::Results;
 use serde::Serialize;
 use sheet::Sheet;
@@ -81,11 +82,10 @@ impl Figures {
                 "at least one job with results to draw",
             ));
         }
-        let kind = results.study["analysis"]["kind"].as_str();
-        let mut figures = match kind {
-            Some("static") => profiles::deflected(&mut sheet),
-            Some("modes") => modes::frequencies(&mut sheet, reference),
-            _ => {
+        let mut figures = match results.kind() {
+            Kind::Static => profiles::deflected(&mut sheet),
+            Kind::Modes => modes::frequencies(&mut sheet, reference),
+            Kind::Crossing => {
                 let mut figures = histories::histories(&mut sheet);
                 figures.extend(speeds::speeds(&mut sheet));
                 figures.extend(profiles::envelopes(&mut sheet));

@@ -31,9 +31,7 @@ const EXPECTED: &str = "reference value";
 impl<'a> Sheet<'a> {
     pub(super) fn new(results: &'a Results, marks: Vec<Mark>) -> Self {
         let jobs = results.jobs();
-        let rows: Vec<usize> = (0..jobs.rows())
-            .filter(|row| jobs.cell("status", *row) == "ok")
-            .collect();
+        let rows: Vec<usize> = (0..jobs.rows()).filter(|row| !results.is_failed(*row)).collect();
         let axes = results.axes();
         let several = |axis: &&String| {
             let mut values = BTreeSet::new();
@@ -65,7 +63,7 @@ impl<'a> Sheet<'a> {
     }
 
     pub(super) fn job(&self, row: usize) -> u64 {
-        self.number("job", row).map_or(0, |job| job as u64)
+        self.results.job_of_row(row)
     }
 
     pub(super) fn is_linear(&self, row: usize) -> bool {

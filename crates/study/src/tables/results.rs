@@ -10,10 +10,10 @@ use super::table::{Table, TableName};
 use crate::plan::Job;
 use crate::refusal::Refusal;
 use crate::run::JobRecord;
-use crate::spec::{Study, text_and_hash};
+use crate::spec::{Kind, Study, text_and_hash};
 use polars::prelude::{DataFrame, ParquetReader, PolarsResult, SerReader};
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -51,6 +51,8 @@ pub struct Results {
     tables: BTreeMap<TableName, Table>,
     on_disk: BTreeMap<TableName, PathBuf>,
     jobs: Table,
+    /// The number of the job in each row of the table of jobs.
+    numbers: Vec<u64>,
     row_of_job: HashMap<u64, usize>,
 }
 
@@ -128,15 +130,6 @@ impl Results {
         if let Some(column) = ["job", "status", "reason"].into_iter().find(|column| !jobs.has(column)) {
             return Err(damaged(&jobs_file, &format!("no column {column}")));
         }
-        let mut numbers = BTreeSet::new();
-        let whole = |row| {
-            jobs.number("job", row)
-                .filter(|n| *n >= 0.0 && n.fract() == 0.0)
-                .map(|n| n as u64)
-        };
-        if !(0..jobs.rows()).all(|row| whole(row).is_some_and(|number| numbers.insert(number))) {
-            return Err(damaged(&jobs_file, "job numbers that are not whole or not unique"));
-        }
         let count = manifest["jobs"].as_u64();
         if count != Some(jobs.rows() as u64) {
             return Err(damaged(
@@ -145,7 +138,8 @@ impl Results {
             ));
         }
         let documents = (manifest["study"].clone(), manifest["bridge"].clone());
-        let mut results = Self::new(name, folder, documents, jobs, tables);
+        let results = Self::new(name, folder, documents, jobs, tables);
+        let mut results = results.map_err(|found| damaged(&jobs_file, &found))?;
         (results.manifest, results.on_disk) = (manifest, on_disk);
         Ok(results)
     }
@@ -164,7 +158,7 @@ impl Results {
         }
         let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
         let documents = (study.document.clone(), study.bridge.document.clone());
-        Ok(Self::new(&study.spec.name, place, documents, job_table, tables))
+        Self::new(&study.spec.name, place, documents, job_table, tables)
     }
 
     fn new(
@@ -173,10 +167,18 @@ impl Results {
         (study, bridge): (Value, Value),
         jobs: Table,
         tables: BTreeMap<TableName, Table>,
-    ) -> Self {
-        let number = |row| jobs.number("job", row).map(|n| n as u64);
-        let row_of_job = (0..jobs.rows()).filter_map(|row| Some((number(row)?, row))).collect();
-        Self {
+    ) -> Result<Self, String> {
+        let whole = |row| {
+            let number = jobs.number("job", row).filter(|n| *n >= 0.0 && n.fract() == 0.0);
+            number.map(|n| n as u64)
+        };
+        let numbers: Option<Vec<u64>> = (0..jobs.rows()).map(whole).collect();
+        let row_of = |numbers: &Vec<u64>| numbers.iter().enumerate().map(|(row, n)| (*n, row)).collect();
+        let row_of_job: HashMap<u64, usize> = numbers.as_ref().map(row_of).unwrap_or_default();
+        let Some(numbers) = numbers.filter(|numbers| numbers.len() == row_of_job.len()) else {
+            return Err("job numbers that are not whole or not unique".to_owned());
+        };
+        Ok(Self {
             name: name.to_owned(),
             place: place.to_owned(),
             study,
@@ -185,8 +187,9 @@ impl Results {
             on_disk: BTreeMap::new(),
             tables,
             jobs,
+            numbers,
             row_of_job,
-        }
+        })
     }
 
     /// The table of jobs.
@@ -232,6 +235,29 @@ impl Results {
     /// The row of a job in the table of jobs.
     pub fn row_of_job(&self, job: u64) -> Option<usize> {
         self.row_of_job.get(&job).copied()
+    }
+
+    /// The number of the job in a row of the table of jobs, which each row has.
+    pub fn job_of_row(&self, row: usize) -> u64 {
+        self.numbers[row]
+    }
+
+    /// Whether the job in a row of the table of jobs has no results.
+    pub fn is_failed(&self, row: usize) -> bool {
+        let status = self
+            .jobs
+            .word_cells("status")
+            .and_then(|words| words.get(row)?.as_deref());
+        status != Some("ok")
+    }
+
+    /// What the study asks of the bridge.
+    pub fn kind(&self) -> Kind {
+        match self.study["analysis"]["kind"].as_str() {
+            Some("static") => Kind::Static,
+            Some("modes") => Kind::Modes,
+            _ => Kind::Crossing,
+        }
     }
 
     /// The columns of the table of jobs that are axes.

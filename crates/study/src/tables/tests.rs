@@ -240,6 +240,26 @@ fn a_table_without_rows_is_a_table() {
     assert_eq!(results.jobs().rows(), of.1.len());
 }
 
+/// A row's job is its number and not its row, and a job that failed is known as such.
+#[test]
+fn rows_have_the_numbers_of_their_jobs_and_say_who_failed() {
+    let of = crossings();
+    let (mut records, _) = records(&of.0, &of.1);
+    records.remove(0);
+    let jobs = &of.1[1..];
+    let results = Results::of_run(&of.0, jobs, &records, Path::new("r")).unwrap();
+    assert_eq!(results.kind(), Kind::Crossing);
+    let failed = records.len() - 2;
+    for row in 0..jobs.len() {
+        assert_eq!(results.job_of_row(row), row as u64 + 1);
+        assert_eq!(results.row_of_job(row as u64 + 1), Some(row));
+        assert_eq!(results.is_failed(row), row == failed);
+    }
+    records[0].job = records[1].job;
+    let twice = Results::of_run(&of.0, jobs, &records, Path::new("r")).unwrap_err();
+    assert!(twice.contains("not unique"), "{twice}");
+}
+
 #[test]
 fn modes_have_a_row_each_in_the_table_and_in_the_summary() {
     let of = study("modes", json!([{ "grid": { "bridge.modules": [2, 3] } }]));
