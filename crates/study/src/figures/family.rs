@@ -4,10 +4,9 @@
 //! not know what is drawn.
 
 use super::sheet::{Sheet, said};
-use crate::document::canonical_text;
 use crate::report::words;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 /// Axes that the linear connection does not have.
 const GAPS: [&str; 2] = ["gap_tension_m", "gap_compression_m"];
@@ -81,141 +80,121 @@ pub(super) fn families(sheet: &mut Sheet<'_>, along: Option<&str>) -> Vec<Family
     let gaps_vary = varying.iter().any(|axis| GAPS.contains(&axis.as_str()));
     let mut found = Vec::new();
     for by in varying.iter().filter(|axis| *axis != "connection" || !gaps_vary) {
-        let mut of_axis = by_axis(sheet, &varying, by, along);
-        if of_axis.len() > MOST_FAMILIES {
-            let axes: Vec<String> = varying
-                .iter()
-                .filter(|axis| *axis != by)
-                .map(|axis| words::label(axis))
-                .collect();
+        let (of_axis, count) = by_axis(sheet, &varying, by, along);
+        if count > of_axis.len() {
+            let others = varying.iter().filter(|axis| *axis != by);
             sheet.left_out.push(format!(
-                "by {}: {} of {} families, one for each {}",
+                "by {}: {} of {count} families, one for each {}",
                 words::label(by),
-                of_axis.len() - MOST_FAMILIES,
-                of_axis.len(),
-                axes.join(", ")
+                count - of_axis.len(),
+                labels(others)
             ));
-            of_axis.truncate(MOST_FAMILIES);
         }
         found.extend(of_axis);
     }
-    let all = all_jobs(sheet, &varying);
-    if all.lines.len() > MOST_LINES {
+    let all = sheet.grouped(&sheet.rows, &varying.iter().collect::<Vec<_>>());
+    if all.len() > MOST_LINES {
         if found.is_empty() {
             sheet.left_out.push(format!(
                 "{} combinations of {}, no two of which differ in one axis alone",
-                all.lines.len(),
-                varying
-                    .iter()
-                    .map(|axis| words::label(axis))
-                    .collect::<Vec<_>>()
-                    .join(", ")
+                all.len(),
+                labels(varying.iter())
             ));
         }
-    } else if !found.iter().any(|family| family.lines.len() == all.lines.len()) {
-        found.push(all);
+    } else if !found.iter().any(|family| family.lines.len() == all.len()) {
+        found.push(all_jobs(sheet, &varying, all));
     }
     found
 }
 
-/// Rows by what they have in some axes, in the order of their first row.
-fn grouped<'s>(
-    sheet: &Sheet<'_>,
-    rows: impl Iterator<Item = usize>,
-    axes: impl Iterator<Item = &'s String> + Clone,
-) -> Vec<(Vec<String>, Vec<usize>)> {
-    let mut groups: Vec<(Vec<String>, Vec<usize>)> = Vec::new();
-    let mut place: BTreeMap<Vec<String>, usize> = BTreeMap::new();
-    for row in rows {
-        let key: Vec<String> = axes
-            .clone()
-            .map(|axis| canonical_text(&sheet.cell(axis, row)))
-            .collect();
-        let i = *place.entry(key.clone()).or_insert_with(|| {
-            groups.push((key, Vec::new()));
-            groups.len() - 1
-        });
-        groups[i].1.push(row);
-    }
-    groups
+/// Axes in words, one after the other.
+fn labels<'s>(axes: impl Iterator<Item = &'s String>) -> String {
+    axes.map(|axis| words::label(axis)).collect::<Vec<_>>().join(", ")
 }
 
-/// The families that differ in one axis alone.
-fn by_axis(sheet: &Sheet<'_>, varying: &[String], by: &str, along: Option<&str>) -> Vec<Family> {
-    let gap = GAPS.contains(&by);
-    let others: Vec<&String> = varying.iter().filter(|axis| *axis != by).collect();
-    let rows = sheet.rows.iter().copied().filter(|row| !sheet.cell(by, *row).is_null());
-    let mut groups: Vec<(Vec<String>, Vec<Vec<usize>>)> = Vec::new();
-    for (key, rows) in grouped(sheet, rows, others.iter().copied()) {
-        let by = by.to_owned();
-        let mut values: Vec<Vec<usize>> = grouped(sheet, rows.into_iter(), std::iter::once(&by))
-            .into_iter()
-            .map(|(_, rows)| rows)
-            .collect();
+/// The first families that differ in one axis alone, and how many there are.
+fn by_axis(sheet: &Sheet<'_>, varying: &[String], by: &str, along: Option<&str>) -> (Vec<Family>, usize) {
+    let by = by.to_owned();
+    let others: Vec<&String> = varying.iter().filter(|axis| **axis != by).collect();
+    let has = |row: &usize| sheet.code(&by, *row).is_some();
+    let rows: Vec<usize> = sheet.rows.iter().copied().filter(has).collect();
+    // the rows of each group by their value
+    let mut groups: Vec<Vec<Vec<usize>>> = Vec::new();
+    // only what differs between families is part of their names
+    let mut differs = vec![false; others.len()];
+    let (mut count, mut like) = (0, None);
+    for rows in sheet.grouped(&rows, &others) {
+        let values = sheet.grouped(&rows, &[&by]);
         if values.len() < 2 || !meet(sheet, &values, along) {
             continue;
         }
-        let value = |rows: &Vec<usize>| sheet.number(&by, rows[0]);
-        if values.iter().all(|rows| value(rows).is_some()) {
-            values.sort_by(|a, b| value(a).unwrap_or_default().total_cmp(&value(b).unwrap_or_default()));
+        let first = *like.get_or_insert(rows[0]);
+        for (axis, differs) in others.iter().zip(&mut differs) {
+            *differs |= sheet.code(axis, rows[0]) != sheet.code(axis, first);
         }
-        groups.push((key, values));
+        count += 1;
+        if groups.len() < MOST_FAMILIES {
+            groups.push(values);
+        }
     }
-    // only what differs between families is part of their names
-    let differs = |i: usize| groups.iter().any(|(key, _)| key[i] != groups[0].0[i]);
-    let named: Vec<usize> = (0..others.len())
-        .filter(|i| !groups.is_empty() && differs(*i))
+    let named: Vec<&String> = others
+        .iter()
+        .copied()
+        .zip(differs)
+        .filter_map(|(axis, differs)| differs.then_some(axis))
         .collect();
-    let family = |(_, values): &(Vec<String>, Vec<Vec<usize>>)| {
-        let first = values[0][0];
-        let suffix = named.iter().map(|i| {
-            format!(
-                "-{}-{}",
-                plain(others[*i]),
-                plain(&text(&sheet.cell(others[*i], first)))
-            )
-        });
-        let mut lines = Vec::new();
-        if gap {
-            lines.extend(linear_line(sheet, &others, first));
-        }
-        let chosen = super::sheet::spread(values.len(), MOST_LINES);
-        lines.extend(chosen.into_iter().enumerate().map(|(i, place)| FamilyLine {
-            label: words::value(by, &sheet.cell(by, values[place][0])),
-            style: i + 1,
-            rows: values[place].clone(),
-        }));
-        Family {
-            by: Some(by.to_owned()),
-            suffix: suffix.collect(),
-            lines,
-        }
-    };
-    groups.iter().map(family).collect()
+    let family = |values| family(sheet, &by, &others, &named, values);
+    (groups.into_iter().map(family).collect(), count)
+}
+
+/// A family by an axis: rows by their value, and the axes that are part of its name.
+fn family(sheet: &Sheet<'_>, by: &str, others: &[&String], named: &[&String], mut values: Vec<Vec<usize>>) -> Family {
+    let first = values[0][0];
+    let value = |rows: &Vec<usize>| sheet.number(by, rows[0]);
+    if values.iter().all(|rows| value(rows).is_some()) {
+        values.sort_by(|a, b| value(a).unwrap_or_default().total_cmp(&value(b).unwrap_or_default()));
+    }
+    let suffix = named
+        .iter()
+        .map(|axis| format!("-{}-{}", plain(axis), plain(&text(&sheet.cell(axis, first)))));
+    let mut lines = Vec::new();
+    if GAPS.contains(&by) {
+        lines.extend(linear_line(sheet, others, first));
+    }
+    let chosen = super::sheet::spread(values.len(), MOST_LINES);
+    lines.extend(chosen.into_iter().enumerate().map(|(i, place)| FamilyLine {
+        label: words::value(by, &sheet.cell(by, values[place][0])),
+        style: i + 1,
+        rows: std::mem::take(&mut values[place]),
+    }));
+    Family {
+        by: Some(by.to_owned()),
+        suffix: suffix.collect(),
+        lines,
+    }
 }
 
 /// Whether at some place along an axis there are jobs of more than one value, so that there is something to compare.
 fn meet(sheet: &Sheet<'_>, values: &[Vec<usize>], along: Option<&str>) -> bool {
     let Some(along) = along else { return true };
-    let mut of_value = BTreeMap::new();
+    let mut of_value = HashMap::new();
     values.iter().enumerate().any(|(i, rows)| {
-        let place = |row: &usize| sheet.number(along, *row).map(f64::to_bits);
         rows.iter()
-            .filter_map(place)
+            .filter_map(|row| sheet.code(along, *row))
             .any(|place| *of_value.entry(place).or_insert(i) != i)
     })
 }
 
 /// The linear jobs that have what a row has in all axes but the gaps.
 fn linear_line(sheet: &Sheet<'_>, others: &[&String], like: usize) -> Option<FamilyLine> {
-    let compared = others
+    let compared: Vec<&String> = others
         .iter()
-        .filter(|axis| **axis != "connection" && !GAPS.contains(&axis.as_str()));
+        .copied()
+        .filter(|axis| *axis != "connection" && !GAPS.contains(&axis.as_str()))
+        .collect();
     let same = |row: &usize| {
-        sheet.is_linear(*row)
-            && compared
-                .clone()
-                .all(|axis| canonical_text(&sheet.cell(axis, *row)) == canonical_text(&sheet.cell(axis, like)))
+        let mut compared = compared.iter();
+        sheet.is_linear(*row) && compared.all(|axis| sheet.code(axis, *row) == sheet.code(axis, like))
     };
     let rows: Vec<usize> = sheet.rows.iter().copied().filter(same).collect();
     (!rows.is_empty()).then(|| FamilyLine {
@@ -225,13 +204,9 @@ fn linear_line(sheet: &Sheet<'_>, others: &[&String], like: usize) -> Option<Fam
     })
 }
 
-/// All jobs, a line each combination of the axes.
-fn all_jobs(sheet: &Sheet<'_>, varying: &[String]) -> Family {
-    let groups = grouped(sheet, sheet.rows.iter().copied(), varying.iter());
-    let (linear, others): (Vec<_>, Vec<_>) = groups
-        .into_iter()
-        .map(|(_, rows)| rows)
-        .partition(|rows| sheet.is_linear(rows[0]));
+/// All jobs, a line each combination of the axes: `groups` are their rows.
+fn all_jobs(sheet: &Sheet<'_>, varying: &[String], groups: Vec<Vec<usize>>) -> Family {
+    let (linear, others): (Vec<_>, Vec<_>) = groups.into_iter().partition(|rows| sheet.is_linear(rows[0]));
     let several = !others.is_empty() && linear.len() == 1;
     let line = |(i, rows): (usize, Vec<usize>)| FamilyLine {
         label: label(sheet, varying, rows[0]),

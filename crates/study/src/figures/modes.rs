@@ -6,7 +6,7 @@ use super::family::{Family, FamilyLine, families};
 use super::figure::{Axis, Figure, Line, Measure, Panel, PlottedMark};
 use super::marks::Origin;
 use super::panels::caption;
-use super::sheet::Sheet;
+use super::sheet::{Sheet, rows_by_job};
 use crate::reference::{CheckKind, Reference};
 use crate::tables::{Table, TableName};
 
@@ -26,11 +26,11 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
     if families.iter().any(|family| family.by.as_deref() == Some(MODEL)) {
         families.retain(|family| family.by.as_deref() == Some(MODEL));
     }
+    let of_job = rows_by_job(table);
     let (mut figures, mut left_out) = (Vec::new(), Vec::new());
     for family in &families {
         let name = family.name("frequencies");
-        let rows_of = sheet.rows_of(table, &family.rows().iter().map(|row| sheet.job(*row)).collect());
-        let of_line = |line: &FamilyLine| rows_of.get(&sheet.job(line.rows[0])).cloned().unwrap_or_default();
+        let of_line = |line: &FamilyLine| of_job.get(&sheet.job(line.rows[0])).cloned().unwrap_or_default();
         let mut shapes = shapes(table, family, &of_line);
         if shapes.len() > MOST_SHAPES {
             left_out.push(format!(

@@ -6,7 +6,7 @@ use super::family::{Family, families};
 use super::figure::{Figure, Line, Measure, Moment, Panel};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
-use super::sheet::{Asked, Sheet};
+use super::sheet::{Asked, Sheet, rows_by_job};
 use crate::tables::{Table, TableName};
 use std::collections::{BTreeSet, HashMap};
 
@@ -19,9 +19,9 @@ pub(super) fn deflected(sheet: &mut Sheet<'_>) -> Vec<Figure> {
         return Vec::new();
     };
     let families = families(sheet, None);
+    let of_job = rows_by_job(table);
     let figure = |family: &Family| {
         let rows = family.rows();
-        let of_job = sheet.rows_of(table, &rows.iter().map(|row| sheet.job(*row)).collect());
         let lines = family.lines.iter().map(|line| Line {
             label: line.label.clone(),
             style: line.style,
@@ -68,11 +68,15 @@ pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
         return Vec::new();
     };
     let families = families(sheet, Some("speed_m_s"));
+    let of_job = rows_by_job(table);
     let mut figures = Vec::new();
     for family in &families {
         let name = family.name("envelope-along-bridge");
         let split = by_speed(sheet, family, &name);
-        let panels: Vec<Panel> = split.iter().map(|split| envelope(sheet, table, split)).collect();
+        let panels: Vec<Panel> = split
+            .iter()
+            .map(|split| envelope(sheet, table, &of_job, split))
+            .collect();
         figures.push(Figure {
             caption: caption(
                 sheet,
@@ -88,12 +92,10 @@ pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     figures
 }
 
-fn envelope(sheet: &Sheet<'_>, table: &Table, split: &Split) -> Panel {
+fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>, split: &Split) -> Panel {
     let rows: Vec<usize> = split.lines.iter().map(|line| line.row).collect();
-    let of_job = sheet.rows_of(table, &rows.iter().map(|row| sheet.job(*row)).collect());
     let sides = [("peak_deflection_m", 1.0), ("peak_uplift_m", -1.0)];
     let line = |(column, sign): (&str, f64)| {
-        let of_job = &of_job;
         let column = column.to_owned();
         split.lines.iter().map(move |line| Line {
             label: line.label.clone(),

@@ -8,7 +8,7 @@ use crate::document::canonical_text;
 use crate::report::words;
 use crate::tables::{Results, Table, TableName};
 use serde_json::Value;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
 /// Jobs to be drawn.
 pub(super) struct Sheet<'a> {
@@ -19,6 +19,10 @@ pub(super) struct Sheet<'a> {
     pub axes: Vec<String>,
     /// Axes of which those jobs have several values; nothing, where an axis has no meaning, is none.
     pub varying: Vec<String>,
+    /// Of each axis which of its distinct values each row of the table of jobs has; none where it has no meaning.
+    codes: BTreeMap<String, Vec<Option<u32>>>,
+    /// Whether the job of each row of the table of jobs is linearly connected.
+    linear: Vec<bool>,
     /// Points of a reference.
     pub marks: Vec<Mark>,
     /// What no figure holds.
@@ -33,22 +37,25 @@ impl<'a> Sheet<'a> {
         let jobs = results.jobs();
         let rows: Vec<usize> = (0..jobs.rows()).filter(|row| !results.is_failed(*row)).collect();
         let axes = results.axes();
+        let codes: BTreeMap<String, Vec<Option<u32>>> =
+            axes.iter().map(|axis| (axis.clone(), jobs.codes(axis))).collect();
         let several = |axis: &&String| {
-            let mut values = BTreeSet::new();
-            rows.iter().any(|row| {
-                let cell = jobs.cell(axis, *row);
-                if !cell.is_null() {
-                    values.insert(canonical_text(&cell));
-                }
-                values.len() > 1
-            })
+            let codes = &codes[*axis];
+            let mut values = rows.iter().filter_map(|row| codes[*row]);
+            let first = values.next();
+            values.any(|value| Some(value) != first)
         };
         let varying = axes.iter().filter(several).cloned().collect();
+        let connection = jobs.word_cells("connection").unwrap_or_default().iter();
+        let mut linear: Vec<bool> = connection.map(|word| word.as_deref() == Some("linear")).collect();
+        linear.resize(jobs.rows(), false);
         Self {
             results,
             rows,
             axes,
             varying,
+            codes,
+            linear,
             marks,
             left_out: Vec::new(),
         }
@@ -67,7 +74,31 @@ impl<'a> Sheet<'a> {
     }
 
     pub(super) fn is_linear(&self, row: usize) -> bool {
-        self.cell("connection", row) == "linear"
+        self.linear[row]
+    }
+
+    /// Which of an axis's distinct values the job of a row has; none where the axis has no meaning for it.
+    pub(super) fn code(&self, axis: &str, row: usize) -> Option<u32> {
+        self.codes.get(axis).and_then(|codes| codes[row])
+    }
+
+    /// Rows by what they have in some axes, in the order of their first row.
+    pub(super) fn grouped(&self, rows: &[usize], axes: &[&String]) -> Vec<Vec<usize>> {
+        let mut group = vec![0; rows.len()];
+        let mut count = usize::from(!rows.is_empty());
+        for codes in axes.iter().filter_map(|axis| self.codes.get(*axis)) {
+            let mut known: HashMap<(usize, Option<u32>), usize> = HashMap::new();
+            for (own, row) in group.iter_mut().zip(rows) {
+                let next = known.len();
+                *own = *known.entry((*own, codes[*row])).or_insert(next);
+            }
+            count = known.len();
+        }
+        let mut groups = vec![Vec::new(); count];
+        for (own, row) in group.into_iter().zip(rows) {
+            groups[own].push(*row);
+        }
+        groups
     }
 
     /// What all of some rows have alike, in words: `compression gap 5.5 mm, load 230.3 kN`. Axes of `told` are not said.
@@ -88,17 +119,6 @@ impl<'a> Sheet<'a> {
         let skipped = |axis: &str| told.contains(&axis) || (placed && axis == "load_x_m");
         let axes = self.axes.iter().filter(|axis| !skipped(axis));
         axes.filter_map(of).collect()
-    }
-
-    /// The rows of a table by job, those of some jobs.
-    pub(super) fn rows_of(&self, table: &Table, jobs: &BTreeSet<u64>) -> HashMap<u64, Vec<usize>> {
-        let mut found: HashMap<u64, Vec<usize>> = HashMap::new();
-        for (row, job) in table.numbers("job").unwrap_or_default().iter().enumerate() {
-            if let Some(job) = job.map(|job| job as u64).filter(|job| jobs.contains(job)) {
-                found.entry(job).or_default().push(row);
-            }
-        }
-        found
     }
 
     /// The marks of a chart that belong to any of some rows.
@@ -124,6 +144,17 @@ impl<'a> Sheet<'a> {
         };
         self.marks.iter().filter(meant).filter_map(plotted).collect()
     }
+}
+
+/// The rows of a table by job.
+pub(super) fn rows_by_job(table: &Table) -> HashMap<u64, Vec<usize>> {
+    let mut found: HashMap<u64, Vec<usize>> = HashMap::new();
+    for (row, job) in table.numbers("job").unwrap_or_default().iter().enumerate() {
+        if let Some(job) = job {
+            found.entry(*job as u64).or_default().push(row);
+        }
+    }
+    found
 }
 
 /// Which marks are asked for, and in which units.

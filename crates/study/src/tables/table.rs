@@ -6,6 +6,8 @@ use polars::prelude::{DataFrame, DataType, PolarsError, PolarsResult};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::HashMap;
+use std::hash::Hash;
 
 /// A table of the results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -191,6 +193,18 @@ impl Table {
         cell.unwrap_or_default()
     }
 
+    /// Which of a column's distinct cells each row has, by their numbers from 0 in the order of their first row; none where
+    /// the cell is empty or the column not there.
+    pub fn codes(&self, column: &str) -> Vec<Option<u32>> {
+        match self.cells(column) {
+            // 0 and -0 are one number
+            Some(Cells::Numbers(list)) => numbered(list.iter().map(|cell| cell.map(|x| (x + 0.0).to_bits()))),
+            Some(Cells::Words(list)) => numbered(list.iter().map(Option::as_deref)),
+            Some(Cells::Flags(list)) => numbered(list.iter().copied()),
+            None => vec![None; self.rows],
+        }
+    }
+
     /// The distinct words of a column in the order of their first row; none where it holds no words.
     pub fn words(&self, column: &str) -> Vec<&str> {
         let mut words: Vec<&str> = Vec::new();
@@ -203,4 +217,14 @@ impl Table {
         }
         words
     }
+}
+
+/// Numbers distinct keys in the order in which they come.
+fn numbered<K: Eq + Hash>(keys: impl Iterator<Item = Option<K>>) -> Vec<Option<u32>> {
+    let mut known: HashMap<K, u32> = HashMap::new();
+    let mut number = |key: K| {
+        let next = known.len() as u32;
+        *known.entry(key).or_insert(next)
+    };
+    keys.map(|key| key.map(&mut number)).collect()
 }

@@ -240,6 +240,32 @@ fn a_table_without_rows_is_a_table() {
     assert_eq!(results.jobs().rows(), of.1.len());
 }
 
+/// Equal cells have one number, in the order of their first row; empty ones none.
+#[test]
+fn the_distinct_cells_of_a_column_are_numbered() {
+    let of = crossings();
+    let (records, _) = records(&of.0, &of.1);
+    let results = Results::of_run(&of.0, &of.1, &records, Path::new("r")).unwrap();
+    let jobs = results.jobs();
+    for axis in results.axes() {
+        let codes = jobs.codes(&axis);
+        let cells: Vec<Value> = (0..jobs.rows()).map(|row| jobs.cell(&axis, row)).collect();
+        let mut known: Vec<&Value> = Vec::new();
+        for (cell, code) in cells.iter().zip(&codes) {
+            if !cell.is_null() && !known.contains(&cell) {
+                known.push(cell);
+            }
+            assert_eq!(*code, known.iter().position(|k| *k == cell).map(|k| k as u32), "{axis}");
+        }
+    }
+    assert_eq!(
+        jobs.codes("connection")[..5],
+        [Some(0), Some(0), Some(0), Some(0), Some(1)]
+    );
+    assert_eq!(jobs.codes("gap_tension_m")[..5], [None, None, None, None, Some(0)]);
+    assert_eq!(jobs.codes("nothing"), vec![None; jobs.rows()]);
+}
+
 /// A row's job is its number and not its row, and a job that failed is known as such.
 #[test]
 fn rows_have_the_numbers_of_their_jobs_and_say_who_failed() {
