@@ -431,6 +431,60 @@ fn many_jobs_that_have_nothing_alike_are_points() {
 }
 
 #[test]
+fn what_no_figure_holds_is_told_of_those_that_are_drawn() {
+    let mut stage = Stage::new();
+    let gaps: Vec<f64> = (0..8).map(|i| 0.004 * f64::from(i)).collect();
+    stage.study["design"] = json!([{ "grid": { "gap_tension_m": gaps, "gap_compression_m": [0.0, 0.0055],
+        "load_n": [5e4, 1e5], "speed_m_s": [6, 7, 8, 9, 10, 11, 12] } }]);
+    stage.study["analysis"]["tail_s"] = json!(0.1);
+    stage.study["record"] = json!({ "histories": { "positions": [1, 2, 3], "joints": [2, 3] } });
+    stage.ran("r");
+    let made = figures(&stage, &[]);
+    assert_eq!(names(&made).len(), 40);
+    let left_out: Vec<&str> = list(&made["left_out"])
+        .iter()
+        .map(|line| line.as_str().unwrap())
+        .collect();
+    assert!(left_out.contains(&"by tension gap: 2 of 8 values"), "{left_out:?}");
+    // two loads are lines of their own
+    assert!(
+        !left_out
+            .iter()
+            .any(|line| line.contains("by load: ") && line.contains("values"))
+    );
+    let of_speeds = left_out.iter().filter_map(|line| line.strip_suffix(": 1 of 7 speeds"));
+    let mut of_speeds = of_speeds.peekable();
+    assert!(of_speeds.peek().is_some());
+    of_speeds.for_each(|name| assert!(names(&made).contains(&name), "{name}"));
+}
+
+#[test]
+fn names_are_short_enough_for_files_and_stay_distinct() {
+    let mut stage = Stage::new();
+    // lists whose words are alike over more than 60 letters
+    let alike = [1.25, 1.375].map(|last| {
+        json!([
+            -1.2345678, -0.8345678, -0.4345678, 0.0345678, 0.4345678, 0.8345678, last
+        ])
+    });
+    stage.study["design"] = json!([{ "grid": { "vehicle.track_y_m": alike, "bridge.connectors.y_m": alike, "load_n": [5e4, 1e5],
+        "bridge.connectors.stiffness_n_m": [1e8, 2e8], "gap_tension_m": [0.0, 0.028],
+        "gap_compression_m": [0.0, 0.0055], "speed_m_s": 10 } }]);
+    stage.study["analysis"]["tail_s"] = json!(0.1);
+    stage.study.as_object_mut().unwrap().remove("record");
+    stage.ran("r");
+    let made = figures(&stage, &[]);
+    let (all, distinct) = (names(&made), names(&made).into_iter().collect::<BTreeSet<_>>());
+    assert!(all.len() > 6 && distinct.len() == all.len(), "{all:?}");
+    // a dot before and `.svg.partial` after it while it is being written
+    assert!(all.iter().all(|name| name.len() <= 255 - 13), "{all:?}");
+    assert!(
+        all.iter().any(|name| name.len() > 190 && name.ends_with("-2")),
+        "{all:?}"
+    );
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused() {
     let mut stage = Stage::new();
     is_refused(

@@ -3,7 +3,7 @@
 //! Knows that with the linear connection the gaps have no meaning, so that one linear line is compared with every gap. Does
 //! not know what is drawn.
 
-use super::sheet::{Sheet, said};
+use super::sheet::{Sheet, said, spread};
 use crate::report::words;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -13,6 +13,10 @@ const GAPS: [&str; 2] = ["gap_tension_m", "gap_compression_m"];
 
 /// Lines of a figure, beside the linear one; and lines of a figure of all jobs.
 const MOST_LINES: usize = 6;
+
+/// Bytes of a name of files: a system takes 255 at most, of which a number, an ending and the marks of a file that is being
+/// written take some.
+const LONGEST_NAME: usize = 200;
 
 /// Families by one axis that become figures.
 const MOST_FAMILIES: usize = 6;
@@ -26,6 +30,8 @@ pub(super) struct Family {
     pub suffix: String,
     /// The lines.
     pub lines: Vec<FamilyLine>,
+    /// What no line holds, in words; to be said where the family is drawn.
+    pub left_out: Option<String>,
 }
 
 /// A line: one job, or where the figure runs along an axis, one job a value of it.
@@ -47,14 +53,16 @@ impl Family {
         self.lines.iter().flat_map(|line| line.rows.iter().copied()).collect()
     }
 
-    /// A name of files.
+    /// A name of files, which [`super::distinct`] tells from others that were cut to the same.
     pub(super) fn name(&self, of: &str) -> String {
         let by = self
             .by
             .as_ref()
             .map(|by| format!("-by-{}", plain(by)))
             .unwrap_or_default();
-        format!("{of}{by}{}", self.suffix)
+        let mut name = format!("{of}{by}{}", self.suffix);
+        name.truncate(name.floor_char_boundary(LONGEST_NAME));
+        name
     }
 }
 
@@ -161,7 +169,11 @@ fn family(sheet: &Sheet<'_>, by: &str, others: &[&String], named: &[&String], mu
     if GAPS.contains(&by) {
         lines.extend(linear_line(sheet, others, first));
     }
-    let chosen = super::sheet::spread(values.len(), MOST_LINES);
+    let chosen = spread(values.len(), MOST_LINES);
+    let left_out = (chosen.len() < values.len()).then(|| {
+        let left = values.len() - chosen.len();
+        format!("by {}: {left} of {} values", words::label(by), values.len())
+    });
     lines.extend(chosen.into_iter().enumerate().map(|(i, place)| FamilyLine {
         label: words::value(by, &sheet.cell(by, values[place][0])),
         style: i + 1,
@@ -171,6 +183,7 @@ fn family(sheet: &Sheet<'_>, by: &str, others: &[&String], named: &[&String], mu
         by: Some(by.to_owned()),
         suffix: suffix.collect(),
         lines,
+        left_out,
     }
 }
 
@@ -217,6 +230,7 @@ fn all_jobs(sheet: &Sheet<'_>, varying: &[String], groups: Vec<Vec<usize>>) -> F
         by: None,
         suffix: String::new(),
         lines: linear.into_iter().chain(others).enumerate().map(line).collect(),
+        left_out: None,
     }
 }
 

@@ -16,6 +16,17 @@ pub struct Figure {
     pub legend: String,
     /// Its panels in the order of reading.
     pub panels: Vec<Panel>,
+    /// What of its jobs it does not hold, in words; told with what no figure holds.
+    #[serde(skip)]
+    pub(super) left_out: Vec<String>,
+}
+
+impl Figure {
+    /// Whether it has nothing to show.
+    pub(super) fn is_empty(&self) -> bool {
+        let mut lines = self.panels.iter().flat_map(|panel| &panel.lines);
+        lines.all(|line| line.points.is_empty())
+    }
 }
 
 /// A pair of axes with what is drawn between them.

@@ -38,7 +38,7 @@ pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
         };
         for family in &families {
             let name = family.name(&format!("{stem}-{position}"));
-            let split = by_speed(sheet, family, &name);
+            let (split, left_out) = by_speed(sheet, family, &name);
             let channel = (quantity.clone(), position);
             let of = |split: &Split| panel(sheet, table, split, &channel, y, &recorded);
             let panels: Vec<Panel> = split.iter().map(of).filter(|panel| !panel.lines.is_empty()).collect();
@@ -50,6 +50,7 @@ pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
                 name,
                 legend: family.legend(),
                 panels,
+                left_out: family.left_out.clone().into_iter().chain(left_out).collect(),
             });
         }
     }

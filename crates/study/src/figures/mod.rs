@@ -92,12 +92,7 @@ impl Figures {
                 figures
             }
         };
-        figures.retain(|figure| {
-            figure
-                .panels
-                .iter()
-                .any(|panel| panel.lines.iter().any(|line| !line.points.is_empty()))
-        });
+        figures.retain(|figure| !figure.is_empty());
         if figures.len() > MOST_FIGURES {
             let names: Vec<&str> = figures[MOST_FIGURES..]
                 .iter()
@@ -109,6 +104,7 @@ impl Figures {
             figures.truncate(MOST_FIGURES);
         }
         let mut left_out = sheet.left_out.clone();
+        left_out.extend(figures.iter().flat_map(|figure| figure.left_out.iter().cloned()));
         left_out.extend(undrawn(&sheet, &figures));
         let mut said = std::collections::BTreeSet::new();
         left_out.retain(|line| said.insert(line.clone()));

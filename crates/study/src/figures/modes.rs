@@ -27,8 +27,9 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
         families.retain(|family| family.by.as_deref() == Some(MODEL));
     }
     let of_job = rows_by_job(table);
-    let (mut figures, mut left_out) = (Vec::new(), Vec::new());
+    let mut figures = Vec::new();
     for family in &families {
+        let mut left_out: Vec<String> = family.left_out.clone().into_iter().collect();
         let name = family.name("frequencies");
         let of_line = |line: &FamilyLine| of_job.get(&sheet.job(line.rows[0])).cloned().unwrap_or_default();
         let mut shapes = shapes(table, family, &of_line);
@@ -79,9 +80,9 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
             name,
             legend: family.legend(),
             panels: vec![panel],
+            left_out,
         });
     }
-    sheet.left_out.extend(left_out);
     figures
 }
 

@@ -24,8 +24,9 @@ pub(super) struct SplitLine {
     pub row: usize,
 }
 
-/// A panel a speed, at most [`MOST_PANELS`], evenly spread over the speeds. `name` is the figure's, for what is left out.
-pub(super) fn by_speed(sheet: &mut Sheet<'_>, family: &Family, name: &str) -> Vec<Split> {
+/// A panel a speed, at most [`MOST_PANELS`], evenly spread over the speeds; and what none holds, in words, to be said where
+/// the figure of that `name` is drawn.
+pub(super) fn by_speed(sheet: &Sheet<'_>, family: &Family, name: &str) -> (Vec<Split>, Option<String>) {
     let mut speeds: Vec<(f64, Vec<SplitLine>)> = Vec::new();
     let mut place: BTreeMap<u64, usize> = BTreeMap::new();
     for line in &family.lines {
@@ -46,10 +47,8 @@ pub(super) fn by_speed(sheet: &mut Sheet<'_>, family: &Family, name: &str) -> Ve
     }
     speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
     let chosen = spread(speeds.len(), MOST_PANELS);
-    if chosen.len() < speeds.len() {
-        let left_out = format!("{name}: {} of {} speeds", speeds.len() - chosen.len(), speeds.len());
-        sheet.left_out.push(left_out);
-    }
+    let left_out = (chosen.len() < speeds.len())
+        .then(|| format!("{name}: {} of {} speeds", speeds.len() - chosen.len(), speeds.len()));
     let mut splits: Vec<Option<Split>> = speeds
         .into_iter()
         .map(|(speed_m_s, lines)| {
@@ -65,7 +64,7 @@ pub(super) fn by_speed(sheet: &mut Sheet<'_>, family: &Family, name: &str) -> Ve
         }
         Some(split)
     };
-    chosen.into_iter().filter_map(&mut split).collect()
+    (chosen.into_iter().filter_map(&mut split).collect(), left_out)
 }
 
 /// What a paper would write under a figure: what is drawn, for what, under which conditions, what panels and marks are.

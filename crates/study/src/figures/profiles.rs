@@ -57,6 +57,7 @@ pub(super) fn deflected(sheet: &mut Sheet<'_>) -> Vec<Figure> {
             ),
             legend: family.legend(),
             panels: vec![panel],
+            left_out: family.left_out.clone().into_iter().collect(),
         }
     };
     families.iter().map(figure).collect()
@@ -72,7 +73,7 @@ pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     let mut figures = Vec::new();
     for family in &families {
         let name = family.name("envelope-along-bridge");
-        let split = by_speed(sheet, family, &name);
+        let (split, left_out) = by_speed(sheet, family, &name);
         let panels: Vec<Panel> = split
             .iter()
             .map(|split| envelope(sheet, table, &of_job, split))
@@ -87,6 +88,7 @@ pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
             name,
             legend: family.legend(),
             panels,
+            left_out: family.left_out.clone().into_iter().chain(left_out).collect(),
         });
     }
     figures

@@ -58,6 +58,7 @@ pub(super) fn speeds(sheet: &mut Sheet<'_>) -> Vec<Figure> {
                 caption: caption_of(sheet, family, what),
                 legend: family.legend(),
                 panels,
+                left_out: family.left_out.clone().into_iter().collect(),
             });
         }
     }
@@ -69,16 +70,9 @@ fn caption_of(sheet: &Sheet<'_>, family: &Family, what: &str) -> String {
 }
 
 /// All jobs as points.
-fn points(sheet: &mut Sheet<'_>) -> Family {
-    let chosen = spread(sheet.rows.len(), MOST_POINTS);
-    if chosen.len() < sheet.rows.len() {
-        let left_out = format!(
-            "peaks against speed: {} of {} jobs",
-            sheet.rows.len() - chosen.len(),
-            sheet.rows.len()
-        );
-        sheet.left_out.push(left_out);
-    }
+fn points(sheet: &Sheet<'_>) -> Family {
+    let (all, chosen) = (sheet.rows.len(), spread(sheet.rows.len(), MOST_POINTS));
+    let left_out = (chosen.len() < all).then(|| format!("peaks against speed: {} of {all} jobs", all - chosen.len()));
     Family {
         by: None,
         suffix: String::new(),
@@ -87,6 +81,7 @@ fn points(sheet: &mut Sheet<'_>) -> Family {
             style: 1,
             rows: chosen.into_iter().map(|i| sheet.rows[i]).collect(),
         }],
+        left_out,
     }
 }
 
