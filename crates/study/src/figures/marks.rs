@@ -86,8 +86,9 @@ pub fn marks(results: &Results, reference: &Reference) -> Result<Vec<Mark>, Refu
         }
         found.extend(of_measured(group));
     }
+    let places = Places::new(results);
     for check in &reference.spec.checks {
-        let expected = of_check(results, check);
+        let expected = of_check(&places, check);
         let new: Vec<Mark> = expected
             .into_iter()
             .filter(|mark| !found.iter().any(|other| same_point(other, mark)))
@@ -138,17 +139,17 @@ fn of_measured(group: &MeasuredSpec) -> impl Iterator<Item = Mark> {
 }
 
 /// What a check expects, where that is a point of a chart.
-fn of_check(results: &Results, check: &CheckSpec) -> Vec<Mark> {
+fn of_check(places: &Places<'_>, check: &CheckSpec) -> Vec<Mark> {
     if !check.each.is_empty() {
         return Vec::new();
     }
     match check.kind() {
         Some(CheckKind::Value(value)) => match (&value.of, value.expected) {
-            (Quantity::Select(select), Some(y)) => of_select(results, check, select, y, Origin::Expected),
+            (Quantity::Select(select), Some(y)) => of_select(places, check, select, y, Origin::Expected),
             _ => Vec::new(),
         },
         Some(CheckKind::Measured(measured)) => match &measured.of {
-            Quantity::Select(select) => of_select(results, check, select, measured.value, Origin::Measured),
+            Quantity::Select(select) => of_select(places, check, select, measured.value, Origin::Measured),
             _ => Vec::new(),
         },
         Some(CheckKind::Curve(curve)) => of_curve(check, curve),
@@ -156,7 +157,7 @@ fn of_check(results: &Results, check: &CheckSpec) -> Vec<Mark> {
     }
 }
 
-fn of_select(results: &Results, check: &CheckSpec, select: &SelectQuantity, y: f64, origin: Origin) -> Vec<Mark> {
+fn of_select(places: &Places<'_>, check: &CheckSpec, select: &SelectQuantity, y: f64, origin: Origin) -> Vec<Mark> {
     let Some((position, mut axes)) = place_and_axes(&select.filter.within(&check.filter)) else {
         return Vec::new();
     };
@@ -181,7 +182,7 @@ fn of_select(results: &Results, check: &CheckSpec, select: &SelectQuantity, y: f
     }
     let mut marks = Vec::new();
     if let (TableName::Positions, Some(position)) = (select.table, position) {
-        marks.push(mark(Chart::Profile, x_of(results, position, &axes), axes.clone()));
+        marks.push(mark(Chart::Profile, places.x_m(position, &axes), axes.clone()));
     }
     let placed = position.is_some() || select.table == TableName::Jobs;
     if placed && let Some(speed_m_s) = axes.remove("speed_m_s").as_ref().and_then(Value::as_f64) {
@@ -237,15 +238,35 @@ fn place_and_axes(filter: &Filter) -> Option<(Option<u32>, BTreeMap<String, Valu
     Some((position, axes))
 }
 
-/// Where along the bridge a position is, in the first job that has the axes.
-fn x_of(results: &Results, position: u32, axes: &BTreeMap<String, Value>) -> Option<f64> {
-    let table = results.table(TableName::Positions)?;
-    let fits = |row: &usize| {
-        let job = table.number("job", *row).and_then(|job| results.row_of_job(job as u64));
-        let allows = |(axis, value): (&String, &Value)| {
-            job.is_some_and(|job| same_value(value, &results.jobs().cell(axis, job)))
+/// Where along the bridge positions are: of each its rows' jobs, by their row in the table of jobs, and `x_m`.
+struct Places<'a> {
+    results: &'a Results,
+    of_position: BTreeMap<u32, Vec<(usize, f64)>>,
+}
+
+impl<'a> Places<'a> {
+    fn new(results: &'a Results) -> Self {
+        let mut of_position: BTreeMap<u32, Vec<(usize, f64)>> = BTreeMap::new();
+        let table = results.table(TableName::Positions);
+        let column = |name| table.and_then(|table| table.numbers(name)).unwrap_or_default();
+        for ((job, position), x_m) in column("job").iter().zip(column("position")).zip(column("x_m")) {
+            if let (Some(job), Some(position), Some(x_m)) = (job, position, x_m)
+                && let Some(row) = results.row_of_job(*job as u64)
+            {
+                of_position.entry(*position as u32).or_default().push((row, *x_m));
+            }
+        }
+        Self { results, of_position }
+    }
+
+    /// Where a position is in the first job that has the axes.
+    fn x_m(&self, position: u32, axes: &BTreeMap<String, Value>) -> Option<f64> {
+        let jobs = self.results.jobs();
+        let has = |row: usize| {
+            axes.iter()
+                .all(|(axis, value)| same_value(value, &jobs.cell(axis, row)))
         };
-        table.number("position", *row) == Some(f64::from(position)) && axes.iter().all(allows)
-    };
-    table.number("x_m", (0..table.rows()).find(fits)?)
+        let (_, x_m) = self.of_position.get(&position)?.iter().find(|(row, _)| has(*row))?;
+        Some(*x_m)
+    }
 }
