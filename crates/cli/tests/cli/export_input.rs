@@ -207,11 +207,14 @@ fn whatever_fails_the_folder_is_the_old_one_or_the_new_one() {
             if earlier {
                 exported(&stage, &earlier_one);
             }
-            assert_ne!(
-                export_with(&stage, &format!("export.renamed:1:{how}")).status.code(),
-                Some(0)
-            );
+            let output = export_with(&stage, &format!("export.renamed:1:{how}"));
+            assert_ne!(output.status.code(), Some(0));
             assert_eq!(contents(&stage.path("vtk")), new, "{how}");
+            if how == "error" {
+                let told = stderr(&output);
+                assert!(told.contains("the new folder is in its place"), "{told}");
+                assert_eq!(stage.names(), ["bridge.json", "study.json", "vtk"]);
+            }
             fs::remove_dir_all(stage.path("vtk")).unwrap();
         }
         // what died processes gathered goes with the next export

@@ -18,6 +18,10 @@ use std::sync::Arc;
 /// The file that says what a folder holds; by its list of files an earlier export is known.
 pub(super) const CONTENTS: &str = "export.json";
 
+/// How a hidden name ends: of a folder that is gathered, and of the old one while the two take each other's place.
+const PARTIAL: &str = "partial";
+const ASIDE: &str = "aside";
+
 /// A folder being gathered. One that is dropped before it is placed leaves nothing.
 #[derive(Debug)]
 pub(super) struct WholeFolder {
@@ -48,7 +52,7 @@ impl WholeFolder {
         };
         let parent = place.parent().unwrap_or(Path::new("")).to_owned();
         remove_dead(&parent, &name);
-        let gathered = parent.join(format!(".{name}.{}.partial", std::process::id()));
+        let gathered = parent.join(format!(".{name}.{}.{PARTIAL}", std::process::id()));
         let begin = || {
             fs::create_dir(&gathered)?;
             let lock = File::open(&gathered)?;
@@ -105,7 +109,7 @@ impl WholeFolder {
     /// Writes what the folder holds and puts it in its place, an earlier export's out of it.
     ///
     /// # Errors
-    /// As [`Self::begin`]; what was there before is there still.
+    /// As [`Self::begin`]. What was there before is there still, but where the words say that the new folder is in its place.
     pub(super) fn place(mut self, mut contents: Value) -> Result<usize, ExportError> {
         self.files.insert(CONTENTS.to_owned());
         contents["files"] = json!(self.files);
@@ -125,11 +129,21 @@ impl WholeFolder {
             fs::rename(&self.gathered, &self.place)?;
         }
         self.placed = true;
-        fault::at("export.renamed")?;
+        let synced = self.synced();
         if replaces {
             // the new folder is in its place: what stays of the old one is out of the way
             let _ = fs::remove_dir_all(&self.gathered);
         }
+        synced.map_err(|cause| {
+            let words =
+                format!("the new folder is in its place and whole, but may not outlast a loss of power: {cause}");
+            io::Error::new(cause.kind(), words)
+        })
+    }
+
+    /// Syncs the folder in which the place is.
+    fn synced(&self) -> io::Result<()> {
+        fault::at("export.renamed")?;
         let parent = self.place.parent().filter(|parent| !parent.as_os_str().is_empty());
         File::open(parent.unwrap_or(Path::new(".")))?.sync_all()
     }
@@ -144,7 +158,15 @@ fn exchange(new: &Path, old: &Path) -> io::Result<()> {
             return Ok(());
         }
     }
-    let aside = new.with_extension("aside");
+    take_turns(new, old)
+}
+
+/// The same in three steps. Who dies between them leaves the old folder under a name by which [`remove_dead`] finds it.
+fn take_turns(new: &Path, old: &Path) -> io::Result<()> {
+    // held as long as the steps last, so that nobody takes the old folder for a dead one's
+    let lock = File::open(old)?;
+    lock.lock()?;
+    let aside = new.with_extension(ASIDE);
     fs::rename(old, &aside)?;
     if let Err(cause) = fs::rename(new, old) {
         fs::rename(&aside, old)?;
@@ -204,7 +226,8 @@ fn files_of(folder: &Path) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
-/// Removes what processes gathered for this place and died over; that something of it stays changes nothing.
+/// Removes what processes gathered for this place and died over; that something of it stays changes nothing. An old folder
+/// that one of them had put aside is put back where nothing is in its place.
 fn remove_dead(parent: &Path, name: &str) {
     let here = if parent.as_os_str().is_empty() {
         Path::new(".")
@@ -214,14 +237,21 @@ fn remove_dead(parent: &Path, name: &str) {
     let start = format!(".{name}.");
     for entry in fs::read_dir(here).into_iter().flatten().flatten() {
         let found = entry.file_name().to_string_lossy().into_owned();
-        let number = found
-            .strip_prefix(&start)
-            .and_then(|rest| rest.strip_suffix(".partial"));
-        if !number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())) {
+        let Some((number, end)) = found.strip_prefix(&start).and_then(|rest| rest.split_once('.')) else {
+            continue;
+        };
+        let numbered = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+        if !numbered || ![PARTIAL, ASIDE].contains(&end) {
             continue;
         }
         let dead = File::open(entry.path()).is_ok_and(|folder| folder.try_lock().is_ok());
-        if dead {
+        if !dead {
+            continue;
+        }
+        let place = here.join(name);
+        if end == ASIDE && !place.exists() {
+            let _ = fs::rename(entry.path(), place);
+        } else {
             let _ = fs::remove_dir_all(entry.path());
         }
     }
@@ -286,5 +316,50 @@ mod tests {
         remove_dead(dir.path(), "vtk");
         assert_eq!(names(dir.path()), [own.as_str(), ".vtk.notes.partial"]);
         drop(folder);
+    }
+    /// On a file system that cannot exchange two folders at once.
+    #[test]
+    fn folders_take_turns_where_they_cannot_be_exchanged_at_once() {
+        let dir = tempfile::tempdir().unwrap();
+        let (new, old) = (dir.path().join(".vtk.1.partial"), dir.path().join("vtk"));
+        for (folder, file) in [(&new, "new"), (&old, "old")] {
+            fs::create_dir(folder).unwrap();
+            fs::write(folder.join(file), "").unwrap();
+        }
+        take_turns(&new, &old).unwrap();
+        assert_eq!(
+            (names(&old), names(&new)),
+            (vec!["new".to_owned()], vec!["old".to_owned()])
+        );
+        assert_eq!(names(dir.path()), [".vtk.1.partial", "vtk"]);
+        // the new folder cannot take its place: the old one is back in it
+        fs::remove_dir_all(&new).unwrap();
+        take_turns(&new, &old).unwrap_err();
+        assert_eq!(
+            (names(&old), names(dir.path())),
+            (vec!["new".to_owned()], vec!["vtk".to_owned()])
+        );
+    }
+
+    #[test]
+    fn an_export_that_a_dead_process_put_aside_is_put_back() {
+        let dir = tempfile::tempdir().unwrap();
+        let to = dir.path().join("vtk");
+        export(&to, &["a.vtu"]).unwrap();
+        // dead after the first of its three steps
+        fs::create_dir(dir.path().join(".vtk.1.partial")).unwrap();
+        fs::rename(&to, dir.path().join(".vtk.1.aside")).unwrap();
+        let folder = WholeFolder::begin(&to).unwrap();
+        assert_eq!(names(&to), ["a.vtu", CONTENTS]);
+        drop(folder);
+        assert_eq!(names(dir.path()), ["vtk"]);
+        // dead after the second
+        fs::create_dir(dir.path().join(".vtk.1.aside")).unwrap();
+        fs::write(dir.path().join(".vtk.1.aside/b.vtu"), "").unwrap();
+        assert_eq!(export(&to, &["c.vtu"]).unwrap(), 2);
+        assert_eq!(
+            (names(&to), names(dir.path())),
+            (vec!["c.vtu".to_owned(), CONTENTS.to_owned()], vec!["vtk".to_owned()])
+        );
     }
 }
