@@ -225,6 +225,25 @@ fn whatever_fails_the_folder_is_the_old_one_or_the_new_one() {
 }
 
 #[test]
+fn modes_of_a_mesh_that_is_too_large_are_refused_with_the_key_that_is_too_large() {
+    let mut stage = Stage::new();
+    stage.bridge["modules"] = json!(220);
+    stage.study["analysis"] = json!({ "kind": "static" });
+    stage.study["design"] = json!([{ "cases": [{ "load_n": 1e5, "load_position": 2 }] }]);
+    stage.study.as_object_mut().unwrap().remove("record");
+    stage.ran("r");
+    let told = stage.pontoon(&["export", "r", "--to", "vtk"]);
+    assert_eq!(told.status.code(), Some(2));
+    let told = stderr(&told);
+    assert!(told.contains("r: bridge.module.mesh: found a mesh of"), "{told}");
+    assert!(
+        told.contains("allowed: ") && told.ends_with(", or --count 0: no modes\n"),
+        "{told}"
+    );
+    exported(&stage, &["r", "--to", "vtk", "--count", "0"]);
+}
+
+#[test]
 fn a_folder_that_cannot_be_made_is_told_with_its_name() {
     let stage = Stage::new();
     let output = stage

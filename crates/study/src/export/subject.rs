@@ -184,7 +184,10 @@ impl Subject {
         };
         if let Some(modes) = modes {
             let size = design.check_size(modes.model);
-            size.map_err(|refused| Refusal::of(source, "--count 0 exports no modes; bridge", refused))?;
+            size.map_err(|mut refused| {
+                refused.allowed += ", or --count 0: no modes";
+                Refusal::of(source, "bridge", refused)
+            })?;
         }
         Ok(Self {
             source: source.to_owned(),
