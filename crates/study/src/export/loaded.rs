@@ -3,18 +3,19 @@
 //! Knows which instants of a crossing are shown. Does not know the format.
 
 use super::pictures::Pictures;
-use super::ready::{Ready, crossing_of};
+use super::ready::Ready;
 use super::series::Series;
 use super::subject::{CrossingWanted, StaticWanted, Subject};
 use super::vtk::{Array, Counter, Grid, Values};
 use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};
 use crate::refusal::Refusal;
-use pontoon_core::analysis::AnalysisError;
+use crate::run::{RETRY_STEP_SHARE, half_step_may_help};
 use pontoon_core::analysis::crossing::CrossingSettings;
 use pontoon_core::analysis::snapshot::Snapshot;
 use pontoon_core::analysis::statics::StaticSolver;
 use pontoon_core::bridge::Ends;
+use pontoon_core::response::Record;
 
 /// Instants of a crossing in a second, where nothing else is asked for.
 const INSTANTS_A_SECOND: f64 = 20.0;
@@ -121,21 +122,13 @@ pub(super) fn crossing(
         ready: &ready,
         note,
     };
-    let unsettled = |error: &ExportError| {
-        let of = |error: &AnalysisError| {
-            matches!(
-                error,
-                AnalysisError::NotConverged { .. } | AnalysisError::NotFinite { .. }
-            )
-        };
-        matches!(error, ExportError::Analysis(error) if of(error))
-    };
+    let unsettled = |error: &ExportError| matches!(error, ExportError::Analysis(error) if half_step_may_help(error));
     match passage.write(&settings, every, folder) {
         Err(error) if unsettled(&error) => {
             note(&format!("{error}: once more at half the time step"));
             folder.clear();
             let half = CrossingSettings {
-                time_step_s: 0.5 * settings.time_step_s,
+                time_step_s: RETRY_STEP_SHARE * settings.time_step_s,
                 ..settings
             };
             passage.write(&half, every.saturating_mul(2), folder)
@@ -161,7 +154,10 @@ impl Passage<'_> {
     ) -> Result<[Part; 3], ExportError> {
         let pictures = Pictures::of(self.ready);
         let solver = self.ready.solver(settings)?;
-        let (vehicle, crossing) = (&self.wanted.job.vehicle.vehicle, crossing_of(self.wanted));
+        let (vehicle, crossing) = (
+            &self.wanted.job.vehicle.vehicle,
+            self.wanted.job.crossing(Record::default()),
+        );
         let mut under = solver.begin(vehicle, &crossing);
         let steps = under.steps();
         let instants = 1 + steps.div_ceil(every);

@@ -4,11 +4,9 @@
 
 use super::ExportError;
 use super::subject::CrossingWanted;
-use crate::plan::Task;
-use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
+use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::{bending_frequencies_hz, rayleigh};
 use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
-use pontoon_core::response::Record;
 use std::sync::Arc;
 
 /// A bridge with its mesh.
@@ -48,10 +46,7 @@ impl Ready {
         };
         let settings = CrossingSettings {
             time_step_s: wanted.time_step_s,
-            spectral_radius: spec.spectral_radius.unwrap_or_default(),
-            rayleigh: rayleigh(damping.ratio, frequencies_hz),
-            newton_limit: spec.newton_limit.unwrap_or_default(),
-            bisection_limit: spec.bisection_limit.unwrap_or_default(),
+            ..wanted.job.settings(rayleigh(damping.ratio, frequencies_hz))
         };
         Ok((Self::of(design, &module, Ends::Supported)?, settings))
     }
@@ -62,22 +57,5 @@ impl Ready {
     /// [`ExportError::Analysis`].
     pub(super) fn solver(&self, settings: &CrossingSettings) -> Result<CrossingSolver, ExportError> {
         Ok(CrossingSolver::new(&self.bridge, settings)?)
-    }
-}
-
-/// The crossing of a job.
-pub(super) fn crossing_of(wanted: &CrossingWanted) -> Crossing {
-    let job = &wanted.job;
-    let speed_m_s = match job.task {
-        Task::Crossing { speed_m_s } => speed_m_s,
-        _ => 0.0,
-    };
-    Crossing {
-        connection: job.connection,
-        connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
-        load_n: job.load_n,
-        speed_m_s,
-        tail_s: job.analysis.spec.tail_s.unwrap_or_default(),
-        record: Record::default(),
     }
 }

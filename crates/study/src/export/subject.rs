@@ -5,6 +5,7 @@
 use super::{ExportError, LoadRequest, Request};
 use crate::plan::{Job, Jobs, Task};
 use crate::refusal::Refusal;
+use crate::run::RETRY_STEP_SHARE;
 use crate::spec::{ModelSpec, Study, read_bridge};
 use crate::tables::{Results, Table};
 use pontoon_core::analysis::statics::StaticCase;
@@ -226,15 +227,14 @@ fn largest(source: &Path, results: &Results) -> Result<usize, Refusal> {
     })
 }
 
-/// The time step of a job's answer: its analysis's, the one that was found for it, or half of it where a reason says that its
-/// contacts had not settled before.
+/// The time step of a job's answer: the one that was found for it or its analysis's, or half of it where a reason says that
+/// its contacts had not settled before.
 fn time_step_s(job: &Job, table: &Table, row: usize) -> f64 {
-    let stated = job.analysis.spec.time_step_s.map(|step| step.seconds());
-    let own = table.number("time_step_s", row).or(stated).unwrap_or_default();
+    let own_s = table.number("time_step_s", row).unwrap_or_else(|| job.time_step_s());
     if table.cell("reason", row).is_string() {
-        0.5 * own
+        RETRY_STEP_SHARE * own_s
     } else {
-        own
+        own_s
     }
 }
 

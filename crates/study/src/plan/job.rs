@@ -4,9 +4,11 @@
 
 use super::documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
 use crate::document::{DocumentPath, canonical};
-use crate::spec::{SolverSpec, VerifySpec};
-use pontoon_core::analysis::crossing::CrossingSolver;
+use crate::spec::{SolverSpec, TimeStepSpec, VerifySpec};
+use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
+use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::connector::Connection;
+use pontoon_core::response::Record;
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -66,6 +68,39 @@ impl Job {
             ),
             _ => 0,
         }
+    }
+
+    /// The crossing, of which a record is kept.
+    pub fn crossing(&self, record: Record) -> Crossing {
+        let speed_m_s = match self.task {
+            Task::Crossing { speed_m_s } => speed_m_s,
+            _ => 0.0,
+        };
+        Crossing {
+            connection: self.connection,
+            connector_stiffness_n_m: self.bridge.design.connectors.stiffness_n_m,
+            load_n: self.load_n,
+            speed_m_s,
+            tail_s: self.analysis.spec.tail_s.unwrap_or_default(),
+            record,
+        }
+    }
+
+    /// The settings of its crossing's solver, with the damping of its bridge.
+    pub fn settings(&self, rayleigh: Rayleigh) -> CrossingSettings {
+        let spec = &self.analysis.spec;
+        CrossingSettings {
+            time_step_s: self.time_step_s(),
+            spectral_radius: spec.spectral_radius.unwrap_or_default(),
+            rayleigh,
+            newton_limit: spec.newton_limit.unwrap_or_default(),
+            bisection_limit: spec.bisection_limit.unwrap_or_default(),
+        }
+    }
+
+    /// The time step that its study states, the first one where the program is to find it; 0 of what is no crossing [s].
+    pub fn time_step_s(&self) -> f64 {
+        self.analysis.spec.time_step_s.map_or(0.0, TimeStepSpec::seconds)
     }
 
     /// Whether it is a crossing by the operator.

@@ -3,6 +3,7 @@
 //! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
 
 use super::cache::{Cache, Found};
+use super::crossing::RETRY_STEP_SHARE;
 use super::guard::guarded;
 use super::progress::Progress;
 use super::stop::Stop;
@@ -261,18 +262,12 @@ impl Bench {
     /// The reference solver of a crossing at half its time step, made anew.
     pub(super) fn crossing_at_half_step(&self, job: &Job) -> Result<CrossingSolver, String> {
         let mut settings = self.settings(job)?;
-        settings.time_step_s *= 0.5;
+        settings.time_step_s *= RETRY_STEP_SHARE;
         CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &settings).map_err(text)
     }
 
     fn settings(&self, job: &Job) -> Result<CrossingSettings, String> {
-        Ok(CrossingSettings {
-            time_step_s: job.analysis.spec.time_step_s.map_or(0.0, TimeStepSpec::seconds),
-            spectral_radius: job.analysis.spec.spectral_radius.unwrap_or_default(),
-            rayleigh: shared(&self.damping, &damping_key(job))?.coefficients,
-            newton_limit: job.analysis.spec.newton_limit.unwrap_or_default(),
-            bisection_limit: job.analysis.spec.bisection_limit.unwrap_or_default(),
-        })
+        Ok(job.settings(shared(&self.damping, &damping_key(job))?.coefficients))
     }
 
     /// The static peaks of creeping loads; cases of one vehicle on one bridge share what it does at its places, which is let

@@ -2,12 +2,23 @@
 
 use super::bench::Bench;
 use super::record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
-use crate::plan::{Job, Task};
+use crate::plan::Job;
 use crate::spec::TimeStepSpec;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::response::{CrossingResponse, Quantity, Record};
 use pontoon_core::vehicle::Vehicle;
+
+/// The time step at which a crossing is solved once more, as a share of its own.
+pub(crate) const RETRY_STEP_SHARE: f64 = 0.5;
+
+/// Whether a crossing that failed so is solved once more at half its time step: its contacts did not settle.
+pub(crate) fn half_step_may_help(error: &AnalysisError) -> bool {
+    matches!(
+        error,
+        AnalysisError::NotConverged { .. } | AnalysisError::NotFinite { .. }
+    )
+}
 
 /// Why a job failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,10 +41,7 @@ impl From<String> for Failure {
 impl From<AnalysisError> for Failure {
     fn from(error: AnalysisError) -> Self {
         Self {
-            half_step_may_help: matches!(
-                error,
-                AnalysisError::NotConverged { .. } | AnalysisError::NotFinite { .. }
-            ),
+            half_step_may_help: half_step_may_help(&error),
             reason: error.to_string(),
         }
     }
@@ -44,13 +52,13 @@ pub(super) type Solved = Result<JobRecord, Failure>;
 
 /// Solves the crossing of a job by the reference solver.
 pub(super) fn solve(job: &Job, record: Record, bench: &Bench) -> Solved {
-    let solved = bench.crossing(job)?.solve(&job.vehicle.vehicle, &crossing(job, record));
+    let solved = bench.crossing(job)?.solve(&job.vehicle.vehicle, &job.crossing(record));
     Ok(recorded(job, solved?, bench)?)
 }
 
 /// Solves a crossing that failed once more at half its time step.
 pub(super) fn again_at_half_step(job: &Job, record: Record, bench: &Bench, failure: &Failure) -> Solved {
-    let (vehicle, crossing) = (&job.vehicle.vehicle, crossing(job, record));
+    let (vehicle, crossing) = (&job.vehicle.vehicle, job.crossing(record));
     let again = if job.by_operator() {
         let mut answers = bench.operated(job)?.solve_all(&[(vehicle, &crossing)], 1);
         answers.pop().ok_or_else(|| "program error: no answer".to_owned())?
@@ -72,7 +80,7 @@ pub(super) fn solve_crew(crew: &[(&Job, Record)], bench: &Bench) -> Vec<Solved> 
         Ok(solver) => solver,
         Err(reason) => return crew.iter().map(|_| Err(reason.clone().into())).collect(),
     };
-    let crossings: Vec<Crossing> = crew.iter().map(|(job, record)| crossing(job, record.clone())).collect();
+    let crossings: Vec<Crossing> = crew.iter().map(|(job, record)| job.crossing(record.clone())).collect();
     let asked: Vec<(&Vehicle, &Crossing)> = crew
         .iter()
         .zip(&crossings)
@@ -150,21 +158,6 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
         .iter()
         .map(|j| j.sum.compression.value.max(j.sum.tension.value));
     of_joint.fold(0.0, f64::max)
-}
-
-fn crossing(job: &Job, record: Record) -> Crossing {
-    let speed_m_s = match job.task {
-        Task::Crossing { speed_m_s } => speed_m_s,
-        _ => 0.0,
-    };
-    Crossing {
-        connection: job.connection,
-        connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
-        load_n: job.load_n,
-        speed_m_s,
-        tail_s: job.analysis.spec.tail_s.unwrap_or_default(),
-        record,
-    }
 }
 
 fn recorded(job: &Job, response: CrossingResponse, bench: &Bench) -> Result<JobRecord, String> {

@@ -24,6 +24,7 @@ mod watch;
 pub use bench::{BridgeReport, OperatorCounts, PreparedModules};
 pub use cache::Cache;
 pub use canary::CanaryError;
+pub(crate) use crossing::{RETRY_STEP_SHARE, half_step_may_help};
 pub use cut::Batch;
 pub use ledger::Ledger;
 pub(crate) use outcome::words as words_of_reason;
