@@ -6,9 +6,9 @@ use pontoon_core::analysis::crossing::CrossingSolver;
 use pontoon_core::analysis::modes::modes;
 use pontoon_core::analysis::snapshot::Snapshot;
 use pontoon_core::analysis::statics::StaticSolver;
-use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
+use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule, Track};
 use pontoon_core::connector::{Connection, State};
-use pontoon_core::fem::{DOFS_PER_NODE, MassKind, SymmetricMatrix, assemble};
+use pontoon_core::fem::{DOFS_PER_NODE, MassKind, SparseRow, SymmetricMatrix, assemble};
 use pontoon_core::module::mesh_module;
 use pontoon_core::vehicle::Inertia;
 use pontoon_core::water::spread;
@@ -164,11 +164,13 @@ fn a_mode_on_the_mesh_has_its_frequency() {
 
 /// The state between steps is that of the histories, a point's forces are the axle's, and a connector's state is that of its
 /// force. Hinges and connectors of a joint balance but for the inertia along the bridge, and for what the scheme balances between
-/// two steps and not at their ends: 2 % of the largest force, 1 % found.
+/// two steps and not at their ends: 1 % of the largest force, 0.5 % found. Twin: hinges. The deck under a point moves as the track's
+/// row says, 1e-12 m beside centimetres: the same sum of the same nodes. Twin: a column further.
 #[test]
 fn a_crossing_looked_at_is_the_one_that_is_solved() {
     let design = design("smoke");
     let whole = whole(&design, Model::SuperElement, Ends::Supported);
+    let track = Track::new(&whole.bridge);
     let setup = Ready::new(&design, Model::SuperElement);
     for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
         let vehicle = footprint(&[-1.4, 1.4], inertia);
@@ -191,17 +193,16 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
             .compression
             .value
             .max(solved.joints[0].sum.tension.value);
+        let (mut unbalanced, mut unbalanced_twin) = (0.0_f64, 0.0_f64);
+        let (mut off_deck, mut off_deck_twin) = (0.0_f64, 0.0_f64);
         for (i, state) in states.iter().enumerate() {
             assert_eq!(state.time_s, solved.history_time_s[i]);
             let joint: f64 = state.connectors[..2].iter().map(|c| c.force_n).sum();
             assert_eq!(joint, solved.histories[2].values[i]);
             let hinged = whole.meshed.hinge_forces_n(&state.elastic, state.inertial.as_deref());
-            let balance = joint + hinged[..3].iter().sum::<f64>();
-            assert!(
-                balance.abs() < 0.02 * largest,
-                "{balance} of {largest} at {}",
-                state.time_s
-            );
+            let hinged: f64 = hinged[..3].iter().sum();
+            unbalanced = unbalanced.max((joint + hinged).abs() / largest);
+            unbalanced_twin = unbalanced_twin.max((joint + 1.05 * hinged).abs() / largest);
             for connector in &state.connectors {
                 let sense = match connector.state {
                     State::Open => connector.force_n == 0.0,
@@ -230,10 +231,17 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
                     .min(smallest);
                 for wheel in &state.wheels {
                     let row = wheel.row.as_ref().expect("on the bridge");
-                    assert!(whole.meshed.of_deck_m(row, &moved)[2].abs() < 1.0);
+                    let by_row: f64 = row.0.iter().map(|&(c, part)| part * state.u[track.dof(c)]).sum();
+                    let off = |row: &SparseRow| (whole.meshed.of_deck_m(row, &moved)[2] - by_row).abs();
+                    off_deck = off_deck.max(off(row));
+                    let shifted = row.0.iter().map(|&(c, part)| ((c + 1) % track.columns(), part));
+                    let shifted = SparseRow(shifted.collect());
+                    off_deck_twin = off_deck_twin.max(off(&shifted));
                 }
             }
         }
+        held("forces of a joint", 0.01, unbalanced, unbalanced_twin);
+        held("deck under a point", 1e-12, off_deck, off_deck_twin);
         // steps were not halved, so that the smallest force is one of those seen
         assert_eq!(solved.statistics.bisections, 0);
         let told = solved.min_contact_force_n;
