@@ -1,6 +1,7 @@
 """Tries the book: its links, the paths and items it names, and every block of code; and the notebooks beside it.
 
     check_book.py [--text] [--figures] [--book DIR] [--only WORD]
+    check_book.py --strip
 
 Exit status 1 where something of the book is not so.
 """
