@@ -107,7 +107,7 @@ for (const which of pages(['crossing', 'natural', 'allFailed', 'big'])) {
     const out = await page.$$eval('main svg', all => all.filter(s => s.checkVisibility() && s.getBoundingClientRect().right > innerWidth + 1).length);
     assert.equal(out, 0, 'a drawing leaves the paper');
     if (play) {
-      const frame = await page.$eval('svg.bridge', n => Number(n.dataset.frame)), { list } = await import('./expect.mjs'), w = list(play.deflection_m), P = which.data.bridge.position_x_m.length;
+      const frame = await page.$eval('svg.bridge', n => Number(n.dataset.frame)), { list } = await import('./expect.mjs'), w = list(play.deflection_m), P = (play.bridge ?? which.data.bridge).position_x_m.length;
       const most = w.reduce((a, v) => Math.max(a, v), -Infinity);
       assert.equal(frame, Math.floor(w.indexOf(most) / P), 'the frame of the peak');
       await page.waitForTimeout(120);
