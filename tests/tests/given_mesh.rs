@@ -10,10 +10,6 @@ use pontoon_core::vehicle::Inertia;
 use pontoon_tests::beams::BeamModule;
 use pontoon_tests::*;
 
-fn extra(d: &BridgeDesign) -> Vec<f64> {
-    d.hinges.y_m.iter().chain(&d.connectors.y_m).copied().collect()
-}
-
 /// The mesh of the box handed over is the box: the same numbers to the last bit. Twin: the same mesh with all plates 5 %
 /// thicker. Tolerance 0: nothing is computed otherwise.
 #[test]
@@ -23,7 +19,7 @@ fn mesh_of_the_box_is_the_box() {
         let ready = match factor {
             None => Ready::new(&d, Model::SuperElement),
             Some(f) => {
-                let mut given = mesh_module(&d.module, &extra(&d));
+                let mut given = mesh_module(&d.module, &d.joint_lines_y_m());
                 given.mesh.shells.iter_mut().for_each(|s| s.section.thickness_m *= f);
                 Ready::of(
                     &d,

@@ -105,14 +105,7 @@ fn hinges_balance_connectors_in_a_static_state() {
 /// `omega^2 = (sum u^T k u + sum 2 k_c e^2) / sum u^T m u`, e from the nodes that connectors join.
 fn quotients_hz(design: &BridgeDesign, model: Model, connector_factor: f64) -> Vec<(f64, f64)> {
     let whole = whole(design, model, Ends::Free);
-    let extra: Vec<f64> = design
-        .hinges
-        .y_m
-        .iter()
-        .chain(&design.connectors.y_m)
-        .copied()
-        .collect();
-    let own = mesh_module(&design.module, &extra);
+    let own = mesh_module(&design.module, &design.joint_lines_y_m());
     let n = own.mesh.dofs();
     let (k, m) = assemble(&own.mesh, MassKind::Consistent).expect("matrices");
     let water = |per_area: f64| -> SymmetricMatrix {

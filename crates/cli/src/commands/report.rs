@@ -59,8 +59,7 @@ fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<En
             words::note(&format!("left out: {line}"));
         }
     }
-    let jobs = results.jobs();
-    let failed = (0..jobs.rows()).any(|row| jobs.cell("status", row) == "failed");
+    let failed = (0..results.jobs().rows()).any(|row| results.is_failed(row));
     let good = compared.as_ref().is_none_or(Comparison::good) && !failed;
     Ok(if good { Ending::Good } else { Ending::Short })
 }

@@ -52,18 +52,17 @@ pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     names(folder).into_iter().map(read).collect()
 }
 
+/// The value of the first attribute of a name in a text.
+fn attribute<'a>(text: &'a str, name: &str) -> &'a str {
+    let begin = format!("{name}=\"");
+    let from = text.find(&begin).unwrap() + begin.len();
+    text[from..].split('"').next().unwrap()
+}
+
 /// The times and files of a collection.
 pub fn collection(path: &Path) -> Vec<(f64, String)> {
     let text = fs::read_to_string(path).unwrap();
-    let value = |line: &str, key: &str| {
-        line.split(&format!(" {key}=\""))
-            .nth(1)
-            .unwrap()
-            .split('"')
-            .next()
-            .unwrap()
-            .to_owned()
-    };
+    let value = |line: &str, key: &str| attribute(line, &format!(" {key}")).to_owned();
     let lines = text.lines().filter(|line| line.contains("<DataSet "));
     lines
         .map(|line| (value(line, "timestep").parse().unwrap(), value(line, "file")))
@@ -89,15 +88,7 @@ impl Grid {
     }
 
     pub fn count(&self, of: &str) -> usize {
-        self.head
-            .split(&format!("{of}=\""))
-            .nth(1)
-            .unwrap()
-            .split('"')
-            .next()
-            .unwrap()
-            .parse()
-            .unwrap()
+        attribute(&self.head, of).parse().unwrap()
     }
 
     pub fn raw(&self, name: &str) -> (&str, &[u8]) {
@@ -106,14 +97,7 @@ impl Grid {
             .lines()
             .find(|line| line.contains(&format!(" Name=\"{name}\"")))
             .unwrap();
-        let value = |key: &str| {
-            line.split(&format!(" {key}=\""))
-                .nth(1)
-                .unwrap()
-                .split('"')
-                .next()
-                .unwrap()
-        };
+        let value = |key: &str| attribute(line, &format!(" {key}"));
         let from: usize = value("offset").parse().unwrap();
         let (count, rest) = self.bytes[from..].split_at(8);
         let count = u64::from_le_bytes(count.try_into().unwrap()) as usize;

@@ -83,17 +83,19 @@ pub fn shapes(bridge: &Bridge, count: usize) -> Result<Vec<Shape>, AnalysisError
     let of = |(j, mode): (usize, Mode)| {
         let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
         let motion = |rows: &[SparseRow; 3]| [0, 1, 2].map(|direction: usize| rows[direction].dot(&shape));
-        let mut corners: Vec<[f64; 3]> = bridge.corners.iter().map(motion).collect();
-        let largest = corners
-            .iter()
-            .flatten()
-            .fold(0.0_f64, |most, &x| if x.abs() > f64::abs(most) { x } else { most });
-        if largest != 0.0 {
-            corners.iter_mut().flatten().for_each(|x| *x /= largest);
-        }
-        (mode, corners)
+        (mode, largest_made_one(bridge.corners.iter().map(motion).collect()))
     };
     Ok(modes.into_iter().enumerate().map(of).collect())
+}
+
+/// A shape with its largest component, the first of equals, made 1; one that does not move is left as it is.
+pub fn largest_made_one(mut motion: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+    let larger = |most: f64, &x: &f64| if x.abs() > most.abs() { x } else { most };
+    let largest = motion.iter().flatten().fold(0.0, larger);
+    if largest != 0.0 {
+        motion.iter_mut().flatten().for_each(|x| *x /= largest);
+    }
+    motion
 }
 
 /// Motions that nothing restores share one eigenvalue, so that any mixture of them is a mode: where there are three they
@@ -287,5 +289,17 @@ impl Profile {
             even: mean * mean / (length * square),
             odd: 3.0 * tilt * tilt / (length * square),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_component_becomes_one_whatever_its_sign() {
+        let found = largest_made_one(vec![[1.0, -4.0, 2.0], [0.0, 4.0, 0.0]]);
+        assert_eq!(found, [[-0.25, 1.0, -0.5], [0.0, -1.0, 0.0]]);
+        assert_eq!(largest_made_one(vec![[0.0; 3]]), [[0.0; 3]]);
     }
 }

@@ -230,8 +230,7 @@ impl BridgeDesign {
     /// # Errors
     /// [`InvalidInput`] on the mesh.
     pub fn check_size(&self, model: Model) -> Result<(), InvalidInput> {
-        let extra: Vec<f64> = self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect();
-        let size = mesh_size(&self.module, &extra);
+        let size = mesh_size(&self.module, &self.joint_lines_y_m());
         let nodes = (size.lines_along * size.lines_across) as f64;
         let (module_dofs, condensation) = match model {
             Model::Full => (size.dofs as f64, 0.0),
@@ -287,6 +286,11 @@ impl BridgeDesign {
         self.modules as f64 * self.module.length_m
     }
 
+    /// Lines across that a module's mesh has for its joints: places of hinges, then of connectors [m].
+    pub fn joint_lines_y_m(&self) -> Vec<f64> {
+        self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect()
+    }
+
     /// Number of positions: the module ends.
     pub fn positions(&self) -> usize {
         self.modules + 1
@@ -300,8 +304,7 @@ impl BridgeDesign {
     /// Mass of one module's plates and beams [kg]: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
     /// Verified by `tests/tests/superelement.rs`.
     pub fn structural_mass_kg(&self) -> f64 {
-        let extra: Vec<f64> = self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect();
-        mesh_module(&self.module, &extra).mesh.mass_kg()
+        mesh_module(&self.module, &self.joint_lines_y_m()).mesh.mass_kg()
     }
 
     /// p_b [Pa/m], from the value or the table.

@@ -55,14 +55,7 @@ impl PreparedModule {
     /// [`BridgeError`].
     pub fn new(design: &BridgeDesign, model: Model) -> Result<Self, BridgeError> {
         design.check()?;
-        let extra: Vec<f64> = design
-            .hinges
-            .y_m
-            .iter()
-            .chain(&design.connectors.y_m)
-            .copied()
-            .collect();
-        Self::from_mesh(design, mesh_module(&design.module, &extra), model)
+        Self::from_mesh(design, mesh_module(&design.module, &design.joint_lines_y_m()), model)
     }
 
     /// Takes any mesh for the module, adds the water and, for the super-element, condenses it.

@@ -9,7 +9,7 @@ use super::subject::{ModesWanted, Subject};
 use super::vtk::{Array, Counter, Values};
 use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};
-use pontoon_core::analysis::modes::modes;
+use pontoon_core::analysis::modes::{largest_made_one, modes};
 use pontoon_core::bridge::{Ends, Model};
 
 /// Largest component of a shape's displacement.
@@ -58,7 +58,7 @@ pub(super) fn write(
     let mut series = Series::new("modes", shows, count);
     for (j, mode) in found.iter().enumerate() {
         let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
-        let displacement = scaled(ready.meshed.displacement_m(&shape));
+        let displacement = largest_made_one(ready.meshed.displacement_m(&shape));
         let grid = pictures.mesh(&displacement, fields(j + 1, mode.frequency_hz, &mode.name));
         let name = format!("{}, {:.4} Hz", mode.name, mode.frequency_hz);
         series.write(folder, (j + 1) as f64, &name, &grid)?;
@@ -73,30 +73,4 @@ fn fields(number: usize, frequency_hz: f64, shape: &str) -> Vec<Array> {
         Array::new("largest_component", Values::F64(vec![LARGEST])),
         Array::text("shape", shape),
     ]
-}
-
-/// The shape with its largest component, the first of equals, made [`LARGEST`].
-fn scaled(mut displacement: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
-    let mut largest = 0.0_f64;
-    for &component in displacement.iter().flatten() {
-        if component.abs() > largest.abs() {
-            largest = component;
-        }
-    }
-    if largest != 0.0 {
-        displacement.iter_mut().flatten().for_each(|x| *x *= LARGEST / largest);
-    }
-    displacement
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_largest_component_becomes_one_whatever_its_sign() {
-        let found = scaled(vec![[1.0, -4.0, 2.0], [0.0, 4.0, 0.0]]);
-        assert_eq!(found, [[-0.25, 1.0, -0.5], [0.0, -1.0, 0.0]]);
-        assert_eq!(scaled(vec![[0.0; 3]]), [[0.0; 3]]);
-    }
 }

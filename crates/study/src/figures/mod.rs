@@ -27,6 +27,7 @@ mod speeds;
 
 pub use figure::{Axis, Figure, Line, Moment, Panel, PlottedMark};
 pub use marks::{Chart, Mark, Origin, marks};
+pub(crate) use sheet::spread;
 
 use crate::reference::Reference;
 use crate::refusal::Refusal;

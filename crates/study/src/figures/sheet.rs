@@ -188,7 +188,7 @@ pub(super) fn listed(words: &[String]) -> String {
 }
 
 /// At most `most` places of a list of a length, evenly spread, with both ends.
-pub(super) fn spread(length: usize, most: usize) -> Vec<usize> {
+pub(crate) fn spread(length: usize, most: usize) -> Vec<usize> {
     if length <= most {
         return (0..length).collect();
     }

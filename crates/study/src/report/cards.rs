@@ -5,7 +5,7 @@
 use super::cells::Measure;
 use super::words;
 use crate::run::words_of_reason;
-use crate::tables::Table;
+use crate::tables::{Results, Table};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -70,11 +70,12 @@ pub struct FailureNote {
 }
 
 /// The cards of a table of jobs.
-pub(super) fn cards(jobs: &Table, measures: &[Measure], said: &dyn Fn(usize) -> String) -> Vec<Card> {
+pub(super) fn cards(results: &Results, measures: &[Measure], said: &dyn Fn(usize) -> String) -> Vec<Card> {
+    let jobs = results.jobs();
     let card = |(name, label, place, time): (&str, &'static str, &str, &str)| {
         let measure = measures.iter().find(|measure| measure.name == name)?;
         let numbers = jobs.numbers(name)?;
-        let of = |row: usize| numbers[row].filter(|_| !super::failed(jobs, row));
+        let of = |row: usize| numbers[row].filter(|_| !results.is_failed(row));
         // the first of equals
         let row = (0..jobs.rows()).filter(|&row| of(row).is_some()).max_by(|&a, &b| {
             let by_value = of(a).unwrap_or_default().total_cmp(&of(b).unwrap_or_default());
@@ -89,7 +90,7 @@ pub(super) fn cards(jobs: &Table, measures: &[Measure], said: &dyn Fn(usize) -> 
             value: of(row)?,
             unit: measure.unit,
             place: [at, when].into_iter().flatten().collect::<Vec<_>>().join(" "),
-            job: (of(row) != Some(0.0)).then(|| super::job(jobs, row)),
+            job: (of(row) != Some(0.0)).then(|| super::job(results, row)),
             axes: if of(row) == Some(0.0) { String::new() } else { said(row) },
         })
     };
@@ -98,16 +99,17 @@ pub(super) fn cards(jobs: &Table, measures: &[Measure], said: &dyn Fn(usize) -> 
 
 /// Why jobs failed, the commonest cause first, and how many causes there are. Reasons that differ in numbers alone are one
 /// cause.
-pub(super) fn failures(jobs: &Table) -> (Vec<FailureNote>, usize) {
+pub(super) fn failures(results: &Results) -> (Vec<FailureNote>, usize) {
+    let jobs = results.jobs();
     let mut causes: BTreeMap<String, FailureNote> = BTreeMap::new();
-    for row in (0..jobs.rows()).filter(|&row| super::failed(jobs, row)) {
+    for row in (0..jobs.rows()).filter(|&row| results.is_failed(row)) {
         let reason = match jobs.cell("reason", row) {
             Value::String(reason) => reason,
             _ => "no reason".to_owned(),
         };
         let first = || FailureNote {
             count: 0,
-            job: super::job(jobs, row),
+            job: super::job(results, row),
             reason: reason.clone(),
         };
         causes.entry(words_of_reason(&reason)).or_insert_with(first).count += 1;

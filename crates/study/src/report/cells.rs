@@ -5,7 +5,7 @@
 use super::axes::Axis;
 use super::packed::Packed;
 use super::words;
-use crate::tables::Table;
+use crate::tables::{Results, Table};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 
@@ -105,8 +105,9 @@ fn count(axes: &[Axis], rows: usize) -> usize {
 }
 
 impl Cells {
-    /// The cells of a table of jobs.
-    pub(super) fn new(jobs: &Table, axes: &[Axis], measures: &[Measure]) -> Self {
+    /// The cells of all jobs.
+    pub(super) fn new(results: &Results, axes: &[Axis], measures: &[Measure]) -> Self {
+        let jobs = results.jobs();
         let columns: Vec<_> = measures
             .iter()
             .map(|m| jobs.numbers(m.name).unwrap_or_default())
@@ -120,11 +121,11 @@ impl Cells {
                 measures: vec![None; measures.len()],
             });
             cell.jobs += 1;
-            if super::failed(jobs, row) {
+            if results.is_failed(row) {
                 cell.failed += 1;
                 continue;
             }
-            let job = super::job(jobs, row);
+            let job = super::job(results, row);
             for (kept, column) in cell.measures.iter_mut().zip(&columns) {
                 let Some(x) = column.get(row).copied().flatten() else {
                     continue;

@@ -48,7 +48,7 @@ use crate::figures::{Chart, Mark};
 use crate::plan::Job;
 use crate::run::Cache;
 use crate::spec::Kind;
-use crate::tables::{ResultsError, Table, TableName};
+use crate::tables::{Results, ResultsError, Table, TableName};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -218,16 +218,9 @@ pub struct Report {
     pub provenance: Vec<Item>,
 }
 
-/// The number of a row's job.
-fn job(jobs: &Table, row: usize) -> u32 {
-    jobs.number("job", row).map_or(u32::MAX, |number| number as u32)
-}
-
-/// Whether the job of a row failed.
-fn failed(jobs: &Table, row: usize) -> bool {
-    jobs.word_cells("status")
-        .and_then(|status| status.get(row)?.as_deref())
-        .is_some_and(|status| status == "failed")
+/// The number of a row's job as a page carries it.
+fn job(results: &Results, row: usize) -> u32 {
+    u32::try_from(results.job_of_row(row)).unwrap_or(u32::MAX)
 }
 
 impl Report {
@@ -275,9 +268,9 @@ impl Report {
             ));
         }
         let measures = cells::measures(jobs);
-        let chosen = rows::chosen(jobs, &measures);
+        let chosen = rows::chosen(&results, &measures);
         let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen, &mut notes)?;
-        let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(jobs, row)).collect();
+        let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(&results, row)).collect();
         let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
         if histories.len() < recorded {
             notes.push(format!(
@@ -289,7 +282,7 @@ impl Report {
             Some(study) if !all.is_empty() => plays::plays(
                 study,
                 &all,
-                jobs,
+                &results,
                 (&measures, &chosen.0),
                 setting.plays,
                 setting.cache.as_ref(),
@@ -299,14 +292,13 @@ impl Report {
         notes.extend(played.notes);
         let (modes, without) = shapes::mode_sets(&all, &results, &said, setting.modes);
         notes.extend(without);
-        let (failures, causes) = cards::failures(jobs);
+        let (failures, causes) = cards::failures(&results);
         if failures.len() < causes {
             notes.push(format!("{} of {causes} causes of failures are listed.", failures.len()));
         }
         notes.extend(undrawn(&marks, jobs));
-        let failed = (0..jobs.rows()).filter(|&row| failed(jobs, row)).count();
+        let failed = (0..jobs.rows()).filter(|&row| results.is_failed(row)).count();
         let question = study.as_ref().and_then(|study| study.spec.question.clone());
-        let kind = study.as_ref().map(|study| study.spec.analysis.kind);
         Ok(Self {
             format: 1,
             program: Program {
@@ -316,7 +308,7 @@ impl Report {
             study: StudyNote {
                 name: results.name.clone(),
                 question,
-                kind: kind.unwrap_or_else(|| kind_of(&results.study)),
+                kind: results.kind(),
                 settings: study.as_ref().map(settings::settings).unwrap_or_default(),
             },
             bridge: all.first().map(BridgeNote::of),
@@ -326,8 +318,8 @@ impl Report {
                 failed,
                 missing,
             },
-            cells: Cells::new(jobs, &axes, &measures),
-            cards: cards::cards(jobs, &measures, &said),
+            cells: Cells::new(&results, &axes, &measures),
+            cards: cards::cards(&results, &measures, &said),
             failures,
             marks: marks.into_iter().map(PageMark::from).collect(),
             envelope,
@@ -362,12 +354,4 @@ fn undrawn(marks: &[Mark], jobs: &Table) -> Vec<String> {
     );
     let of_none = said(marks.iter().filter(nobodys).collect(), "as no job has their axes");
     of_one.into_iter().chain(of_none).collect()
-}
-
-fn kind_of(study: &Value) -> Kind {
-    match study["analysis"]["kind"].as_str() {
-        Some("static") => Kind::Static,
-        Some("modes") => Kind::Modes,
-        _ => Kind::Crossing,
-    }
 }

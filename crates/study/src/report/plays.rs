@@ -5,11 +5,12 @@
 use super::BridgeNote;
 use super::cells::Measure;
 use super::packed::{Packed, Scaled};
-use super::rows::{severest, spread};
+use super::rows::severest;
+use crate::figures::spread;
 use crate::plan::{Job, Task};
 use crate::run::{Cache, HistoryRows, JobRecord, replay};
 use crate::spec::{ModelSpec, Study};
-use crate::tables::Table;
+use crate::tables::{Results, Table};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -70,14 +71,15 @@ pub(super) struct Played {
 pub(super) fn plays(
     study: &Study,
     all: &[Job],
-    jobs: &Table,
+    results: &Results,
     (measures, rows): (&[Measure], &[usize]),
     most: usize,
     cache: Option<&Cache>,
 ) -> Played {
+    let jobs = results.jobs();
     let crossing = |row: &usize| {
-        let job = all.get(super::job(jobs, *row) as usize)?;
-        (matches!(job.task, Task::Crossing { .. }) && !super::failed(jobs, *row)).then_some((*row, job))
+        let job = all.get(super::job(results, *row) as usize)?;
+        (matches!(job.task, Task::Crossing { .. }) && !results.is_failed(*row)).then_some((*row, job))
     };
     let able: Vec<(usize, &Job)> = rows.iter().filter_map(crossing).collect();
     let light = |job: &Job| job.steps() <= MOST_STEPS && job.analysis.spec.model == ModelSpec::SuperElement;

@@ -5,6 +5,7 @@
 use super::cells::Measure;
 use super::packed::Packed;
 use super::words;
+use crate::figures::spread;
 use crate::tables::{Kind, Results, ResultsError, Table, TableName};
 use serde::Serialize;
 use serde_json::Value;
@@ -138,7 +139,8 @@ pub struct Envelope {
 }
 
 /// The rows of the table of jobs that a page lists, in their order.
-pub(super) fn chosen(jobs: &Table, measures: &[Measure]) -> (Vec<usize>, String) {
+pub(super) fn chosen(results: &Results, measures: &[Measure]) -> (Vec<usize>, String) {
+    let jobs = results.jobs();
     let all = jobs.rows();
     if all <= MOST_ROWS {
         let note = if all == 1 {
@@ -150,13 +152,17 @@ pub(super) fn chosen(jobs: &Table, measures: &[Measure]) -> (Vec<usize>, String)
     }
     let every: Vec<usize> = (0..all).collect();
     let mut rows: BTreeSet<usize> = BTreeSet::new();
-    rows.extend((0..all).filter(|&row| super::failed(jobs, row)).take(MOST_FAILED));
+    rows.extend((0..all).filter(|&row| results.is_failed(row)).take(MOST_FAILED));
     for measure in measures.iter().take(4) {
         rows.extend(severest(jobs, measure.name, &every).into_iter().take(SEVEREST));
     }
     let severe = rows.len();
     let left: Vec<usize> = (0..all).filter(|row| !rows.contains(row)).collect();
-    rows.extend(spread(left.len(), MOST_ROWS - severe).map(|place| left[place]));
+    rows.extend(
+        spread(left.len(), MOST_ROWS - severe)
+            .into_iter()
+            .map(|place| left[place]),
+    );
     let note = format!(
         "{} of {all} jobs: {severe} that failed or have the largest values, and an even sample",
         rows.len()
@@ -173,12 +179,6 @@ pub(super) fn severest(jobs: &Table, column: &str, rows: &[usize]) -> Vec<usize>
     let value = |at: usize| numbers[rows[at]].unwrap_or_default();
     places.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
     places
-}
-
-/// `most` of `count` places, evenly spread from the first to the last; all where they are no more.
-pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
-    let some = most.min(count);
-    (0..some).map(move |i| if some == 1 { 0 } else { i * (count - 1) / (some - 1) })
 }
 
 impl Rows {
@@ -211,8 +211,8 @@ impl Rows {
             count: rows.len(),
             note: note.clone(),
             columns: names.map(|name| column(jobs, name, rows)).collect(),
-            job: Packed::U32(rows.iter().map(|&row| super::job(jobs, row)).collect()),
-            ok: Packed::U8(rows.iter().map(|&row| u8::from(!super::failed(jobs, row))).collect()),
+            job: Packed::U32(rows.iter().map(|&row| super::job(results, row)).collect()),
+            ok: Packed::U8(rows.iter().map(|&row| u8::from(!results.is_failed(row))).collect()),
             reason: WordList::new(rows.iter().map(|&row| match jobs.cell("reason", row) {
                 Value::String(reason) => Some(reason),
                 _ => None,
@@ -303,7 +303,7 @@ fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
     let listed: HashMap<u64, usize> = rows
         .iter()
         .enumerate()
-        .map(|(i, &row)| (u64::from(super::job(results.jobs(), row)), i))
+        .map(|(i, &row)| (u64::from(super::job(results, row)), i))
         .collect();
     let (mut x_m, mut differ): (Vec<f64>, bool) = (Vec::new(), false);
     results.scan(TableName::Positions, &["position", "x_m"], |part| {
