@@ -22,8 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def program():
     """The program under trial."""
-    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release/pontoon"
-    found = Path(os.environ.get("PONTOON", built)).resolve()
+    found = Path(os.environ.get("PONTOON", ROOT / "target/quick/pontoon")).resolve()
     if not found.is_file():
         sys.exit(f"{found} is no file: build it, or name it by PONTOON")
     if found.name != "pontoon":

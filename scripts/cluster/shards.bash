@@ -1,3 +1,4 @@
+# shellcheck disable=SC2034 # drivers read what is set here
 # A study in shards, for the drivers beside this file: their arguments, which shards are not complete, the merge. Knows
 # pontoon's folders and exit statuses. What starts a shard is told by the driver that reads this:
 #   option NAME [VALUE...]  takes an option of its own and sets `taken` to the words that it took; fails where it is none
@@ -8,6 +9,7 @@
 
 program=$(basename "$0")
 cluster=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$cluster/../tools.bash"
 study='' shards='' out='' threads=1 resubmit=3 pontoon=${PONTOON:-} instructions=()
 more=()
 
@@ -25,7 +27,9 @@ help() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }
 value() { (($# > 1)) || refuse "$1 takes a value"; }
 number() {
   value "${@:2}"
-  [[ $3 =~ ^(0|[1-9][0-9]{0,5})$ ]] && (($3 >= $1)) || refuse "$2: found $3, allowed: a whole number from $1"
+  if [[ ! $3 =~ ^(0|[1-9][0-9]{0,5})$ ]] || (($3 < $1)); then
+    refuse "$2: found $3, allowed: a whole number from $1"
+  fi
 }
 
 arguments() {
@@ -68,10 +72,8 @@ arguments() {
 
 find_pontoon() {
   if [[ -z $pontoon ]]; then
-    local root
-    root=$(cd "$cluster/../.." && pwd)
-    pontoon=$(cd "$root" && realpath -ms -- "${CARGO_TARGET_DIR:-target}/release/pontoon")
-    [[ -x $pontoon ]] || refuse "$pontoon is not built: cargo build --release -p pontoon, or give --pontoon"
+    pontoon=$built/pontoon
+    [[ -x $pontoon ]] || refuse "$pontoon is not built: cargo build --profile $profile -p pontoon, or give --pontoon"
   fi
   local found
   found=$(command -v -- "$pontoon") && [[ -f $found && -x $found ]] || refuse "--pontoon: found $pontoon, allowed: the program"

@@ -2,7 +2,7 @@
 # killed on the way. Knows pontoon's folders; does not know an engine. Whoever reads this has `set -euo pipefail`.
 
 cluster=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-root=$(cd "$cluster/../.." && pwd)
+. "$cluster/../tools.bash"
 shards=5
 driver=''
 work=$(mktemp -d)
@@ -23,12 +23,8 @@ end() {
 trap end EXIT
 trap 'exit 130' INT TERM
 
-if [[ -z ${PONTOON:-} ]]; then
-  (cd "$root" && cargo build --release --locked -p pontoon)
-  PONTOON=$(cd "$root" && realpath -ms -- "${CARGO_TARGET_DIR:-target}/release/pontoon")
-fi
-PONTOON=$(realpath -- "$PONTOON")
-export PONTOON PONTOON_CACHE_DIR=$work/cache
+program
+export PONTOON_CACHE_DIR=$work/cache
 
 # A few hundred crossings of a coarse bridge, at a time step so small that a shard can be met in its middle.
 small_study() {
