@@ -27,8 +27,12 @@ def drawn(count, seed, connection):
     for _ in range(count):
         gaps = [draw.uniform(0.0, 0.04) for _ in range(2)]
         speed, load, lane = draw.uniform(2.0, 20.0), draw.uniform(50e3, 600e3), draw.uniform(-2.0, 2.0)
-        case = {"connection": connection, "speed_m_s": speed, "load_n": load,
-                "vehicle.track_y_m": [lane - 1.4, lane + 1.4]}
+        case = {
+            "connection": connection,
+            "speed_m_s": speed,
+            "load_n": load,
+            "vehicle.track_y_m": [lane - 1.4, lane + 1.4],
+        }
         if connection == "nonlinear":
             case |= {"gap_tension_m": gaps[0], "gap_compression_m": gaps[1]}
         cases.append(case)
@@ -48,8 +52,9 @@ def run(folder, name, cases, analysis, histories=False):
         study["record"] = {"histories": {"joints": JOINTS}}
     file, out = folder / f"{name}.json", folder / name
     file.write_text(json.dumps(study))
-    done = subprocess.run([os.environ["PONTOON"], "run", str(file), "--out", str(out), "--quiet"],
-                          capture_output=True, text=True)
+    done = subprocess.run(
+        [os.environ["PONTOON"], "run", str(file), "--out", str(out), "--quiet"], capture_output=True, text=True
+    )
     if done.returncode != 0:
         sys.exit(f"{name}: {done.stderr}")
     return {table.stem: pl.read_parquet(table) for table in sorted(out.glob("*.parquet"))}
@@ -62,13 +67,14 @@ def worst(values):
 
 
 def deviations(found, judge):
-    """Of each job in percent: deflection, compression, tension (of the largest joint force); of all joints on that scale."""
+    """Of each job in percent: deflection, compression, tension (of the largest joint force); of all joints on that
+    scale."""
     a, b = found["jobs"], judge["jobs"]
-    scale = [max(c, t) for c, t in zip(b["peak_compression_n"], b["peak_tension_n"])]
-    per = lambda column, of: [100 * abs(x - y) / s for x, y, s in zip(a[column], b[column], of)]
+    scale = [max(c, t) for c, t in zip(b["peak_compression_n"], b["peak_tension_n"], strict=True)]
+    per = lambda column, of: [100 * abs(x - y) / s for x, y, s in zip(a[column], b[column], of, strict=True)]
     joints = []
     sums = lambda tables: tables["connectors"].filter(pl.col("y_m").is_null())
-    for x, y in zip(sums(found).iter_rows(named=True), sums(judge).iter_rows(named=True)):
+    for x, y in zip(sums(found).iter_rows(named=True), sums(judge).iter_rows(named=True), strict=True):
         for sense in ("compression", "tension"):
             value = f"peak_{sense}_n"
             off = 100 * abs(x[value] - y[value]) / scale[x["job"]]
@@ -82,19 +88,23 @@ def deviations(found, judge):
 
 
 def nudged(folder, cases, jobs, judge):
-    """How far the reference solver itself moves a job's deflection, compression and tension by NUDGE more or less load or by steps
-    of 9 instead of 10 ms, in percent: what no solver can be asked to hit better. By job."""
+    """How far the reference solver itself moves a job's deflection, compression and tension by NUDGE more or less load
+    or by steps of 9 instead of 10 ms, in percent: what no solver can be asked to hit better. By job."""
     if not jobs:
         return {}
-    only = {name: table.filter(pl.col("job").is_in(jobs)).with_columns(
-        pl.col("job").replace_strict(jobs, list(range(len(jobs))))) for name, table in judge.items()}
+    only = {
+        name: table.filter(pl.col("job").is_in(jobs)).with_columns(
+            pl.col("job").replace_strict(jobs, list(range(len(jobs))))
+        )
+        for name, table in judge.items()
+    }
     moved = {job: [0.0] * 3 for job in jobs}
     for name, factor, step_s in (("more", 1 + NUDGE, 0.01), ("less", 1 - NUDGE, 0.01), ("step", 1.0, STEP_S)):
         there = [cases[job] | {"load_n": factor * cases[job]["load_n"]} for job in jobs]
         off = deviations(run(folder, name, there, {"solver": "reference", "time_step_s": step_s}), only)
         for i, job in enumerate(jobs):
             found = off["deflection"][i], off["compression"][i], off["tension"][i]
-            moved[job] = [max(a, b) for a, b in zip(moved[job], found)]
+            moved[job] = [max(a, b) for a, b in zip(moved[job], found, strict=True)]
     return moved
 
 
@@ -102,7 +112,7 @@ def contacts(tables, job, joint):
     """How often a joint's force began, and when first and last."""
     history = tables["histories"].filter((pl.col("job") == job) & (pl.col("position") == joint))
     began, last = [], 0.0
-    for time, force in zip(history["time_s"], history["value"]):
+    for time, force in zip(history["time_s"], history["value"], strict=True):
         if force != 0.0 and last == 0.0:
             began.append(time)
         last = force
@@ -149,41 +159,66 @@ def main():
         finest = run(folder, "finest", cases, {"time_step_s": 0.000625})
         auto = run(folder, "auto", cases, {"time_step_s": "auto", "time_step_tolerance": 0.02})
         off, off_fine, off_half = deviations(operator, reference), deviations(operator, fine), deviations(half, fine)
-        peak = lambda t: [max(c, p) for c, p in zip(t["jobs"]["peak_compression_n"], t["jobs"]["peak_tension_n"])]
-        off_auto = [100 * abs(a - b) / b for a, b in zip(peak(auto), peak(finest))]
-        beyond = lambda o: {j for n, m in (("deflection", 0.5), ("compression", 2.0), ("tension", 10.0))
-                            for j, x in enumerate(o[n]) if x > m}
-        suspects = sorted(beyond(off) | beyond(off_fine) | beyond(off_half) | {j for j, x in enumerate(off_auto) if x > 2})
+        peak = lambda t: [
+            max(c, p) for c, p in zip(t["jobs"]["peak_compression_n"], t["jobs"]["peak_tension_n"], strict=True)
+        ]
+        off_auto = [100 * abs(a - b) / b for a, b in zip(peak(auto), peak(finest), strict=True)]
+        beyond = lambda o: {
+            j
+            for n, m in (("deflection", 0.5), ("compression", 2.0), ("tension", 10.0))
+            for j, x in enumerate(o[n])
+            if x > m
+        }
+        suspects = sorted(
+            beyond(off) | beyond(off_fine) | beyond(off_half) | {j for j, x in enumerate(off_auto) if x > 2}
+        )
         moved = nudged(folder, cases, suspects, reference)
         table = Table()
         table.forces(f"{options.jobs} random crossings", off, moved)
         within = 100 * sum(j[0] <= JOINT_PERCENT for j in off["joints"]) / len(off["joints"])
-        table.row("all joints' peaks of the largest force", f"90 % within {JOINT_PERCENT:g} %", f"{within:.2f} %", within >= 90)
+        table.row(
+            "all joints' peaks of the largest force",
+            f"90 % within {JOINT_PERCENT:g} %",
+            f"{within:.2f} %",
+            within >= 90,
+        )
         for deviation, job, joint, sense, x, y in sorted(off["joints"], key=lambda j: -j[0]):
             if deviation > JOINT_PERCENT:
                 value, time = f"peak_{sense}_n", f"peak_{sense}_time_s"
-                when = lambda r: "never" if r[time] is None else f"{r[time]:.2f} s"
-                listed.append(f"job {job}, joint {joint}, {sense}: {deviation:.1f} % ({x[value] / 1e3:.0f} kN at {when(x)}; "
-                              f"reference {y[value] / 1e3:.0f} kN at {when(y)}); {contacts(operator, job, joint)}; "
-                              f"reference {contacts(reference, job, joint)}")
+                when = lambda r, time=time: "never" if r[time] is None else f"{r[time]:.2f} s"
+                listed.append(
+                    f"job {job}, joint {joint}, {sense}: {deviation:.1f} % ({x[value] / 1e3:.0f} kN at {when(x)}; "
+                    f"reference {y[value] / 1e3:.0f} kN at {when(y)}); {contacts(operator, job, joint)}; "
+                    f"reference {contacts(reference, job, joint)}"
+                )
         residual = max(operator["jobs"]["energy_residual"])
         table.row("energy balance of the operator", "1e-9", f"{residual:.1e}", residual <= 1e-9)
         linear = drawn(max(options.jobs // 5, 1), options.seed + 1, "linear")
-        off = deviations(run(folder, "operator-linear", linear, {}),
-                         run(folder, "reference-linear", linear, {"solver": "reference"}))
+        off = deviations(
+            run(folder, "operator-linear", linear, {}), run(folder, "reference-linear", linear, {"solver": "reference"})
+        )
         most = max([*off["deflection"], *(j[0] for j in off["joints"])])
-        table.row(f"{len(linear)} linear crossings: deflection, all joints", "0.2 %", f"worst {most:.3f} %", most <= 0.2)
+        table.row(
+            f"{len(linear)} linear crossings: deflection, all joints", "0.2 %", f"worst {most:.3f} %", most <= 0.2
+        )
         table.forces("time step 10 against 2.5 ms", off_fine, moved)
         table.forces("time step 5 against 2.5 ms", off_half, moved)
         chaotic = [j for j in suspects if off_auto[j] > 2 and max(moved[j][1:]) > 0.5 * off_auto[j]]
         median, most = worst(x for j, x in enumerate(off_auto) if j not in chaotic)
         apart = f"; apart: {', '.join(f'job {j} {off_auto[j]:.1f} %' for j in chaotic)}" if chaotic else ""
         steps = auto["jobs"].group_by("time_step_s").len().sort("time_step_s", descending=True)
-        table.row('"auto" at a tolerance of 2 %: peak force', "2 %", f"median {median:.3f}, worst {most:.3f} %{apart}", most <= 2)
+        table.row(
+            '"auto" at a tolerance of 2 %: peak force',
+            "2 %",
+            f"median {median:.3f}, worst {most:.3f} %{apart}",
+            most <= 2,
+        )
         print("\n`auto` took", ", ".join(f"{1e3 * h:g} ms {n} times" for h, n in steps.iter_rows()))
     for job, by in moved.items():
-        print(f"job {job}: 0.01 % of the load or a tenth of the step moves the reference solver's own deflection by {by[0]:.2f}, "
-              f"compression by {by[1]:.2f}, tension by {by[2]:.2f} %")
+        print(
+            f"job {job}: 0.01 % of the load or a tenth of the step moves the reference solver's own "
+            f"deflection by {by[0]:.2f}, compression by {by[1]:.2f}, tension by {by[2]:.2f} %"
+        )
     print(f"\n{len(listed)} joints beyond {JOINT_PERCENT:g} %")
     print("\n".join(listed))
     sys.exit(1 if table.short else 0)

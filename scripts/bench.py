@@ -28,15 +28,23 @@ SPEEDS_M_S = [15.0, 7.0]
 MODES = 20
 EQUATIONS, ALGORITHM = "ProfileSPD", "KrylovNewton"
 ASKED_LONE, ASKED_FULL, ASKED_THREADS, ASKED_SWEEP_S = 300.0, 1000.0, 1.9, 60.0
-VEHICLE = {"footprint_length_m": peers.FOOTPRINT_M, "track_y_m": peers.TRACK_Y_M,
-           "patch_points": peers.FOOTPRINT_POINTS}
+VEHICLE = {
+    "footprint_length_m": peers.FOOTPRINT_M,
+    "track_y_m": peers.TRACK_Y_M,
+    "patch_points": peers.FOOTPRINT_POINTS,
+}
 KINDS = {"none": "weight only", "local": "local inertia"}
 # from, to of the sweep's axes, each in as many values as the number of jobs asks for
-AXES = {"gap_tension_m": (0.0, 0.036), "gap_compression_m": (0.0, 0.018), "speed_m_s": (3.0, 15.0),
-        "load_n": (1e5, 4e5)}
+AXES = {
+    "gap_tension_m": (0.0, 0.036),
+    "gap_compression_m": (0.0, 0.018),
+    "speed_m_s": (3.0, 15.0),
+    "load_n": (1e5, 4e5),
+}
 
 
 # ---- the table
+
 
 class Table:
     """Rows of Markdown, and the names of those that fall short of what is asked."""
@@ -53,8 +61,14 @@ class Table:
     def ratio(self, what, ours, other, ratio, at_least=None):
         """A line whose figure is how many times faster."""
         asked = "" if at_least is None else f"{at_least:,g}"
-        self.row(what, ours, other, f"{ratio:,.3g}" if ratio < 1000 else f"{ratio:,.0f}", asked,
-                 at_least is None or ratio >= at_least)
+        self.row(
+            what,
+            ours,
+            other,
+            f"{ratio:,.3g}" if ratio < 1000 else f"{ratio:,.0f}",
+            asked,
+            at_least is None or ratio >= at_least,
+        )
 
     def print(self):
         """All of it."""
@@ -85,6 +99,7 @@ def cpu():
 
 # ---- crossings
 
+
 def chain_steps_s(chain):
     """For each speed the seconds a step of OpenSees' loop, its outputs read."""
     found = {}
@@ -114,23 +129,31 @@ def compare_crossings(table, rounds):
     for (speed_m_s, inertia), c in ours.items():
         other = theirs[speed_m_s]
         weight_only = inertia == "none"
-        for key, how, asked in (("lone_step_s", "alone", ASKED_LONE),
-                                ("full_step_s", f"{speed['lanes']} lanes full", ASKED_FULL)):
+        for key, how, asked in (
+            ("lone_step_s", "alone", ASKED_LONE),
+            ("full_step_s", f"{speed['lanes']} lanes full", ASKED_FULL),
+        ):
             what = f"step of a crossing at {speed_m_s:g} m/s, {KINDS[inertia]}, {how}"
             beside = micro(other) + (" chain" if weight_only else " chain, weight only")
             table.ratio(what, micro(c[key]), beside, other / c[key], asked if weight_only else None)
     for (speed_m_s, inertia), c in ours.items():
         if inertia == "none":
             rate = c["flop_per_step"] / c["full_step_s"]
-            table.row(f"floating-point operations at {speed_m_s:g} m/s, weight only, lanes full",
-                      f"{c['flop_per_step']:,.0f} a step, {rate / 1e9:.1f} Gflop/s",
-                      f"{peak / 1e9:.1f} Gflop/s peak of a core", f"{100 * rate / peak:.0f} %")
+            table.row(
+                f"floating-point operations at {speed_m_s:g} m/s, weight only, lanes full",
+                f"{c['flop_per_step']:,.0f} a step, {rate / 1e9:.1f} Gflop/s",
+                f"{peak / 1e9:.1f} Gflop/s peak of a core",
+                f"{100 * rate / peak:.0f} %",
+            )
     sizes = speed["operator"]
-    note(f"{sizes['modes']} modes, {sizes['connectors']} connectors, {sizes['observed_rows']} observed rows,"
-         f" {speed['instructions']}; the count of operations: tests/examples/speed.rs")
+    note(
+        f"{sizes['modes']} modes, {sizes['connectors']} connectors, {sizes['observed_rows']} observed rows,"
+        f" {speed['instructions']}; the count of operations: tests/examples/speed.rs"
+    )
 
 
 # ---- modes
+
 
 def compare_modes(table, rounds):
     """The program from file to printed frequencies beside OpenSees' model and eigenvalues."""
@@ -143,11 +166,16 @@ def compare_modes(table, rounds):
         _, made_s = peers.timed(peers.BridgePeer, bridge, "ASDShellQ4", bridge["modules"], True)
         theirs.append((made_s, peers.timed(ops.eigen, "-genBandArpack", MODES)[1]))
     eigen_s, made_s = min(eigen for _, eigen in theirs), min(made for made, _ in theirs)
-    table.ratio(f"{MODES} modes of the full bridge, the whole program", f"{min(ours):.2f} s",
-                f"{eigen_s:.2f} s eigenvalues alone ({made_s:.2f} s model)", eigen_s / min(ours))
+    table.ratio(
+        f"{MODES} modes of the full bridge, the whole program",
+        f"{min(ours):.2f} s",
+        f"{eigen_s:.2f} s eigenvalues alone ({made_s:.2f} s model)",
+        eigen_s / min(ours),
+    )
 
 
 # ---- the sweep
+
 
 def sides(jobs):
     """The number of values of each axis: as equal as the factors of the number of jobs allow."""
@@ -183,11 +211,18 @@ def sweep_s(folder, threads):
 
 def compare_threads(table, rounds, jobs, solver, inertia):
     """The program's sweep on one thread and on two."""
-    grid = {axis: {"linspace": [*AXES[axis], count]} if count > 1 else AXES[axis][1]
-            for axis, count in zip(AXES, sides(jobs))}
+    grid = {
+        axis: {"linspace": [*AXES[axis], count]} if count > 1 else AXES[axis][1]
+        for axis, count in zip(AXES, sides(jobs), strict=True)
+    }
     analysis = {"kind": "crossing", "time_step_s": 0.01, "tail_s": 6.0, "solver": solver}
-    study = {"name": "bench", "bridge": "bridge.json", "vehicle": VEHICLE | {"inertia": inertia},
-             "analysis": analysis, "design": [{"grid": {"connection": "nonlinear", **grid}}]}
+    study = {
+        "name": "bench",
+        "bridge": "bridge.json",
+        "vehicle": VEHICLE | {"inertia": inertia},
+        "analysis": analysis,
+        "design": [{"grid": {"connection": "nonlinear", **grid}}],
+    }
     times = {1: [], 2: []}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
@@ -201,8 +236,14 @@ def compare_threads(table, rounds, jobs, solver, inertia):
     whole = min(whole_s for _, whole_s in times[2])
     what = f"{jobs:,} crossings of a sweep, {KINDS[inertia]}, on two threads"
     table.ratio(what, f"{two:.1f} s", f"{one:.1f} s one thread", one / two, ASKED_THREADS)
-    table.row(what, f"{two:.1f} s", f"{whole:.1f} s the whole program",
-              f"{two:.1f} s", f"under {ASKED_SWEEP_S:g} s", two < ASKED_SWEEP_S)
+    table.row(
+        what,
+        f"{two:.1f} s",
+        f"{whole:.1f} s the whole program",
+        f"{two:.1f} s",
+        f"under {ASKED_SWEEP_S:g} s",
+        two < ASKED_SWEEP_S,
+    )
 
 
 def main():

@@ -9,7 +9,7 @@ Knows how each language is run. Does not know where pages come from.
 | `json parameters` | written to `file=PATH`, for the commands below |
 | `python` | run in the page's one Python; `text output` right after it is what it prints |
 | `text` | not run |
-"""
+"""  # noqa: E501
 
 import json
 import os
@@ -82,7 +82,7 @@ def same_line(shown, found, within):
     if match is None or within is None:
         return match is not None
     numbers = [float(n) for piece in pieces_of(shown) for n in NUMBER.findall(piece)]
-    return all(abs(float(f) - s) <= within * abs(s) + 1e-12 for s, f in zip(numbers, match.groups()))
+    return all(abs(float(f) - s) <= within * abs(s) + 1e-12 for s, f in zip(numbers, match.groups(), strict=True))
 
 
 def same(shown, found, within=None):
@@ -144,8 +144,13 @@ class Sandbox:
             if (root / name).is_dir():
                 shutil.copytree(root / name, folder / name)
         self.environment = {
-            "PATH": f"{program.parent}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8",
-            "PONTOON_CACHE_DIR": str(cache), "NO_COLOR": "1", "MPLBACKEND": "Agg", "COLUMNS": "120",
+            "PATH": f"{program.parent}:{os.environ['PATH']}",
+            "HOME": str(folder),
+            "LC_ALL": "C.UTF-8",
+            "PONTOON_CACHE_DIR": str(cache),
+            "NO_COLOR": "1",
+            "MPLBACKEND": "Agg",
+            "COLUMNS": "120",
             # figures: the same bytes from the same numbers
             "SOURCE_DATE_EPOCH": "0",
         }
@@ -159,8 +164,15 @@ class Sandbox:
 
     def bash(self, command):
         return subprocess.run(
-            ["bash", "-c", command], cwd=self.folder, env=self.environment, capture_output=True, text=True,
-            timeout=SECONDS, check=False, stdin=subprocess.DEVNULL)
+            ["bash", "-c", command],
+            cwd=self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            check=False,
+            stdin=subprocess.DEVNULL,
+        )
 
     def run(self, block):
         """Runs one block; raises Mismatch."""
@@ -188,15 +200,23 @@ class Sandbox:
             exit_status = int(block.settings.get("exit", 0)) if i + 1 == len(all_commands) else 0
             done = self.bash(command)
             if done.returncode != exit_status:
-                raise Mismatch(f"`{command}`: exit status {done.returncode}, not {exit_status}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+                raise Mismatch(
+                    f"`{command}`: exit status {done.returncode}, not {exit_status}\n"
+                    f"{done.stdout[-2000:]}{done.stderr[-2000:]}"
+                )
             text = done.stdout if exit_status in (0, 1) else done.stderr
             self.hold(block, shown, text, f"`{command}`")
 
     def code(self, block):
         if self.process is None:
             self.process = subprocess.Popen(
-                [str(self.python), "-c", PYTHON], cwd=self.folder, env=self.environment, text=True,
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+                [str(self.python), "-c", PYTHON],
+                cwd=self.folder,
+                env=self.environment,
+                text=True,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+            )
         self.process.stdin.write(json.dumps({"code": block.body}) + "\n")
         self.process.stdin.flush()
         answer = json.loads(self.process.stdout.readline() or '{"error": "Python is gone"}')

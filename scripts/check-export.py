@@ -4,6 +4,7 @@ import json
 import pathlib
 import sys
 import xml.etree.ElementTree as ElementTree
+from itertools import pairwise
 
 import meshio
 import numpy as np
@@ -52,7 +53,13 @@ def write_studies(out):
     study("reference", [nonlinear[1], linear], {**moving, "solver": "reference"}, record=record)
     vehicle = {
         "axles": [
-            {"behind_front_m": 0.0, "share": 0.4, "patch_length_m": 0.3, "patch_width_m": 0.4, "track_y_m": [-1.4, 1.4]},
+            {
+                "behind_front_m": 0.0,
+                "share": 0.4,
+                "patch_length_m": 0.3,
+                "patch_width_m": 0.4,
+                "track_y_m": [-1.4, 1.4],
+            },
             {"behind_front_m": 4.2, "share": 0.6, "patch_length_m": 0.3, "track_y_m": [0.5]},
         ],
         "inertia": "convective",
@@ -80,10 +87,15 @@ class Grid:
         if wrong == "vehicle_displacement" and "contact_force_n" in self.point:
             self.point["displacement"] = 1.05 * self.point["displacement"]
         count = sum(len(data) for _, data in self.cells)
-        for kind, data in self.cells:
-            hold(f"{path}: cells of points that are there", data.size == 0 or 0 <= data.min() <= data.max() < len(self.points))
+        for _, data in self.cells:
+            hold(
+                f"{path}: cells of points that are there",
+                data.size == 0 or 0 <= data.min() <= data.max() < len(self.points),
+            )
         for name, array in self.point.items():
-            hold(f"{path}: {name} an entry a point, finite", len(array) == len(self.points) and np.isfinite(array).all())
+            hold(
+                f"{path}: {name} an entry a point, finite", len(array) == len(self.points) and np.isfinite(array).all()
+            )
         for name, array in self.cell.items():
             hold(f"{path}: {name} an entry a cell, finite", len(array) == count and np.isfinite(array).all())
         hold(f"{path}: the program's version", len(self.field["program_version"].split(".")) == 3)
@@ -101,9 +113,11 @@ class Export:
         self.series = {}
         for part in self.contents["parts"]:
             name = part["file"]
-            steps = [(float(d.get("timestep")), d.get("file")) for d in ElementTree.parse(folder / name).iter("DataSet")]
+            steps = [
+                (float(d.get("timestep")), d.get("file")) for d in ElementTree.parse(folder / name).iter("DataSet")
+            ]
             hold(f"{name}: its instants", len(steps) == part["instants"])
-            hold(f"{name}: in order", all(a[0] < b[0] for a, b in zip(steps, steps[1:])))
+            hold(f"{name}: in order", all(a[0] < b[0] for a, b in pairwise(steps)))
             grids = [(time, Grid(folder / file)) for time, file in steps]
             first = grids[0][1]
             hold(f"{name}: points", len(first.points) == part["points"])
@@ -136,7 +150,9 @@ def check_mesh(grid, bridge):
         own = plate == PLATES[name]
         near(f"area of {name}", area[own].sum(), modules * expected, 1e-5 * modules * expected)
         near(f"thickness of {name}", grid.cell["thickness_m"][: len(quads)][own], np.full(own.sum(), thickness), 0.0)
-    hold("beams are lines", all((kind == "line") == (p == 7) for kind, p in zip(kinds, grid.cell["plate"])))
+    hold(
+        "beams are lines", all((kind == "line") == (p == 7) for kind, p in zip(kinds, grid.cell["plate"], strict=True))
+    )
     hold("modules", set(grid.cell["module"]) == set(range(1, modules + 1)))
 
 
@@ -174,7 +190,7 @@ def deck_displacement(mesh, x, y):
     corners, slack = mesh.points[quads][:, :, :2], 1e-5
     low, high = corners.min(axis=1), corners.max(axis=1)
     there = ((low - slack <= [x, y]) & ([x, y] <= high + slack)).all(axis=1)
-    for quad, at, size in zip(quads[there], corners[there], (high - low)[there]):
+    for quad, at, size in zip(quads[there], corners[there], (high - low)[there], strict=True):
         parts = (1 - np.abs(at - [x, y]) / size).prod(axis=1)
         yield parts @ mesh.point["displacement"][quad]
 
@@ -189,7 +205,7 @@ def check_vehicle(grid, mesh, bridge, load_n, x_of_front):
     hold("no motion off the bridge", (moved[~on] == 0).all())
     # places are in single precision: some 1e-6 m of plates 1 m long
     tolerance = 1e-5 * np.abs(mesh.point["displacement"]).max()
-    for (x_m, y_m, _), own in zip(grid.points[on], moved[on]):
+    for (x_m, y_m, _), own in zip(grid.points[on], moved[on], strict=True):
         off = min(np.abs(own - deck).max() for deck in deck_displacement(mesh, x_m, y_m))
         near("the vehicle moves with the deck under it", off, 0.0, tolerance)
     if x_of_front is not None:
@@ -222,7 +238,12 @@ def check_crossing(export, results, exact):
             near("a step at the peak's time", times[nearest], row["peak_deflection_time_s"], 1e-9)
             found = deflection_m(mesh[nearest][1], row["x_m"])
             near(f"deflection of position {row['position']}", found, row["peak_deflection_m"], tolerance)
-    near("the folder's own peak", export.series and max(p.get("peak_deflection_m", 0) for p in export.contents["parts"]), peak, tolerance)
+    near(
+        "the folder's own peak",
+        export.series and max(p.get("peak_deflection_m", 0) for p in export.contents["parts"]),
+        peak,
+        tolerance,
+    )
     histories = pl.read_parquet(results / "histories.parquet").filter(pl.col("job") == job)
     for position in (1, 2, 3, 4):
         values = column(histories, "value", quantity="deflection_m", position=position)
@@ -232,17 +253,26 @@ def check_crossing(export, results, exact):
     for joint in (2, 3):
         values = np.array(column(histories, "value", quantity="force_n", position=joint))
         own = [(grid.cell["joint"] == joint) & (grid.cell["link"] == 0) for _, grid in joints]
-        found = np.array([grid.cell["force_n"][o].sum() for (_, grid), o in zip(joints, own)])
+        found = np.array([grid.cell["force_n"][o].sum() for (_, grid), o in zip(joints, own, strict=True)])
         if exact:
             near(f"history of joint {joint}", found, values, 1e-9 * most)
-            senses = [set(grid.cell["state"][o]) for (_, grid), o in zip(joints, own)]
-            hold(f"states of joint {joint}", all((v == 0) == (s == {0}) or axes["connection"] == "linear" for v, s in zip(values, senses)))
-            hold(f"senses of joint {joint}", all((1 in s or v >= 0) and (2 in s or v <= 0) for v, s in zip(values, senses)))
+            senses = [set(grid.cell["state"][o]) for (_, grid), o in zip(joints, own, strict=True)]
+            hold(
+                f"states of joint {joint}",
+                all(
+                    (v == 0) == (s == {0}) or axes["connection"] == "linear"
+                    for v, s in zip(values, senses, strict=True)
+                ),
+            )
+            hold(
+                f"senses of joint {joint}",
+                all((1 in s or v >= 0) and (2 in s or v <= 0) for v, s in zip(values, senses, strict=True)),
+            )
         else:
             # contacts decide within a step: 2 % of the largest force is what the operator promises
             near(f"peak of joint {joint}", [found.max(), found.min()], [values.max(), values.min()], 0.02 * most)
     smallest = np.inf
-    for (time, grid), (_, joint), (_, under) in zip(vehicle, joints, mesh):
+    for (time, grid), (_, joint), (_, under) in zip(vehicle, joints, mesh, strict=True):
         check_joints(joint, bridge, axes)
         force, whole = check_vehicle(grid, under, bridge, axes["load_n"], axes["speed_m_s"] * time)
         for axle in set(grid.point["axle"]):
@@ -262,7 +292,12 @@ def check_static(export, results):
     check_mesh(mesh, bridge)
     for row in pl.read_parquet(results / "positions.parquet").filter(pl.col("job") == job).to_dicts():
         found = deflection_m(mesh, row["x_m"])
-        near(f"deflection of position {row['position']}", found, row["deflection_m"], 4 * SINGLE * axes["peak_deflection_m"])
+        near(
+            f"deflection of position {row['position']}",
+            found,
+            row["deflection_m"],
+            4 * SINGLE * axes["peak_deflection_m"],
+        )
     forces = pl.read_parquet(results / "connectors.parquet").filter(pl.col("job") == job)
     most = max(axes["peak_compression_n"], axes["peak_tension_n"])
     for row in forces.filter(pl.col("y_m").is_not_null()).to_dicts():
@@ -282,8 +317,11 @@ def check_modes(export, expected, bridge):
     grids = export.series["modes"]
     hold("as many modes", len(grids) == len(expected))
     check_mesh(grids[0][1], bridge)
-    for (number, grid), mode in zip(grids, expected):
-        hold(f"name of mode {number}", grid.field["shape"] == mode["shape"] and number == mode["number"] == grid.field["number"])
+    for (number, grid), mode in zip(grids, expected, strict=True):
+        hold(
+            f"name of mode {number}",
+            grid.field["shape"] == mode["shape"] and number == mode["number"] == grid.field["number"],
+        )
         near(f"frequency of mode {number}", grid.field["frequency_hz"], mode["frequency_hz"], 1e-9)
         near(f"largest component of mode {number}", grid.point["displacement"].max(), 1.0, SINGLE)
         hold(f"no component of mode {number} is larger", np.abs(grid.point["displacement"]).max() <= 1.0 + SINGLE)

@@ -112,8 +112,12 @@ def run_notebooks(counts):
                     faults.append(f"{path.name}: holds outputs; scripts/check-book --strip takes them out")
                     break
             client = NotebookClient(
-                notebook, timeout=300, startup_timeout=300, extra_arguments=["--log-level=40"],
-                resources={"metadata": {"path": str(folder / "examples")}})
+                notebook,
+                timeout=300,
+                startup_timeout=300,
+                extra_arguments=["--log-level=40"],
+                resources={"metadata": {"path": str(folder / "examples")}},
+            )
             try:
                 client.execute()
                 counts["notebooks"] += 1

@@ -1,4 +1,4 @@
-"""Whether check_book.py finds what is wrong: small books with one fault each must fail, the same ones without it must not."""
+"""Whether check_book.py finds what is wrong: small books with one fault each must fail, those without it must not."""
 
 import subprocess
 import sys
@@ -18,14 +18,28 @@ def block(info, body):
 TRIALS = [
     ("output", block("console", "$ echo 1.25 m\n1.25 m"), block("console", "$ echo 1.25 m\n1.26 m")),
     ("output left out", block("console", "$ seq 3\n1\n...\n3"), block("console", "$ seq 3\n1\n3")),
-    ("numbers within", block("console within=0.01", "$ echo a 1.004\na 1.0"), block("console within=0.01", "$ echo a 1.02\na 1.0")),
+    (
+        "numbers within",
+        block("console within=0.01", "$ echo a 1.004\na 1.0"),
+        block("console within=0.01", "$ echo a 1.02\na 1.0"),
+    ),
     ("exit status", block("console exit=2", "$ echo no >&2; exit 2\nno"), block("console", "$ exit 2")),
     ("python", block("python", "assert 1 + 1 == 2"), block("python", "assert 1 + 1 == 3")),
-    ("python's output", block("python", "print(2)") + block("text output", "2"), block("python", "print(2)") + block("text output", "3")),
-    ("a study", block("json study with=studies/smoke/study.json", '{ "name": "a" }'),
-     block("json study with=studies/smoke/study.json", '{ "nam": "a" }')),
-    ("a bridge", block("json bridge with=studies/bridges/smoke.json", '{ "modules": 2 }'),
-     block("json bridge with=studies/bridges/smoke.json", '{ "modules": 0 }')),
+    (
+        "python's output",
+        block("python", "print(2)") + block("text output", "2"),
+        block("python", "print(2)") + block("text output", "3"),
+    ),
+    (
+        "a study",
+        block("json study with=studies/smoke/study.json", '{ "name": "a" }'),
+        block("json study with=studies/smoke/study.json", '{ "nam": "a" }'),
+    ),
+    (
+        "a bridge",
+        block("json bridge with=studies/bridges/smoke.json", '{ "modules": 2 }'),
+        block("json bridge with=studies/bridges/smoke.json", '{ "modules": 0 }'),
+    ),
     ("a reason", block('console not-run="no cluster"', "$ false"), block('console not-run=" "', "$ false")),
     ("a language", block("text", "x"), block("xyz", "x")),
     ("Rust", block("rust", "{{#include one.md}}"), block("rust", "fn f() {}")),
@@ -47,10 +61,17 @@ def check(pages):
 
 def main():
     wrong = []
-    trials = [(what, {"SUMMARY.md": SUMMARY, "one.md": right}, {"SUMMARY.md": SUMMARY, "one.md": fault})
-              for what, right, fault in TRIALS]
-    trials.append(("a page of the summary", {"SUMMARY.md": SUMMARY, "one.md": "# One"},
-                   {"SUMMARY.md": SUMMARY, "one.md": "# One", "two.md": "# Two"}))
+    trials = [
+        (what, {"SUMMARY.md": SUMMARY, "one.md": right}, {"SUMMARY.md": SUMMARY, "one.md": fault})
+        for what, right, fault in TRIALS
+    ]
+    trials.append(
+        (
+            "a page of the summary",
+            {"SUMMARY.md": SUMMARY, "one.md": "# One"},
+            {"SUMMARY.md": SUMMARY, "one.md": "# One", "two.md": "# Two"},
+        )
+    )
     for what, right, fault in trials:
         status, said = check(right)
         if status != 0:

@@ -21,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +44,7 @@ X, Y, Z = 1, 2, 3
 
 
 # ---- the table
+
 
 class Table:
     """Rows of both codes, and the names of those whose deviation is beyond what is asked."""
@@ -72,6 +74,7 @@ class Table:
 
 # ---- the program's side
 
+
 def pontoon(*words):
     """Standard output of the program."""
     return subprocess.run([os.environ["PONTOON"], *map(str, words)], check=True, stdout=subprocess.PIPE).stdout
@@ -99,8 +102,13 @@ def pontoon_statics(bridge, connection):
         case |= {key: bridge["connectors"][key] for key in ("gap_tension_m", "gap_compression_m")}
     vehicle = {"footprint_length_m": FOOTPRINT_M, "track_y_m": TRACK_Y_M, "patch_points": FOOTPRINT_POINTS}
     analysis = {"kind": "static", "model": "full"}
-    study = {"name": "peers", "bridge": "bridge.json", "vehicle": vehicle, "analysis": analysis,
-             "design": [{"cases": [case]}]}
+    study = {
+        "name": "peers",
+        "bridge": "bridge.json",
+        "vehicle": vehicle,
+        "analysis": analysis,
+        "design": [{"cases": [case]}],
+    }
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "bridge.json").write_text(json.dumps(bridge))
@@ -114,12 +122,13 @@ def pontoon_statics(bridge, connection):
 
 # ---- the bridge in OpenSees
 
+
 def divided(places, parts):
     """Sorted places, each interval divided into `parts(length)`."""
     places = sorted(places)
     places = [p for i, p in enumerate(places) if i == 0 or p - places[i - 1] > SAME_PLACE_M]
     lines = [places[0]]
-    for a, b in zip(places, places[1:]):
+    for a, b in pairwise(places):
         lines.extend(np.linspace(a, b, parts(b - a) + 1)[1:])
     return np.array(lines)
 
@@ -143,11 +152,22 @@ class ModuleMesh:
         stiffeners, mesh = box["stiffeners"], box["mesh"]
         long_walls, cross_walls = box["longitudinal_walls"], box["transverse_walls"]
         half, length = box["breadth_m"] / 2, box["length_m"]
-        self.x = divided([0.0, length, *cross_walls["x_m"], *stiffeners["transverse_x_m"]],
-                         lambda part: int(np.ceil(part * mesh["elements_along"] / length - 1e-6)))
-        self.y = divided([-half, half, 0.0, *long_walls["y_m"], *stiffeners["longitudinal_y_m"],
-                          *bridge["hinges"]["y_m"], *bridge["connectors"]["y_m"]],
-                         lambda _: mesh["elements_between_lines"])
+        self.x = divided(
+            [0.0, length, *cross_walls["x_m"], *stiffeners["transverse_x_m"]],
+            lambda part: int(np.ceil(part * mesh["elements_along"] / length - 1e-6)),
+        )
+        self.y = divided(
+            [
+                -half,
+                half,
+                0.0,
+                *long_walls["y_m"],
+                *stiffeners["longitudinal_y_m"],
+                *bridge["hinges"]["y_m"],
+                *bridge["connectors"]["y_m"],
+            ],
+            lambda _: mesh["elements_between_lines"],
+        )
         self.z = np.linspace(0.0, box["depth_m"], mesh["elements_over_depth"] + 1)
         self.last = tuple(len(lines) - 1 for lines in (self.x, self.y, self.z))
         nx, ny, nz = self.last
@@ -221,8 +241,14 @@ class BridgePeer:
         steel = self.bridge["module"]["material"]
         self.section = {t: n for n, t in enumerate(sorted({t for t, _ in self.mesh.shells}), 1)}
         for thickness, n in self.section.items():
-            ops.section("ElasticMembranePlateSection", n, steel["youngs_modulus_pa"], steel["poissons_ratio"],
-                        thickness, steel["density_kg_m3"])
+            ops.section(
+                "ElasticMembranePlateSection",
+                n,
+                steel["youngs_modulus_pa"],
+                steel["poissons_ratio"],
+                thickness,
+                steel["density_kg_m3"],
+            )
         ops.geomTransf("Linear", 1, 0.0, 0.0, 1.0)
         ops.geomTransf("Linear", 2, 1.0, 0.0, 0.0)
 
@@ -237,9 +263,21 @@ class BridgePeer:
             self._element(shell, *(self.tag(module, c) for c in corners), self.section[thickness])
         for start, end in mesh.beams:
             upright = start[2] != end[2]
-            self._element("elasticBeamColumn", self.tag(module, start), self.tag(module, end), area, e, g,
-                          beam["torsion_constant_m4"], inertia, inertia, 2 if upright else 1,
-                          "-mass", steel["density_kg_m3"] * area, "-cMass")
+            self._element(
+                "elasticBeamColumn",
+                self.tag(module, start),
+                self.tag(module, end),
+                area,
+                e,
+                g,
+                beam["torsion_constant_m4"],
+                inertia,
+                inertia,
+                2 if upright else 1,
+                "-mass",
+                steel["density_kg_m3"] * area,
+                "-cMass",
+            )
 
     def _water(self, module, floating):
         """Springs to ground and added mass at the bottom, by tributary area; nothing in x and y but against drift."""
@@ -268,8 +306,17 @@ class BridgePeer:
         tags = []
         for iy in (line_at(mesh.y, y) for y in connectors["y_m"]):
             law = connector_law(connection, connectors["stiffness_n_m"], connectors)
-            tags.append(self._element("zeroLength", self.tag(module - 1, (nx, iy, nz)), self.tag(module, (0, iy, nz)),
-                                      "-mat", self._material(*law), "-dir", X))
+            tags.append(
+                self._element(
+                    "zeroLength",
+                    self.tag(module - 1, (nx, iy, nz)),
+                    self.tag(module, (0, iy, nz)),
+                    "-mat",
+                    self._material(*law),
+                    "-dir",
+                    X,
+                )
+            )
         self.connectors.append(tags)
 
     def _supports(self):
@@ -300,7 +347,8 @@ class BridgePeer:
         mesh = self.mesh
         centre = line_at(mesh.y, 0.0)
         return [self.tag(m, (0, centre, 0)) for m in range(self.modules)] + [
-            self.tag(self.modules - 1, (mesh.last[0], centre, 0))]
+            self.tag(self.modules - 1, (mesh.last[0], centre, 0))
+        ]
 
 
 def connector_law(connection, k, gaps):
@@ -330,7 +378,8 @@ def name_shapes(peer, count):
     heavy = structure + peer.bridge["added_mass_kg_m"]
     frequencies, numbers = {}, {}
     for mode, lam in enumerate(squared, 1):
-        def motion(place, direction):
+
+        def motion(place, direction, mode=mode):
             return np.array([ops.nodeEigenvector(peer.tag(m, (ix, *place)), mode, direction) for m, ix in sections])
 
         deck = np.array([motion((iy, nz), Z) for iy in range(ny + 1)])
@@ -379,6 +428,7 @@ def opensees_statics(bridge, shell, connection):
 
 # ---- the chain in OpenSees
 
+
 class ChainPeer:
     """The plane chain in OpenSees' domain; dofs x, z, rotation."""
 
@@ -407,13 +457,33 @@ class ChainPeer:
                 ops.fix(grounds + node, 1, 1, 1)
                 share = 1 if i in (0, self.parts) else 2
                 ops.mass(node, 0.0, 0.5 * share * self.element_m * water["added_mass_kg_m"], 0.0)
-                ops.element("zeroLength", next(elements), grounds + node, node, "-mat", share, "-dir", 2,
-                            "-doRayleigh", 1)
-                ops.element("elasticBeamColumn", next(elements), node, tops + node, post["area_m2"],
-                            post["youngs_modulus_pa"], post["second_moment_m4"], 1)
+                ops.element(
+                    "zeroLength", next(elements), grounds + node, node, "-mat", share, "-dir", 2, "-doRayleigh", 1
+                )
+                ops.element(
+                    "elasticBeamColumn",
+                    next(elements),
+                    node,
+                    tops + node,
+                    post["area_m2"],
+                    post["youngs_modulus_pa"],
+                    post["second_moment_m4"],
+                    1,
+                )
                 if i:
-                    ops.element("elasticBeamColumn", next(elements), node - 1, node, beam["area_m2"],
-                                beam["youngs_modulus_pa"], beam["second_moment_m4"], 1, "-mass", mass_kg_m, "-cMass")
+                    ops.element(
+                        "elasticBeamColumn",
+                        next(elements),
+                        node - 1,
+                        node,
+                        beam["area_m2"],
+                        beam["youngs_modulus_pa"],
+                        beam["second_moment_m4"],
+                        1,
+                        "-mass",
+                        mass_kg_m,
+                        "-cMass",
+                    )
         self.connectors = []
         for module in range(1, self.modules):
             left, right = self.node(module - 1, self.parts), self.node(module, 0)
@@ -493,6 +563,7 @@ def opensees_crossing(chain, crossing, time_step_s):
 
 # ---- side by side
 
+
 def compare_modes(table, bridge, shell, mesh, asked_percent):
     """The single module and the whole bridge, floating free."""
     for title, words, modules, count, names in (
@@ -514,9 +585,9 @@ def compare_statics(table, bridge, shell, mesh, asked_percent):
         table.head(f"static, {connection}, {mesh}, {shell}", ours_s, theirs_s)
         (w_ours, n_ours), (w_theirs, n_theirs) = ours, theirs
         table.row("largest deflection", "m", w_ours.max(), w_theirs.max(), asked_percent)
-        for position, (a, b) in enumerate(zip(w_ours, w_theirs), 1):
+        for position, (a, b) in enumerate(zip(w_ours, w_theirs, strict=True), 1):
             table.row(f"deflection at {position}, of the largest", "m", a, b, asked_percent, of=w_theirs.max())
-        for joint, (a, b) in enumerate(zip(n_ours, n_theirs), 2):
+        for joint, (a, b) in enumerate(zip(n_ours, n_theirs, strict=True), 2):
             table.row(f"force of joint {joint}, of the largest", "N", a, b, of=np.abs(n_theirs).max())
 
 

@@ -1,4 +1,4 @@
-"""Prints paper and pontoon side by side from the folders that scripts/reproduce filled, then what other studies answer."""
+"""Prints paper and pontoon side by side from the folders that scripts/reproduce filled, then other studies' answers."""
 
 import json
 import sys
@@ -9,8 +9,13 @@ import polars as pl
 OUT = Path(sys.argv[1])
 PAPER = ["table1", "fig09_static", "fig10_test_run", "fig12_14_gap_tension", "fig13_15_gap_compression"]
 SETTING = ["connection", "gap_tension_m", "gap_compression_m"]
-WORDS = {"holds": "holds", "falls-short": "FALLS SHORT", "expected-fail": "fails as expected",
-         "now-holds": "CHANGED: holds now", "record": "record"}
+WORDS = {
+    "holds": "holds",
+    "falls-short": "FALLS SHORT",
+    "expected-fail": "fails as expected",
+    "now-holds": "CHANGED: holds now",
+    "record": "record",
+}
 
 
 def percent(share):
@@ -27,13 +32,21 @@ def rows():
             # a limit of ours is no figure of the paper's
             if line["id"].endswith(("super-element over own full", "condensed from above")):
                 paper = line["expected"]
-            yield study, line["id"], paper, ours, percent(worst["deviation"]), percent(worst["margin"]), WORDS[line["verdict"]]
+            yield (
+                study,
+                line["id"],
+                paper,
+                ours,
+                percent(worst["deviation"]),
+                percent(worst["margin"]),
+                WORDS[line["verdict"]],
+            )
 
 
 def table(head, body):
     widths = [max(len(row[i]) for row in [head, *body]) for i in range(len(head))]
     for row in [head, *body]:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 def read(study, name):
@@ -87,15 +100,20 @@ for name, column in (("the job's peak deflection", "peak_deflection_m"), ("the c
 lane = read("fu2005_lane", "jobs").sort("job").to_dicts()
 forces = read("fu2005_lane", "connectors").filter(pl.col("y_m").is_not_null())
 by_job = [
-    {(r["joint"], r["y_m"]): (r["peak_compression_n"], r["peak_tension_n"]) for r in forces.filter(pl.col("job") == j).to_dicts()}
+    {
+        (r["joint"], r["y_m"]): (r["peak_compression_n"], r["peak_tension_n"])
+        for r in forces.filter(pl.col("job") == j).to_dicts()
+    }
     for j in range(3)
 ]
 print("one lane (y = 1 and 3 m), super-element against full model")
 for name in ("peak_edge_deflection_m", "peak_roll_rad"):
     print(f"  {name}: {lane[0][name]:.6f} against {lane[1][name]:.6f}")
-worst = max(abs(a - b) / b for key in by_job[0] for a, b in zip(by_job[0][key], by_job[1][key]) if b > 0.0)
+worst = max(abs(a - b) / b for key in by_job[0] for a, b in zip(by_job[0][key], by_job[1][key], strict=True) if b > 0.0)
 print(f"  a connector's peak force differs by at most {100 * worst:.2f} %")
 mirrored = max(
-    abs(a - b) / max(b, 1.0) for (joint, y), pair in by_job[0].items() for a, b in zip(by_job[2][(joint, -y)], pair)
+    abs(a - b) / max(b, 1.0)
+    for (joint, y), pair in by_job[0].items()
+    for a, b in zip(by_job[2][(joint, -y)], pair, strict=True)
 )
 print(f"  the mirrored lane's forces differ by at most {mirrored:.1e}")

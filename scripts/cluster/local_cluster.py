@@ -3,8 +3,8 @@
     local_cluster.py --directory DIR --workers W --cpus C --task-cpus T --crash-limit L --tasks 0,3,4 \\
         -- COMMAND...
 
-Runs COMMAND once for each number, which it finds in HQ_TASK_ID. Exit status: 0 all tasks ended, well or not (what they left
-says how), 3 HyperQueue could not go on. The engine keeps its files in DIR. Knows nothing of pontoon.
+Runs COMMAND once for each number, which it finds in HQ_TASK_ID. Exit status: 0 all tasks ended, well or not (what they
+left says how), 3 HyperQueue could not go on. The engine keeps its files in DIR. Knows nothing of pontoon.
 """
 
 import argparse
