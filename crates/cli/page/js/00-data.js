@@ -1,13 +1,20 @@
 // The embedded data: parses it, unpacks its arrays when they are asked for. Knows the contract; draws nothing.
 (page => {
   'use strict';
-  const WIDTH = { u8: [Uint8Array, 1], u16: [Uint16Array, 2], i16: [Int16Array, 2], u32: [Uint32Array, 4], f32: [Float32Array, 4] };
+  const WIDTH = {
+    u8: [Uint8Array, 1],
+    u16: [Uint16Array, 2],
+    i16: [Int16Array, 2],
+    u32: [Uint32Array, 4],
+    f32: [Float32Array, 4],
+  };
   const NONE = { u16: 65535, u32: 4294967295 };
   const unpacked = new WeakMap();
 
   function bytes(text) {
     if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
-    const raw = atob(text), out = new Uint8Array(raw.length);
+    const raw = atob(text),
+      out = new Uint8Array(raw.length);
     for (let i = 0; i < raw.length; i++) out[i] = raw.charCodeAt(i);
     return out;
   }
@@ -17,7 +24,8 @@
     if (!packed || Array.isArray(packed)) return packed ?? [];
     if (unpacked.has(packed)) return unpacked.get(packed);
     const kind = Object.keys(WIDTH).find(key => key in packed);
-    const [Type, width] = WIDTH[kind], raw = bytes(packed[kind]);
+    const [Type, width] = WIDTH[kind],
+      raw = bytes(packed[kind]);
     let out = new Type(raw.buffer, raw.byteOffset, raw.byteLength / width);
     if ('scale' in packed) out = Float64Array.from(out, v => v * packed.scale);
     unpacked.set(packed, out);
@@ -45,7 +53,7 @@
   /** Why row `at` failed, or null. */
   page.reason = at => {
     const { words, index } = page.data.rows.reason;
-    return array(index)[at] === NONE.u16 ? null : words[array(index)[at]] ?? null;
+    return array(index)[at] === NONE.u16 ? null : (words[array(index)[at]] ?? null);
   };
 
   let places;
@@ -63,4 +71,4 @@
     page.picked = job;
     listeners.forEach(listener => listener(job, by));
   };
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

@@ -27,7 +27,11 @@
 
   /** A select of [value, text] pairs. */
   function select(pairs, value, onchange) {
-    const node = el('select', { onchange: () => onchange(node.value) }, pairs.map(([v, text]) => el('option', { value: v }, text)));
+    const node = el(
+      'select',
+      { onchange: () => onchange(node.value) },
+      pairs.map(([v, text]) => el('option', { value: v }, text)),
+    );
     node.value = value;
     return node;
   }
@@ -36,31 +40,48 @@
 
   /** A section with its heading, for the table of contents. */
   function section(key, title, ...children) {
-    return el('section', { id: key, 'aria-labelledby': `${key}-title` }, el('h2', { id: `${key}-title` }, title), children);
+    return el(
+      'section',
+      { id: key, 'aria-labelledby': `${key}-title` },
+      el('h2', { id: `${key}-title` }, title),
+      children,
+    );
   }
 
   /** A box that scrolls by itself and can be reached with the keyboard. */
-  const scroller = (label, ...children) => el('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': label }, children);
+  const scroller = (label, ...children) =>
+    el('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': label }, children);
 
   const motionless = matchMedia('(prefers-reduced-motion: reduce)');
   /** Calls `draw(ms since the last)` before each frame while it is running. */
   function animation(draw) {
-    let handle = null, last = null;
+    let handle = null,
+      last = null;
     const tick = now => {
       handle = requestAnimationFrame(tick);
       draw(last === null ? 0 : now - last);
       last = now;
     };
     return {
-      get running() { return handle !== null; },
-      start() { if (handle === null) { last = null; handle = requestAnimationFrame(tick); } },
-      stop() { if (handle !== null) cancelAnimationFrame(handle); handle = null; },
+      get running() {
+        return handle !== null;
+      },
+      start() {
+        if (handle === null) {
+          last = null;
+          handle = requestAnimationFrame(tick);
+        }
+      },
+      stop() {
+        if (handle !== null) cancelAnimationFrame(handle);
+        handle = null;
+      },
     };
   }
 
   // What must stand still on paper registers here, and what is drawn takes paper's width there; see 95-main.js.
   page.paper = [];
   page.paperWidth = null;
-  const room = node => (node.clientWidth ? page.paperWidth ?? node.clientWidth : 0);
+  const room = node => (node.clientWidth ? (page.paperWidth ?? node.clientWidth) : 0);
   page.dom = { el, svg, id, field, select, button, section, scroller, animation, motionless, room };
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

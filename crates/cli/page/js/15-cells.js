@@ -12,11 +12,19 @@
    * meet `fixed` (axis -> index of a value; what is not in it is free). Row-major over `keys`.
    */
   function slice(keys, fixed, measureAt, statistic = 'max') {
-    const sizes = keys.map(k => data.axes[k].values.length), size = sizes.reduce((a, b) => a * b, 1);
-    const value = new Float64Array(size).fill(NaN), at = new Uint32Array(size).fill(NONE.u32), jobs = new Uint32Array(size), failed = new Uint32Array(size);
-    const source = array(cells[statistic][measureAt]), winner = array(cells.at[measureAt]);
-    const index = keys.map(k => array(cells.axis[k])), tests = [...fixed].filter(([a]) => !keys.includes(a)).map(([a, i]) => [array(cells.axis[a]), i]);
-    const n = array(cells.jobs), bad = array(cells.failed), sign = statistic === 'max' ? 1 : -1;
+    const sizes = keys.map(k => data.axes[k].values.length),
+      size = sizes.reduce((a, b) => a * b, 1);
+    const value = new Float64Array(size).fill(NaN),
+      at = new Uint32Array(size).fill(NONE.u32),
+      jobs = new Uint32Array(size),
+      failed = new Uint32Array(size);
+    const source = array(cells[statistic][measureAt]),
+      winner = array(cells.at[measureAt]);
+    const index = keys.map(k => array(cells.axis[k])),
+      tests = [...fixed].filter(([a]) => !keys.includes(a)).map(([a, i]) => [array(cells.axis[a]), i]);
+    const n = array(cells.jobs),
+      bad = array(cells.failed),
+      sign = statistic === 'max' ? 1 : -1;
     each: for (let c = 0; c < cells.count; c++) {
       for (const [axisOf, wanted] of tests) if (axisOf[c] !== wanted) continue each;
       let place = 0;
@@ -34,8 +42,13 @@
 
   /** The least and the largest value of a measure in all cells. */
   function range(measureAt, statistic = 'max') {
-    let low = Infinity, high = -Infinity;
-    for (const v of array(cells[statistic][measureAt])) if (!Number.isNaN(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+    let low = Infinity,
+      high = -Infinity;
+    for (const v of array(cells[statistic][measureAt]))
+      if (!Number.isNaN(v)) {
+        low = Math.min(low, v);
+        high = Math.max(high, v);
+      }
     return low <= high ? [low, high] : null;
   }
 
@@ -55,4 +68,4 @@
   }
 
   page.cells = { usual, axis, measure, slice, range, varying };
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

@@ -13,11 +13,16 @@
     return {
       first: () => list[0]?.[0] ?? null,
       at(px, py) {
-        let best = null, least = Infinity;
-        for (const group of list) for (const p of group) {
-          const d = (p.px - px) ** 2 + (p.py - py) ** 2;
-          if (d < least) { least = d; best = p; }
-        }
+        let best = null,
+          least = Infinity;
+        for (const group of list)
+          for (const p of group) {
+            const d = (p.px - px) ** 2 + (p.py - py) ** 2;
+            if (d < least) {
+              least = d;
+              best = p;
+            }
+          }
         return best;
       },
       step(point, dx, dy) {
@@ -29,20 +34,41 @@
     };
   }
 
-  const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1], Home: [-1e9, 0], End: [1e9, 0], PageUp: [-10, 0], PageDown: [10, 0] };
+  const KEYS = {
+    ArrowLeft: [-1, 0],
+    ArrowRight: [1, 0],
+    ArrowUp: [0, -1],
+    ArrowDown: [0, 1],
+    Home: [-1e9, 0],
+    End: [1e9, 0],
+    PageUp: [-10, 0],
+    PageDown: [10, 0],
+  };
 
   /**
    * A chart. `draw(width)` answers { node (an SVG), walk (see walker) or groups, legend, empty (why nothing is drawn),
    * table: () => [head, ...rows] }. A point has px, py, text() and, where it has one, job.
    */
   function figure(key, { title, label, draw, hint }) {
-    const caption = el('figcaption', { id: `${key}-caption` }, title), note = el('p', { class: 'sub' });
-    const legend = el('div', { class: 'legend' }), readout = el('output', { class: 'readout', id: id('readout') });
-    const plot = el('div', { class: 'plot', tabindex: '0', role: 'application', 'aria-roledescription': 'chart', 'aria-label': label ?? title, 'aria-describedby': readout.id });
+    const caption = el('figcaption', { id: `${key}-caption` }, title),
+      note = el('p', { class: 'sub' });
+    const legend = el('div', { class: 'legend' }),
+      readout = el('output', { class: 'readout', id: id('readout') });
+    const plot = el('div', {
+      class: 'plot',
+      tabindex: '0',
+      role: 'application',
+      'aria-roledescription': 'chart',
+      'aria-label': label ?? title,
+      'aria-describedby': readout.id,
+    });
     const numbers = el('details', { class: 'numbers' }, el('summary', {}, 'Numbers of this chart'));
     const node = el('figure', { class: 'chart', id: key }, caption, note, legend, plot, readout, numbers);
     const idle = hint ?? 'Point at the chart, or focus it and use the arrow keys, to read a value.';
-    let now = null, current = null, cursor = null, width = 0;
+    let now = null,
+      current = null,
+      cursor = null,
+      width = 0;
 
     function show(point) {
       current = point;
@@ -51,7 +77,14 @@
       readout.textContent = point ? point.text() : idle;
       readout.classList.toggle('idle', !point);
       if (!point || !now?.node) return;
-      cursor = point.w ? svg('rect', { class: 'cursor', x: point.px - point.w / 2, y: point.py - point.h / 2, width: point.w, height: point.h })
+      cursor = point.w
+        ? svg('rect', {
+            class: 'cursor',
+            x: point.px - point.w / 2,
+            y: point.py - point.h / 2,
+            width: point.w,
+            height: point.h,
+          })
         : svg('circle', { class: 'cursor', cx: point.px, cy: point.py, r: 7 });
       now.node.append(cursor);
     }
@@ -75,9 +108,33 @@
 
     function tabulate() {
       const [head, ...rows] = now?.table?.() ?? [[]];
-      const body = rows.slice(0, 400).map(row => el('tr', {}, row.map((v, i) => el(i ? 'td' : 'th', i ? {} : { scope: 'row' }, String(v)))));
+      const body = rows.slice(0, 400).map(row =>
+        el(
+          'tr',
+          {},
+          row.map((v, i) => el(i ? 'td' : 'th', i ? {} : { scope: 'row' }, String(v))),
+        ),
+      );
       numbers.querySelector('.scroll')?.remove();
-      numbers.append(page.dom.scroller(`Numbers: ${title}`, el('table', { class: 'plain' }, el('thead', {}, el('tr', {}, head.map(h => el('th', { scope: 'col' }, h)))), el('tbody', {}, body))));
+      numbers.append(
+        page.dom.scroller(
+          `Numbers: ${title}`,
+          el(
+            'table',
+            { class: 'plain' },
+            el(
+              'thead',
+              {},
+              el(
+                'tr',
+                {},
+                head.map(h => el('th', { scope: 'col' }, h)),
+              ),
+            ),
+            el('tbody', {}, body),
+          ),
+        ),
+      );
     }
     numbers.addEventListener('toggle', () => numbers.open && tabulate());
 
@@ -87,25 +144,38 @@
       const [, , w, h] = (now.node.getAttribute('viewBox') ?? `0 0 ${box.width} ${box.height}`).split(' ').map(Number);
       return now.walk.at(((event.clientX - box.left) * w) / box.width, ((event.clientY - box.top) * h) / box.height);
     }
-    plot.addEventListener('pointermove', event => { const p = place(event); if (p !== current) show(p); });
+    plot.addEventListener('pointermove', event => {
+      const p = place(event);
+      if (p !== current) show(p);
+    });
     plot.addEventListener('pointerleave', () => document.activeElement !== plot && show(null));
-    plot.addEventListener('click', event => { const p = place(event); if (p?.job !== undefined && p.job !== null) page.pick(p.job, 'chart'); });
+    plot.addEventListener('click', event => {
+      const p = place(event);
+      if (p?.job !== undefined && p.job !== null) page.pick(p.job, 'chart');
+    });
     plot.addEventListener('focus', () => current || show(now && !now.empty ? now.walk.first() : null));
     plot.addEventListener('blur', () => show(null));
     plot.addEventListener('keydown', event => {
       if (!now || now.empty || event.ctrlKey || event.metaKey || event.altKey) return;
-      if (event.key === 'Enter' && current?.job !== undefined && current?.job !== null) return page.pick(current.job, 'chart');
+      if (event.key === 'Enter' && current?.job !== undefined && current?.job !== null)
+        return page.pick(current.job, 'chart');
       const move = KEYS[event.key];
       if (!move) return;
       event.preventDefault();
       show(current ? now.walk.step(current, ...move) : now.walk.first());
     });
     new ResizeObserver(() => Math.abs(page.dom.room(plot) - width) > 1 && redraw()).observe(plot);
-    const out = { node, redraw, get now() { return now; } };
+    const out = {
+      node,
+      redraw,
+      get now() {
+        return now;
+      },
+    };
     figures.add(out);
     return out;
   }
 
   page.figure = figure;
   page.figures = figures;
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

@@ -1,20 +1,41 @@
 // Histories of the jobs that recorded them: one chart a quantity, a line a position, of the job that is chosen here or picked anywhere.
 (page => {
   'use strict';
-  const { data, numbers, array } = page, { el, section, field, select } = page.dom;
-  const TITLES = { deflection_m: ['Deflection', 'deflection, downward', true, 'position'], force_n: ['Connector force', 'force of a joint, tension upward', false, 'joint'] };
+  const { data, numbers, array } = page,
+    { el, section, field, select } = page.dom;
+  const TITLES = {
+    deflection_m: ['Deflection', 'deflection, downward', true, 'position'],
+    force_n: ['Connector force', 'force of a joint, tension upward', false, 'joint'],
+  };
 
   function histories() {
     const list = data.histories ?? [];
     if (!list.length) return null;
-    const jobs = [...new Map(list.map(h => [h.job, h.axes])).entries()], quantities = [...new Set(list.map(h => h.quantity))];
+    const jobs = [...new Map(list.map(h => [h.job, h.axes])).entries()],
+      quantities = [...new Set(list.map(h => h.quantity))];
     let job = jobs[0][0];
     const said = el('p', { class: 'sub', role: 'status' });
-    const charts = quantities.map(quantity => page.figure(`history-${quantity.replace(/[^a-z0-9]/gi, '-')}`, { title: `${TITLES[quantity]?.[0] ?? quantity} over time`, draw: width => draw(job, quantity, width) }));
-    const pick = select(jobs.map(([n, axes]) => [String(n), `job ${n}: ${axes}`]), String(job), v => { job = Number(v); said.textContent = ''; charts.forEach(c => c.redraw()); });
+    const charts = quantities.map(quantity =>
+      page.figure(`history-${quantity.replace(/[^a-z0-9]/gi, '-')}`, {
+        title: `${TITLES[quantity]?.[0] ?? quantity} over time`,
+        draw: width => draw(job, quantity, width),
+      }),
+    );
+    const pick = select(
+      jobs.map(([n, axes]) => [String(n), `job ${n}: ${axes}`]),
+      String(job),
+      v => {
+        job = Number(v);
+        said.textContent = '';
+        charts.forEach(c => c.redraw());
+      },
+    );
     pick.id = 'history-job';
     page.onPick(n => {
-      if (!jobs.some(([j]) => j === n)) { said.textContent = `Job ${n} has no history on this page; job ${job} is shown.`; return; }
+      if (!jobs.some(([j]) => j === n)) {
+        said.textContent = `Job ${n} has no history on this page; job ${job} is shown.`;
+        return;
+      }
       job = n;
       pick.value = String(n);
       said.textContent = '';
@@ -22,25 +43,63 @@
     });
     const wide = field('Job', pick);
     wide.classList.add('wide');
-    return section('histories', 'Histories', el('div', { class: 'controls' }, wide), said, charts.map(c => c.node));
+    return section(
+      'histories',
+      'Histories',
+      el('div', { class: 'controls' }, wide),
+      said,
+      charts.map(c => c.node),
+    );
   }
 
   function draw(job, quantity, width) {
-    const mine = data.histories.filter(h => h.job === job && h.quantity === quantity), [, axis, reverse, place] = TITLES[quantity] ?? [quantity, quantity, false, 'position'];
+    const mine = data.histories.filter(h => h.job === job && h.quantity === quantity),
+      [, axis, reverse, place] = TITLES[quantity] ?? [quantity, quantity, false, 'position'];
     if (!mine.length) return { empty: `Job ${job} did not record this.` };
     const series = mine.map((h, i) => {
-      const time = array(h.time_s), value = array(h.value);
-      return { key: `${place}-${h.position}`, label: `${place} ${h.position}`, ...page.look(i, mine.length), symbol: null, dots: false, thin: true,
-        points: Array.from(time, (t, k) => ({ x: t, y: value[k], text: () => `${place} ${h.position} at ${numbers.quantity(t, 's')}: ${numbers.quantity(value[k], h.unit)}` })) };
+      const time = array(h.time_s),
+        value = array(h.value);
+      return {
+        key: `${place}-${h.position}`,
+        label: `${place} ${h.position}`,
+        ...page.look(i, mine.length),
+        symbol: null,
+        dots: false,
+        thin: true,
+        points: Array.from(time, (t, k) => ({
+          x: t,
+          y: value[k],
+          text: () => `${place} ${h.position} at ${numbers.quantity(t, 's')}: ${numbers.quantity(value[k], h.unit)}`,
+        })),
+      };
     });
     let most = 0;
     for (const s of series) for (const p of s.points) most = Math.max(most, Math.abs(p.y) || 0);
-    const at = page.rowOf(job), unit = numbers.unit(mine[0].unit, most);
-    const marks = (data.marks ?? []).filter(m => m.chart === 'history' && (m.measure === quantity || m.measure === `peak_${quantity}`) && mine.some(h => m.position === null || m.position === undefined || h.position === m.position) && (at < 0 || page.axes.fitsRow(m, at)))
+    const at = page.rowOf(job),
+      unit = numbers.unit(mine[0].unit, most);
+    const marks = (data.marks ?? [])
+      .filter(
+        m =>
+          m.chart === 'history' &&
+          (m.measure === quantity || m.measure === `peak_${quantity}`) &&
+          mine.some(h => m.position === null || m.position === undefined || h.position === m.position) &&
+          (at < 0 || page.axes.fitsRow(m, at)),
+      )
       .map(m => ({ ...m, text: () => `${m.label}: ${numbers.quantity(m.y, mine[0].unit)}` }));
-    const out = page.lines({ width, height: 260, series, marks, x: { title: 'time (s)' }, y: { title: numbers.axisTitle(axis, unit.unit), factor: unit.factor, reverse } });
-    return { ...out, note: mine.length > 1 ? mine[0].axes : `${place} ${mine[0].position}: ${mine[0].axes}`, legend: page.legend(series, marks) };
+    const out = page.lines({
+      width,
+      height: 260,
+      series,
+      marks,
+      x: { title: 'time (s)' },
+      y: { title: numbers.axisTitle(axis, unit.unit), factor: unit.factor, reverse },
+    });
+    return {
+      ...out,
+      note: mine.length > 1 ? mine[0].axes : `${place} ${mine[0].position}: ${mine[0].axes}`,
+      legend: page.legend(series, marks),
+    };
   }
 
   page.histories = histories;
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

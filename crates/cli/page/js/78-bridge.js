@@ -1,11 +1,21 @@
 // The bridge from the side at one instant: modules, water, vehicle, joints by their state, forces as bars. Knows one play; keeps no time.
 (page => {
   'use strict';
-  const { data, numbers, array } = page, { svg, el } = page.dom;
-  const STATES = ['open', 'compression', 'tension', 'both'], WORDS = ['open', 'compression', 'tension', 'compression and tension'];
+  const { data, numbers, array } = page,
+    { svg, el } = page.dom;
+  const STATES = ['open', 'compression', 'tension', 'both'],
+    WORDS = ['open', 'compression', 'tension', 'compression and tension'];
   // Open: a ring. Compression: arrow heads that meet. Tension: arrow heads that part. Both: a diamond.
-  const GLYPHS = ['M0 -.8a.8 .8 0 1 0 .01 0z', 'M-1 -.8L0 0L-1 .8zM1 -.8L0 0L1 .8z', 'M-.1 -.8L-1.1 0L-.1 .8zM.1 -.8L1.1 0L.1 .8z', 'M0 -1L1 0L0 1L-1 0z'];
-  const glyph = (state, size) => GLYPHS[state].replace(/-?\d*\.\d+|-?\d+/g, n => +(n * size).toFixed(2)).replace(/a([\d.]+) ([\d.]+) 0 1 0/, 'a$1 $2 0 1 0');
+  const GLYPHS = [
+    'M0 -.8a.8 .8 0 1 0 .01 0z',
+    'M-1 -.8L0 0L-1 .8zM1 -.8L0 0L1 .8z',
+    'M-.1 -.8L-1.1 0L-.1 .8zM.1 -.8L1.1 0L.1 .8z',
+    'M0 -1L1 0L0 1L-1 0z',
+  ];
+  const glyph = (state, size) =>
+    GLYPHS[state]
+      .replace(/-?\d*\.\d+|-?\d+/g, n => +(n * size).toFixed(2))
+      .replace(/a([\d.]+) ([\d.]+) 0 1 0/, 'a$1 $2 0 1 0');
 
   const ring = size => `M0 ${-0.75 * size}a${0.75 * size} ${0.75 * size} 0 1 1 -0.01 0z`;
   const path = (state, size) => (state === 0 ? ring(size) : glyph(state, size));
@@ -13,22 +23,57 @@
   /** The states that a play has, and the three that any may have. */
   function legend(state) {
     const shown = state.includes(3) ? STATES : STATES.slice(0, 3);
-    return el('ul', { class: 'legend joints' }, shown.map((s, i) => el('li', {}, svg('svg', { width: 18, height: 14, viewBox: '-9 -7 18 14', 'aria-hidden': 'true' }, svg('path', { class: `joint ${s}`, d: path(i, 5.5) })), i === 0 ? 'joint open' : `in ${WORDS[i]}`)));
+    return el(
+      'ul',
+      { class: 'legend joints' },
+      shown.map((s, i) =>
+        el(
+          'li',
+          {},
+          svg(
+            'svg',
+            { width: 18, height: 14, viewBox: '-9 -7 18 14', 'aria-hidden': 'true' },
+            svg('path', { class: `joint ${s}`, d: path(i, 5.5) }),
+          ),
+          i === 0 ? 'joint open' : `in ${WORDS[i]}`,
+        ),
+      ),
+    );
   }
 
   /** Places between: the value of `list` at row `f` (a fraction of a frame), column `i` of `n`. */
   function between(list, f, i, n) {
-    const a = Math.floor(f), t = f - a, v = list[a * n + i];
+    const a = Math.floor(f),
+      t = f - a,
+      v = list[a * n + i];
     return t > 0 ? v + t * (list[(a + 1) * n + i] - v) : v;
   }
 
   function scene(play, stage, exaggeration) {
-    const bridge = play.bridge ?? data.bridge, xs = bridge.position_x_m, P = xs.length, J = bridge.joints.length, length = xs[P - 1], module = bridge.module_length_m;
-    const w = array(play.deflection_m), force = array(play.force_n), state = array(play.state), front = array(play.front_x_m);
-    const down = w.reduce((a, v) => Math.max(a, v), 0), up = w.reduce((a, v) => Math.max(a, -v), 0), most = force.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
+    const bridge = play.bridge ?? data.bridge,
+      xs = bridge.position_x_m,
+      P = xs.length,
+      J = bridge.joints.length,
+      length = xs[P - 1],
+      module = bridge.module_length_m;
+    const w = array(play.deflection_m),
+      force = array(play.force_n),
+      state = array(play.state),
+      front = array(play.front_x_m);
+    const down = w.reduce((a, v) => Math.max(a, v), 0),
+      up = w.reduce((a, v) => Math.max(a, -v), 0),
+      most = force.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
     const tall = Math.max(1, Math.round((0.024 * length) / bridge.depth_m));
-    let part = {}, width = 0, s = 1, E = exaggeration, left = 0, base = 0, thick = 0, bars = 0;
-    const X = x => left + x * s, names = ['time', 'front axle', 'deepest', 'highest', 'largest compression', 'largest tension'];
+    let part = {},
+      width = 0,
+      s = 1,
+      E = exaggeration,
+      left = 0,
+      base = 0,
+      thick = 0,
+      bars = 0;
+    const X = x => left + x * s,
+      names = ['time', 'front axle', 'deepest', 'highest', 'largest compression', 'largest tension'];
 
     function rebuild(by) {
       E = by;
@@ -36,32 +81,106 @@
       left = Math.max(30, 0.045 * width);
       s = (width - 2 * left) / length;
       thick = Math.max(7, bridge.depth_m * tall * s);
-      const head = Math.max(18, 0.03 * width) + 12, top = head + up * E * s;
+      const head = Math.max(18, 0.03 * width) + 12,
+        top = head + up * E * s;
       base = top + thick;
-      const floor = base + Math.max(down * E * s, 0.03 * width) + 8, ruler = floor + 14, barTop = ruler + 44, reach = 34;
+      const floor = base + Math.max(down * E * s, 0.03 * width) + 8,
+        ruler = floor + 14,
+        barTop = ruler + 44,
+        reach = 34;
       bars = barTop + reach + 6;
-      const height = bars + reach + 22, water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick;
-      const ticks = d3.scaleLinear([0, length], [0, 1]).ticks(Math.max(3, Math.round(width / 110))).filter(t => t <= length);
+      const height = bars + reach + 22,
+        water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick;
+      const ticks = d3
+        .scaleLinear([0, length], [0, 1])
+        .ticks(Math.max(3, Math.round(width / 110)))
+        .filter(t => t <= length);
       const size = Math.max(3, Math.min(6.5, 0.3 * module * s));
       const bar = d3.tickStep(0, Math.max(down, 1e-6), 2);
       part = {
         modules: d3.range(P - 1).map(i => svg('polygon', { class: 'module', 'data-module': i + 1 })),
         joints: d3.range(J).map(j => svg('path', { class: 'joint', 'data-joint': bridge.joints[j] })),
-        forces: d3.range(J).map(j => svg('rect', { class: 'force', 'data-joint': bridge.joints[j], width: Math.max(2, 0.45 * module * s) })),
-        wheels: play.axles.map(a => svg('line', { class: 'wheel', 'data-behind': a.behind_front_m })), body: svg('path', { class: 'vehicle' }), size,
+        forces: d3
+          .range(J)
+          .map(j =>
+            svg('rect', { class: 'force', 'data-joint': bridge.joints[j], width: Math.max(2, 0.45 * module * s) }),
+          ),
+        wheels: play.axles.map(a => svg('line', { class: 'wheel', 'data-behind': a.behind_front_m })),
+        body: svg('path', { class: 'vehicle' }),
+        size,
       };
-      const node = svg('svg', { class: 'bridge', viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': 'The bridge from the side', 'aria-describedby': 'crossing-readout',
-        'data-px-m': s, 'data-left': left, 'data-base': base, 'data-scale': E },
-        svg('rect', { class: 'water', x: 0, y: water, width, height: floor - water }), svg('line', { class: 'waterline', x1: 0, x2: width, y1: water, y2: water }),
+      const node = svg(
+        'svg',
+        {
+          class: 'bridge',
+          viewBox: `0 0 ${width} ${height}`,
+          width,
+          height,
+          role: 'img',
+          'aria-label': 'The bridge from the side',
+          'aria-describedby': 'crossing-readout',
+          'data-px-m': s,
+          'data-left': left,
+          'data-base': base,
+          'data-scale': E,
+        },
+        svg('rect', { class: 'water', x: 0, y: water, width, height: floor - water }),
+        svg('line', { class: 'waterline', x1: 0, x2: width, y1: water, y2: water }),
         svg('line', { class: 'rest', x1: X(0), x2: X(length), y1: base, y2: base }),
-        [[0, X(0)], [X(length), width]].map(([a, b]) => svg('line', { class: 'bank', x1: a, x2: b, y1: base - thick, y2: base - thick })),
-        part.modules, part.body, part.wheels, part.joints,
-        svg('g', { class: 'ruler' }, svg('line', { x1: X(0), x2: X(length), y1: ruler, y2: ruler }), ticks.map(t => [svg('line', { x1: X(t), x2: X(t), y1: ruler, y2: ruler + 5 }), svg('text', { x: X(t), y: ruler + 18, 'text-anchor': 'middle' }, t === ticks.at(-1) ? `${numbers.plain(t)} m` : numbers.plain(t))])),
-        down > 0 && svg('g', { class: 'ruler measure' }, svg('line', { x1: 6, x2: 6, y1: base, y2: base + bar * E * s }), svg('line', { x1: 2, x2: 10, y1: base, y2: base }), svg('line', { x1: 2, x2: 10, y1: base + bar * E * s, y2: base + bar * E * s }), svg('text', { transform: `translate(22,${base + (bar * E * s) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, `${numbers.plain(bar)} m`)),
-        J > 0 && svg('g', { class: 'ruler' }, svg('line', { x1: X(0), x2: X(length), y1: bars, y2: bars }), svg('text', { x: 2, y: bars - reach - 6 }, `tension, bar to ${numbers.quantity(most, 'N', 3)}`), svg('text', { x: 2, y: bars + reach + 16 }, 'compression')),
-        part.forces);
+        [
+          [0, X(0)],
+          [X(length), width],
+        ].map(([a, b]) => svg('line', { class: 'bank', x1: a, x2: b, y1: base - thick, y2: base - thick })),
+        part.modules,
+        part.body,
+        part.wheels,
+        part.joints,
+        svg(
+          'g',
+          { class: 'ruler' },
+          svg('line', { x1: X(0), x2: X(length), y1: ruler, y2: ruler }),
+          ticks.map(t => [
+            svg('line', { x1: X(t), x2: X(t), y1: ruler, y2: ruler + 5 }),
+            svg(
+              'text',
+              { x: X(t), y: ruler + 18, 'text-anchor': 'middle' },
+              t === ticks.at(-1) ? `${numbers.plain(t)} m` : numbers.plain(t),
+            ),
+          ]),
+        ),
+        down > 0 &&
+          svg(
+            'g',
+            { class: 'ruler measure' },
+            svg('line', { x1: 6, x2: 6, y1: base, y2: base + bar * E * s }),
+            svg('line', { x1: 2, x2: 10, y1: base, y2: base }),
+            svg('line', { x1: 2, x2: 10, y1: base + bar * E * s, y2: base + bar * E * s }),
+            svg(
+              'text',
+              { transform: `translate(22,${base + (bar * E * s) / 2}) rotate(-90)`, 'text-anchor': 'middle' },
+              `${numbers.plain(bar)} m`,
+            ),
+          ),
+        J > 0 &&
+          svg(
+            'g',
+            { class: 'ruler' },
+            svg('line', { x1: X(0), x2: X(length), y1: bars, y2: bars }),
+            svg('text', { x: 2, y: bars - reach - 6 }, `tension, bar to ${numbers.quantity(most, 'N', 3)}`),
+            svg('text', { x: 2, y: bars + reach + 16 }, 'compression'),
+          ),
+        part.forces,
+      );
       part.reach = reach;
-      stage.replaceChildren(node, legend(state), el('p', { class: 'sub scale' }, `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of the unloaded bridge.' : 'The water line is drawn at half the depth.'}`));
+      stage.replaceChildren(
+        node,
+        legend(state),
+        el(
+          'p',
+          { class: 'sub scale' },
+          `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of the unloaded bridge.' : 'The water line is drawn at half the depth.'}`,
+        ),
+      );
       part.node = node;
     }
 
@@ -75,18 +194,38 @@
     }
 
     function draw(f, time) {
-      const at = i => base + between(w, f, i, P) * E * s, whole = Math.floor(f), x0 = between(front, f, 0, 1);
+      const at = i => base + between(w, f, i, P) * E * s,
+        whole = Math.floor(f),
+        x0 = between(front, f, 0, 1);
       part.modules.forEach((node, i) => {
-        const a = at(i), b = at(i + 1), lean = (bridge.depth_m * (b - a)) / (xs[i + 1] - xs[i]);
-        node.setAttribute('points', [[X(xs[i]), a], [X(xs[i + 1]), b], [X(xs[i + 1]) + lean, b - thick], [X(xs[i]) + lean, a - thick]].map(p => p.map(v => v.toFixed(2)).join()).join(' '));
+        const a = at(i),
+          b = at(i + 1),
+          lean = (bridge.depth_m * (b - a)) / (xs[i + 1] - xs[i]);
+        node.setAttribute(
+          'points',
+          [
+            [X(xs[i]), a],
+            [X(xs[i + 1]), b],
+            [X(xs[i + 1]) + lean, b - thick],
+            [X(xs[i]) + lean, a - thick],
+          ]
+            .map(p => p.map(v => v.toFixed(2)).join())
+            .join(' '),
+        );
       });
-      let push = -1, pull = -1;
+      let push = -1,
+        pull = -1;
       part.joints.forEach((node, j) => {
-        const p = bridge.joints[j] - 1, k = state[whole * J + j] & 3, F = between(force, f, j, J), y = at(p) - thick, pixels = most > 0 ? (Math.abs(F) / most) * part.reach : 0;
+        const p = bridge.joints[j] - 1,
+          k = state[whole * J + j] & 3,
+          F = between(force, f, j, J),
+          y = at(p) - thick,
+          pixels = most > 0 ? (Math.abs(F) / most) * part.reach : 0;
         node.setAttribute('class', `joint ${STATES[k]}`);
         node.setAttribute('d', path(k, part.size));
         node.setAttribute('transform', `translate(${X(xs[p]).toFixed(2)},${y.toFixed(2)})`);
-        const bar = part.forces[j], wide = Number(bar.getAttribute('width'));
+        const bar = part.forces[j],
+          wide = Number(bar.getAttribute('width'));
         bar.setAttribute('class', `force ${F < 0 ? 'compression' : 'tension'}`);
         bar.setAttribute('x', (X(xs[p]) - wide / 2).toFixed(2));
         bar.setAttribute('y', (F < 0 ? bars : bars - pixels).toFixed(2));
@@ -94,26 +233,51 @@
         if (F < 0 && (push < 0 || F < between(force, f, push, J))) push = j;
         if (F > 0 && (pull < 0 || F > between(force, f, pull, J))) pull = j;
       });
-      let from = Infinity, to = -Infinity, high = -Infinity;
+      let from = Infinity,
+        to = -Infinity,
+        high = -Infinity;
       play.axles.forEach((axle, i) => {
-        const x = x0 - axle.behind_front_m, half = axle.patch_length_m / 2, y = base - thick + sink(f, x) * E * s - 2.5;
+        const x = x0 - axle.behind_front_m,
+          half = axle.patch_length_m / 2,
+          y = base - thick + sink(f, x) * E * s - 2.5;
         const line = part.wheels[i];
         line.setAttribute('x1', X(x - half).toFixed(2));
         line.setAttribute('x2', Math.max(X(x + half), X(x - half) + 3).toFixed(2));
         line.setAttribute('y1', (base - thick + sink(f, x - half) * E * s - 2.5).toFixed(2));
         line.setAttribute('y2', (base - thick + sink(f, x + half) * E * s - 2.5).toFixed(2));
-        from = Math.min(from, X(x - half)); to = Math.max(to, X(x + half)); high = Math.max(high, -y);
+        from = Math.min(from, X(x - half));
+        to = Math.max(to, X(x + half));
+        high = Math.max(high, -y);
       });
-      const tallBody = Math.max(12, 0.02 * width), y = -high - 3, b = Math.max(to, from + 8), cab = b - Math.min(tallBody, (b - from) * 0.35);
-      part.body.setAttribute('d', `M${from.toFixed(2)} ${y.toFixed(2)}V${(y - tallBody * 0.7).toFixed(2)}H${cab.toFixed(2)}V${(y - tallBody).toFixed(2)}H${((b + cab) / 2).toFixed(2)}L${b.toFixed(2)} ${(y - tallBody * 0.5).toFixed(2)}V${y.toFixed(2)}z`);
+      const tallBody = Math.max(12, 0.02 * width),
+        y = -high - 3,
+        b = Math.max(to, from + 8),
+        cab = b - Math.min(tallBody, (b - from) * 0.35);
+      part.body.setAttribute(
+        'd',
+        `M${from.toFixed(2)} ${y.toFixed(2)}V${(y - tallBody * 0.7).toFixed(2)}H${cab.toFixed(2)}V${(y - tallBody).toFixed(2)}H${((b + cab) / 2).toFixed(2)}L${b.toFixed(2)} ${(y - tallBody * 0.5).toFixed(2)}V${y.toFixed(2)}z`,
+      );
       part.node.setAttribute('data-frame', f);
       part.node.setAttribute('data-time', time);
       part.node.setAttribute('data-front', x0);
-      let deep = 0, high2 = 0;
-      for (let i = 1; i < P; i++) { const v = between(w, f, i, P); if (v > between(w, f, deep, P)) deep = i; if (v < between(w, f, high2, P)) high2 = i; }
-      const wd = between(w, f, deep, P), wu = -between(w, f, high2, P), N = j => numbers.quantity(Math.abs(between(force, f, j, J)), 'N', 4);
-      return [`${time.toFixed(2)} s`, `${x0.toFixed(1)} m`, wd > 0 ? `${wd.toFixed(4)} m at position ${deep + 1}` : 'none', wu > 5e-5 ? `${wu.toFixed(4)} m at position ${high2 + 1}` : 'none',
-        push < 0 ? 'none' : `${N(push)} at joint ${bridge.joints[push]}`, pull < 0 ? 'none' : `${N(pull)} at joint ${bridge.joints[pull]}`];
+      let deep = 0,
+        high2 = 0;
+      for (let i = 1; i < P; i++) {
+        const v = between(w, f, i, P);
+        if (v > between(w, f, deep, P)) deep = i;
+        if (v < between(w, f, high2, P)) high2 = i;
+      }
+      const wd = between(w, f, deep, P),
+        wu = -between(w, f, high2, P),
+        N = j => numbers.quantity(Math.abs(between(force, f, j, J)), 'N', 4);
+      return [
+        `${time.toFixed(2)} s`,
+        `${x0.toFixed(1)} m`,
+        wd > 0 ? `${wd.toFixed(4)} m at position ${deep + 1}` : 'none',
+        wu > 5e-5 ? `${wu.toFixed(4)} m at position ${high2 + 1}` : 'none',
+        push < 0 ? 'none' : `${N(push)} at joint ${bridge.joints[push]}`,
+        pull < 0 ? 'none' : `${N(pull)} at joint ${bridge.joints[pull]}`,
+      ];
     }
 
     rebuild(exaggeration);
@@ -121,4 +285,4 @@
   }
 
   page.bridgeScene = scene;
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

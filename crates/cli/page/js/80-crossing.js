@@ -1,12 +1,15 @@
 // The crossing of the picked job: time, buttons and words around the drawing of 78-bridge.js.
 (page => {
   'use strict';
-  const { data, numbers, array } = page, { el, field, select, button, animation, motionless } = page.dom;
-  const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4], SCALES = [0.001, 0.01, 0.1, 1, 2, 5, 10, 20, 50, 100, 200, 500];
+  const { data, numbers, array } = page,
+    { el, field, select, button, animation, motionless } = page.dom;
+  const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4],
+    SCALES = [0.001, 0.01, 0.1, 1, 2, 5, 10, 20, 50, 100, 200, 500];
 
   /** The frame in which the bridge is deepest. */
   function peakFrame(play) {
-    const w = array(play.deflection_m), width = (play.bridge ?? data.bridge).position_x_m.length;
+    const w = array(play.deflection_m),
+      width = (play.bridge ?? data.bridge).position_x_m.length;
     let best = 0;
     for (let i = 0; i < w.length; i++) if (w[i] > w[best]) best = i;
     return Math.floor(best / width);
@@ -15,31 +18,92 @@
   function crossing() {
     const plays = data.plays ?? [];
     if (data.study.kind !== 'crossing') return null;
-    const title = el('h3', { id: 'crossing-title' }, 'Crossing'), axes = el('p', { class: 'sub' }), why = el('p', { class: 'empty', role: 'status' });
-    const stage = el('div', { class: 'stage' }), readout = el('dl', { class: 'live', 'aria-live': 'polite', id: 'crossing-readout' });
+    const title = el('h3', { id: 'crossing-title' }, 'Crossing'),
+      axes = el('p', { class: 'sub' }),
+      why = el('p', { class: 'empty', role: 'status' });
+    const stage = el('div', { class: 'stage' }),
+      readout = el('dl', { class: 'live', 'aria-live': 'polite', id: 'crossing-readout' });
     const run = button('Play', () => (motion.running ? pause() : start()), { class: 'primary', id: 'play' });
-    const scrub = el('input', { type: 'range', id: 'scrub', min: 0, step: 1, oninput: () => { pause(); show(Number(scrub.value)); } });
-    const speed = select(SPEEDS.map(s => [String(s), s === 1 ? 'as it is' : `${s} times`]), '1', () => {});
-    const scale = select(SCALES.map(s => [String(s), `${s} times`]), '20', () => { scene?.rebuild(Number(scale.value)); show(frame); });
+    const scrub = el('input', {
+      type: 'range',
+      id: 'scrub',
+      min: 0,
+      step: 1,
+      oninput: () => {
+        pause();
+        show(Number(scrub.value));
+      },
+    });
+    const speed = select(
+      SPEEDS.map(s => [String(s), s === 1 ? 'as it is' : `${s} times`]),
+      '1',
+      () => {},
+    );
+    const scale = select(
+      SCALES.map(s => [String(s), `${s} times`]),
+      '20',
+      () => {
+        scene?.rebuild(Number(scale.value));
+        show(frame);
+      },
+    );
     speed.id = 'play-speed';
     scale.id = 'play-scale';
-    const choose = select([['', 'choose'], ...plays.map(p => [String(p.job), `job ${p.job}`])], '', v => v !== '' && page.pick(Number(v), 'list'));
+    const choose = select(
+      [['', 'choose'], ...plays.map(p => [String(p.job), `job ${p.job}`])],
+      '',
+      v => v !== '' && page.pick(Number(v), 'list'),
+    );
     choose.id = 'play-job';
     const scrubField = field('Time', scrub);
     scrubField.classList.add('wide');
-    const controls = el('div', { class: 'controls player' }, el('div', { class: 'buttons' }, run, button('\u2039 Back', () => step(-1), { title: 'one frame back', id: 'step-back' }), button('On \u203a', () => step(1), { title: 'one frame on', id: 'step-on' })), scrubField, field('Speed', speed), field('Exaggeration', scale));
+    const controls = el(
+      'div',
+      { class: 'controls player' },
+      el(
+        'div',
+        { class: 'buttons' },
+        run,
+        button('\u2039 Back', () => step(-1), { title: 'one frame back', id: 'step-back' }),
+        button('On \u203a', () => step(1), { title: 'one frame on', id: 'step-on' }),
+      ),
+      scrubField,
+      field('Speed', speed),
+      field('Exaggeration', scale),
+    );
     const body = el('div', {}, stage, readout, controls);
-    const node = el('div', { class: 'crossing', role: 'group', 'aria-labelledby': 'crossing-title' }, el('div', { class: 'between' }, title, plays.length > 0 && field('Crossings on this page', choose)), axes, why, body);
+    const node = el(
+      'div',
+      { class: 'crossing', role: 'group', 'aria-labelledby': 'crossing-title' },
+      el('div', { class: 'between' }, title, plays.length > 0 && field('Crossings on this page', choose)),
+      axes,
+      why,
+      body,
+    );
 
-    let play = null, scene = null, frame = 0, peak = 0, time = null, kept = 0;
+    let play = null,
+      scene = null,
+      frame = 0,
+      peak = 0,
+      time = null,
+      kept = 0;
     const motion = animation(passed => {
-      const last = play.frames - 1, now = at(frame) + (passed / 1000) * Number(speed.value);
-      if (now >= time[last]) { show(last); pause(); return; }
+      const last = play.frames - 1,
+        now = at(frame) + (passed / 1000) * Number(speed.value);
+      if (now >= time[last]) {
+        show(last);
+        pause();
+        return;
+      }
       let i = Math.floor(frame);
       while (i < last - 1 && time[i + 1] <= now) i++;
       show(i + (now - time[i]) / (time[i + 1] - time[i]));
     });
-    const at = f => { const i = Math.min(play.frames - 1, Math.floor(f)), j = Math.min(play.frames - 1, i + 1); return time[i] + (f - i) * (time[j] - time[i]); };
+    const at = f => {
+      const i = Math.min(play.frames - 1, Math.floor(f)),
+        j = Math.min(play.frames - 1, i + 1);
+      return time[i] + (f - i) * (time[j] - time[i]);
+    };
 
     function start() {
       if (!play || play.frames < 2) return;
@@ -73,13 +137,27 @@
       const row = page.rowOf(job);
       title.textContent = `Crossing of job ${job}`;
       choose.value = play ? String(job) : '';
-      axes.textContent = row < 0 ? '' : data.axes.map((axis, i) => [axis, i, data.rows.columns.find(c => c.name === axis.name)]).filter(([, , c]) => c && page.cell(c, row) !== null)
-        .map(([axis, i, c]) => { const v = page.cell(c, row), u = page.axes.shown(i); return `${axis.label} ${typeof v === 'number' ? numbers.plain(v * u.factor) + (u.unit && numbers.THIN + u.unit) : v}`; }).join(', ');
+      axes.textContent =
+        row < 0
+          ? ''
+          : data.axes
+              .map((axis, i) => [axis, i, data.rows.columns.find(c => c.name === axis.name)])
+              .filter(([, , c]) => c && page.cell(c, row) !== null)
+              .map(([axis, i, c]) => {
+                const v = page.cell(c, row),
+                  u = page.axes.shown(i);
+                return `${axis.label} ${typeof v === 'number' ? numbers.plain(v * u.factor) + (u.unit && numbers.THIN + u.unit) : v}`;
+              })
+              .join(', ');
       body.hidden = !play;
       why.hidden = !!play;
       if (!play) {
-        const reason = row >= 0 && !array(data.rows.ok)[row] ? `Job ${job} failed: ${page.reason(row) ?? 'no reason is known'}.` : row < 0 ? `Job ${job} is not among the rows of this page.`
-          : `This page carries the motion of ${plays.length} ${plays.length === 1 ? 'job' : 'jobs'}; that of job ${job} is not among them.`;
+        const reason =
+          row >= 0 && !array(data.rows.ok)[row]
+            ? `Job ${job} failed: ${page.reason(row) ?? 'no reason is known'}.`
+            : row < 0
+              ? `Job ${job} is not among the rows of this page.`
+              : `This page carries the motion of ${plays.length} ${plays.length === 1 ? 'job' : 'jobs'}; that of job ${job} is not among them.`;
         why.textContent = `No crossing to play. ${reason}`;
         scene = null;
         return;
@@ -87,8 +165,14 @@
       time = array(play.time_s);
       peak = peakFrame(play);
       scrub.max = play.frames - 1;
-      const deepest = array(play.deflection_m).reduce((a, v) => Math.max(a, Math.abs(v)), 0), length = (play.bridge ?? data.bridge).position_x_m.at(-1) || 1;
-      if (deepest > 0) scale.value = String(SCALES.filter(s => s * deepest <= Math.max(0.1 * length, (70 * length) / (stage.clientWidth || 800))).at(-1) ?? SCALES[0]);
+      const deepest = array(play.deflection_m).reduce((a, v) => Math.max(a, Math.abs(v)), 0),
+        length = (play.bridge ?? data.bridge).position_x_m.at(-1) || 1;
+      if (deepest > 0)
+        scale.value = String(
+          SCALES.filter(s => s * deepest <= Math.max(0.1 * length, (70 * length) / (stage.clientWidth || 800))).at(
+            -1,
+          ) ?? SCALES[0],
+        );
       scene = page.bridgeScene(play, stage, Number(scale.value));
       readout.replaceChildren(...scene.names.flatMap(name => el('div', {}, el('dt', {}, name), el('dd'))));
       const alive = by !== 'start' && !motionless.matches;
@@ -96,14 +180,33 @@
       if (alive) start();
     }
 
-    if (!plays.length) { why.textContent = 'No job of this page has a crossing to play.'; body.hidden = true; }
+    if (!plays.length) {
+      why.textContent = 'No job of this page has a crossing to play.';
+      body.hidden = true;
+    }
     page.onPick(load);
-    const rescale = () => { if (scene?.resized()) { scene.rebuild(Number(scale.value)); show(frame); } };
+    const rescale = () => {
+      if (scene?.resized()) {
+        scene.rebuild(Number(scale.value));
+        show(frame);
+      }
+    };
     new ResizeObserver(rescale).observe(stage);
     document.addEventListener('visibilitychange', () => document.hidden && pause());
-    page.paper.push({ freeze() { kept = frame; pause(); rescale(); if (play) show(peak); }, thaw() { rescale(); if (play) show(kept); } });
+    page.paper.push({
+      freeze() {
+        kept = frame;
+        pause();
+        rescale();
+        if (play) show(peak);
+      },
+      thaw() {
+        rescale();
+        if (play) show(kept);
+      },
+    });
     return { node };
   }
 
   page.crossing = crossing;
-})(globalThis.pontoon ??= {});
+})((globalThis.pontoon ??= {}));

@@ -8,21 +8,36 @@ import { pathToFileURL } from 'node:url';
 import { build } from './build.mjs';
 import { samples } from './sample.mjs';
 
-const SWITCHES = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const SWITCHES = [
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
 const folder = mkdtempSync(join(tmpdir(), 'pontoon-page-'));
 let browser;
 
 /** Starts the browser for a test file; answers what stops it. */
 export async function launch() {
-  browser = await chromium.launch({ executablePath: process.env.PONTOON_CHROMIUM ?? '/usr/bin/chromium', args: SWITCHES });
-  return async () => { await browser.close(); rmSync(folder, { recursive: true, force: true }); };
+  browser = await chromium.launch({
+    executablePath: process.env.PONTOON_CHROMIUM ?? '/usr/bin/chromium',
+    args: SWITCHES,
+  });
+  return async () => {
+    await browser.close();
+    rmSync(folder, { recursive: true, force: true });
+  };
 }
 
 const made = new Map();
 /** A made-up page: its file and its data. */
 export function sample(name) {
   if (!made.has(name)) {
-    const data = samples[name](), file = join(folder, `${name}.html`);
+    const data = samples[name](),
+      file = join(folder, `${name}.html`);
     writeFileSync(file, build(data));
     made.set(name, { name, file, data });
   }
@@ -33,10 +48,19 @@ export function sample(name) {
 export function reports() {
   const from = process.env.PONTOON_REPORTS;
   if (!from) return [];
-  return readdirSync(from).filter(f => f.endsWith('.html')).sort().map(f => {
-    const file = join(from, f), text = readFileSync(file, 'utf8');
-    return { name: basename(f, '.html'), file, data: JSON.parse(/<script type="application\/json" id="data">([^]*?)<\/script>/.exec(text)[1]), real: true };
-  });
+  return readdirSync(from)
+    .filter(f => f.endsWith('.html'))
+    .sort()
+    .map(f => {
+      const file = join(from, f),
+        text = readFileSync(file, 'utf8');
+      return {
+        name: basename(f, '.html'),
+        file,
+        data: JSON.parse(/<script type="application\/json" id="data">([^]*?)<\/script>/.exec(text)[1]),
+        real: true,
+      };
+    });
 }
 
 /** All pages: the made-up ones of these names, then the program's own that `fits`. */
@@ -45,10 +69,15 @@ export const pages = (names, fits = () => true) => [...names.map(sample), ...rep
 /** Opens a page. `problems` gathers what the console said and what failed, `requests` every address asked for after the page's own. */
 export async function open(which, { width = 1280, height = 900, scheme = 'light', motion = 'no-preference' } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: motion });
-  const page = await context.newPage(), problems = [], requests = [], address = pathToFileURL(which.file).href;
+  const page = await context.newPage(),
+    problems = [],
+    requests = [],
+    address = pathToFileURL(which.file).href;
   page.on('console', message => problems.push(`${message.type()}: ${message.text()}`));
   page.on('pageerror', error => problems.push(`error: ${error.stack}`));
-  context.on('request', request => { if (request.url() !== address && !request.url().startsWith('data:')) requests.push(request.url()); });
+  context.on('request', request => {
+    if (request.url() !== address && !request.url().startsWith('data:')) requests.push(request.url());
+  });
   await context.route(/^(?!file:|data:)/, route => route.abort());
   await page.goto(address);
   await page.waitForFunction(() => globalThis.pontoon?.ready === true, undefined, { timeout: 20000 });
@@ -59,5 +88,9 @@ export async function open(which, { width = 1280, height = 900, scheme = 'light'
 /** Runs a test on a page of its own and closes it. */
 export async function on(which, options, test) {
   const opened = await open(which, options);
-  try { await test(opened.page, opened); } finally { await opened.close(); }
+  try {
+    await test(opened.page, opened);
+  } finally {
+    await opened.close();
+  }
 }

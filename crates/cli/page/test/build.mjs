@@ -7,7 +7,10 @@ const folder = fileURLToPath(new URL('..', import.meta.url));
 const text = name => readFileSync(folder + name, 'utf8');
 
 /** The files of the script, in order. */
-export const order = () => text('order.txt').split('\n').filter(line => line !== '');
+export const order = () =>
+  text('order.txt')
+    .split('\n')
+    .filter(line => line !== '');
 
 /** JSON that cannot end the script element it stands in. */
 export const embed = data =>
@@ -16,5 +19,8 @@ export const embed = data =>
 /** The whole page of one data object. The template is cut at its places once, so that no text is searched for places again. */
 export function build(data) {
   const parts = { style: text('style.css'), script: order().map(text).join('\n'), data: embed(data) };
-  return text('page.html').split(/\{\{(style|script|data)\}\}/).map((piece, at) => (at % 2 ? parts[piece] : piece)).join('');
+  return text('page.html')
+    .split(/\{\{(style|script|data)\}\}/)
+    .map((piece, at) => (at % 2 ? parts[piece] : piece))
+    .join('');
 }

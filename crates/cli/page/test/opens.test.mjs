@@ -5,60 +5,147 @@ import { after, before, test } from 'node:test';
 import { launch, on, pages, reports, sample } from './browser.mjs';
 
 let stop;
-before(async () => { stop = await launch(); });
+before(async () => {
+  stop = await launch();
+});
 after(() => stop());
 
 const NAMES = ['crossing', 'big', 'wide', 'still', 'natural', 'allFailed', 'oneJob', 'oneAxis', 'markup', 'half'];
 const ids = page => page.$$eval('main section', all => all.map(s => s.id));
 
 for (const which of pages(NAMES)) {
-  test(`${which.name} opens in silence`, () => on(which, {}, async (page, { problems, requests }) => {
-    assert.equal(await page.textContent('h1'), which.data.study.name);
-    if (which.data.study.question) assert.equal(await page.textContent('.question'), which.data.study.question);
-    assert.deepEqual(await page.$$eval('.note', all => all.map(n => n.textContent)), which.data.notes ?? []);
-    await page.mouse.wheel(0, 4000);
-    await page.waitForTimeout(100);
-    assert.deepEqual(problems, []);
-    assert.deepEqual(requests, []);
-    assert.equal(await page.evaluate(() => document.body.innerText.includes('[object ') || /\bundefined\b|\bNaN\b/.test(document.body.innerText)), false);
-    const broken = await page.$$eval('nav a', all => all.filter(a => !document.querySelector(a.getAttribute('href'))).length);
-    assert.equal(broken, 0);
-  }));
+  test(`${which.name} opens in silence`, () =>
+    on(which, {}, async (page, { problems, requests }) => {
+      assert.equal(await page.textContent('h1'), which.data.study.name);
+      if (which.data.study.question) assert.equal(await page.textContent('.question'), which.data.study.question);
+      assert.deepEqual(await page.$$eval('.note', all => all.map(n => n.textContent)), which.data.notes ?? []);
+      await page.mouse.wheel(0, 4000);
+      await page.waitForTimeout(100);
+      assert.deepEqual(problems, []);
+      assert.deepEqual(requests, []);
+      assert.equal(
+        await page.evaluate(
+          () => document.body.innerText.includes('[object ') || /\bundefined\b|\bNaN\b/.test(document.body.innerText),
+        ),
+        false,
+      );
+      const broken = await page.$$eval(
+        'nav a',
+        all => all.filter(a => !document.querySelector(a.getAttribute('href'))).length,
+      );
+      assert.equal(broken, 0);
+    }));
 }
 
-test('a request would be seen, and would not get out', () => on(sample('oneJob'), {}, async (page, { problems }) => {
-  const got = await page.evaluate(() => fetch('http://example.invalid/').then(() => 'out', () => 'kept'));
-  assert.equal(got, 'kept');
-  assert.ok(problems.some(p => /Content Security Policy/i.test(p)), problems.join());
-}));
+test('a request would be seen, and would not get out', () =>
+  on(sample('oneJob'), {}, async (page, { problems }) => {
+    const got = await page.evaluate(() =>
+      fetch('http://example.invalid/').then(
+        () => 'out',
+        () => 'kept',
+      ),
+    );
+    assert.equal(got, 'kept');
+    assert.ok(
+      problems.some(p => /Content Security Policy/i.test(p)),
+      problems.join(),
+    );
+  }));
 
 for (const which of pages(['crossing', 'still', 'natural', 'allFailed', 'oneJob', 'half', 'markup'])) {
   for (const scheme of ['light', 'dark']) {
-    test(`${which.name}, ${scheme}: axe finds nothing`, () => on(which, { scheme }, async page => {
-      await page.evaluate(source => { const script = document.createElement('script'); script.textContent = source; document.head.append(script); }, AxeBuilder.source);
-      const found = await page.evaluate(() => globalThis.axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice'] }));
-      assert.deepEqual(found.violations.map(v => `${v.id}: ${v.nodes.slice(0, 3).map(n => n.target.join(' ') + ' ' + (n.any[0]?.message ?? '')).join(' | ')}`), []);
-    }));
+    test(`${which.name}, ${scheme}: axe finds nothing`, () =>
+      on(which, { scheme }, async page => {
+        await page.evaluate(source => {
+          const script = document.createElement('script');
+          script.textContent = source;
+          document.head.append(script);
+        }, AxeBuilder.source);
+        const found = await page.evaluate(() =>
+          globalThis.axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice'] }),
+        );
+        assert.deepEqual(
+          found.violations.map(
+            v =>
+              `${v.id}: ${v.nodes
+                .slice(0, 3)
+                .map(n => n.target.join(' ') + ' ' + (n.any[0]?.message ?? ''))
+                .join(' | ')}`,
+          ),
+          [],
+        );
+      }));
   }
 }
 
-test('names full of markup stay text', () => on(sample('markup'), {}, async page => {
-  await page.click('#jobs .pick >> nth=4');
-  await page.focus('#speed-1 .plot');
-  await page.keyboard.press('ArrowRight');
-  assert.equal(await page.evaluate(() => globalThis.hurt), undefined);
-  assert.equal(await page.$$eval('img, main b', all => all.length), 0);
-  assert.ok((await page.textContent('#speed-1 .readout')).includes('<b>&amp;'));
-}));
+test('names full of markup stay text', () =>
+  on(sample('markup'), {}, async page => {
+    await page.click('#jobs .pick >> nth=4');
+    await page.focus('#speed-1 .plot');
+    await page.keyboard.press('ArrowRight');
+    assert.equal(await page.evaluate(() => globalThis.hurt), undefined);
+    assert.equal(await page.$$eval('img, main b', all => all.length), 0);
+    assert.ok((await page.textContent('#speed-1 .readout')).includes('<b>&amp;'));
+  }));
 
 test('each kind shows what fits it', async () => {
-  const has = async name => { let list; await on(sample(name), {}, async page => { list = await ids(page); }); return list; };
-  assert.deepEqual(await has('crossing'), ['summary', 'settings', 'failures', 'speed', 'heat', 'envelope', 'histories', 'jobs', 'modes', 'verdicts', 'provenance']);
-  assert.deepEqual(await has('still'), ['summary', 'settings', 'failures', 'speed', 'heat', 'envelope', 'jobs', 'modes', 'provenance']);
-  assert.deepEqual(await has('unread'), ['summary', 'settings', 'failures', 'speed', 'heat', 'envelope', 'histories', 'jobs', 'verdicts', 'provenance']);
+  const has = async name => {
+    let list;
+    await on(sample(name), {}, async page => {
+      list = await ids(page);
+    });
+    return list;
+  };
+  assert.deepEqual(await has('crossing'), [
+    'summary',
+    'settings',
+    'failures',
+    'speed',
+    'heat',
+    'envelope',
+    'histories',
+    'jobs',
+    'modes',
+    'verdicts',
+    'provenance',
+  ]);
+  assert.deepEqual(await has('still'), [
+    'summary',
+    'settings',
+    'failures',
+    'speed',
+    'heat',
+    'envelope',
+    'jobs',
+    'modes',
+    'provenance',
+  ]);
+  assert.deepEqual(await has('unread'), [
+    'summary',
+    'settings',
+    'failures',
+    'speed',
+    'heat',
+    'envelope',
+    'histories',
+    'jobs',
+    'verdicts',
+    'provenance',
+  ]);
   assert.deepEqual(await has('natural'), ['settings', 'frequencies', 'jobs', 'modes', 'provenance']);
   assert.deepEqual(await has('allFailed'), ['nothing', 'settings', 'failures', 'jobs', 'provenance']);
-  assert.deepEqual(await has('oneJob'), ['summary', 'settings', 'speed', 'envelope', 'histories', 'jobs', 'modes', 'provenance']);
+  assert.deepEqual(await has('oneJob'), [
+    'summary',
+    'settings',
+    'speed',
+    'envelope',
+    'histories',
+    'jobs',
+    'modes',
+    'provenance',
+  ]);
 });
 
-test('the program\'s own reports are among the pages where they are named', { skip: !process.env.PONTOON_REPORTS }, () => assert.ok(reports().length > 0));
+test("the program's own reports are among the pages where they are named", { skip: !process.env.PONTOON_REPORTS }, () =>
+  assert.ok(reports().length > 0),
+);

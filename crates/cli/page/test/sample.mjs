@@ -20,10 +20,15 @@ const random = seed => () => {
   return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
 };
 
-const MODULES = 15, LENGTH = 6.7;
+const MODULES = 15,
+  LENGTH = 6.7;
 const bridge = {
-  modules: MODULES, module_length_m: LENGTH, breadth_m: 8.082, depth_m: 1.07,
-  position_x_m: Array.from({ length: MODULES + 1 }, (_, i) => i * LENGTH), joints: Array.from({ length: MODULES - 1 }, (_, i) => i + 2),
+  modules: MODULES,
+  module_length_m: LENGTH,
+  breadth_m: 8.082,
+  depth_m: 1.07,
+  position_x_m: Array.from({ length: MODULES + 1 }, (_, i) => i * LENGTH),
+  joints: Array.from({ length: MODULES - 1 }, (_, i) => i + 2),
 };
 
 const AXES = {
@@ -34,19 +39,29 @@ const AXES = {
   load_n: { name: 'load_n', label: 'load', unit: 'N', kind: 'number' },
 };
 const MEASURES = {
-  peak_deflection_m: ['peak deflection', 'm'], peak_uplift_m: ['peak uplift', 'm'], peak_compression_n: ['peak compression', 'N'],
-  peak_tension_n: ['peak tension', 'N'], dynamic_amplification: ['dynamic amplification', ''], influential_length_m: ['influential length', 'm'],
+  peak_deflection_m: ['peak deflection', 'm'],
+  peak_uplift_m: ['peak uplift', 'm'],
+  peak_compression_n: ['peak compression', 'N'],
+  peak_tension_n: ['peak tension', 'N'],
+  dynamic_amplification: ['dynamic amplification', ''],
+  influential_length_m: ['influential length', 'm'],
 };
 const measures = names => names.map(name => ({ name, label: MEASURES[name][0], unit: MEASURES[name][1] }));
 
 /** A job's answers from its axes: monotonic in load, humped in speed, deeper with gaps. */
 function answer(job, draw) {
-  const gap = (job.gap_tension_m ?? 0) + (job.gap_compression_m ?? 0), v = job.speed_m_s ?? 5, load = job.load_n / 230300;
+  const gap = (job.gap_tension_m ?? 0) + (job.gap_compression_m ?? 0),
+    v = job.speed_m_s ?? 5,
+    load = job.load_n / 230300;
   const hump = 1 + 0.5 / (1 + ((v - 15) / 4) ** 2);
   const depth = load * (0.14 + 4 * gap) * hump * (1 + 0.03 * draw());
   return {
-    peak_deflection_m: depth, peak_uplift_m: depth * 0.6 * (hump - 0.95), peak_compression_n: load * 7e5 * hump * (1 - 8 * gap) * (1 + 0.05 * draw()),
-    peak_tension_n: load * 2e5 * hump * (1 + 0.1 * draw()), dynamic_amplification: hump * (1 + 0.02 * draw()), influential_length_m: 20 + 200 * gap + draw(),
+    peak_deflection_m: depth,
+    peak_uplift_m: depth * 0.6 * (hump - 0.95),
+    peak_compression_n: load * 7e5 * hump * (1 - 8 * gap) * (1 + 0.05 * draw()),
+    peak_tension_n: load * 2e5 * hump * (1 + 0.1 * draw()),
+    dynamic_amplification: hump * (1 + 0.02 * draw()),
+    influential_length_m: 20 + 200 * gap + draw(),
   };
 }
 
@@ -57,121 +72,388 @@ function study(kind, name, jobs, axisNames, measureNames, options = {}) {
   jobs.forEach((job, i) => (job.job = i));
   jobs.forEach(job => (job.answers = failed(job) ? null : answer(job, draw)));
   const axes = axisNames.map(axis => {
-    const base = { ...AXES[axis] }, values = [...new Set(jobs.map(j => j[axis] ?? null))];
+    const base = { ...AXES[axis] },
+      values = [...new Set(jobs.map(j => j[axis] ?? null))];
     values.sort((a, b) => (a === null ? 1 : b === null ? -1 : a < b ? -1 : 1));
     return { ...base, values, bins: null, constant: values.length < 2, ...(options.axis?.[axis] ?? {}) };
   });
   const where = axes.map(axis => new Map(axis.values.map((v, i) => [v, i])));
   const cells = new Map();
   for (const job of jobs) {
-    const at = axes.map((axis, a) => where[a].get(job[axis.name] ?? null)), key = at.join();
+    const at = axes.map((axis, a) => where[a].get(job[axis.name] ?? null)),
+      key = at.join();
     if (!cells.has(key)) cells.set(key, { at, jobs: [] });
     cells.get(key).jobs.push(job);
   }
-  const list = [...cells.values()], good = cell => cell.jobs.filter(j => j.answers);
-  const best = (cell, m, sign) => good(cell).reduce((a, j) => (!a || sign * j.answers[m] > sign * a.answers[m] ? j : a), null);
+  const list = [...cells.values()],
+    good = cell => cell.jobs.filter(j => j.answers);
+  const best = (cell, m, sign) =>
+    good(cell).reduce((a, j) => (!a || sign * j.answers[m] > sign * a.answers[m] ? j : a), null);
   const rows = options.rows ? jobs.filter(j => options.rows(j)) : jobs;
-  const profile = (job, x) => job.answers && job.answers.peak_deflection_m * (0.6 + 0.4 * Math.sin((Math.PI * x) / 50) ** 2) * Math.sin((Math.PI * (x + 3)) / 106.5) ** 0.3;
-  const force = (job, joint, measure) => job.answers && job.answers[measure] * Math.sin((Math.PI * (joint - 1)) / MODULES) ** 0.5;
-  const over = (items, f) => jobs.filter(j => j.answers).length ? items.map(item => Math.max(...rows.filter(j => j.answers).map(j => f(j, item)))) : null;
-  const deflection = over(bridge.position_x_m, profile), ok = jobs.filter(j => j.answers).length;
-  const top = measureNames.slice(0, 4).map(m => ({ m, job: best({ jobs }, m, 1) })).filter(c => c.job);
-  const nameAxes = job => axisNames.filter(a => job[a] !== undefined && job[a] !== null).map(a => `${AXES[a].label} ${job[a]}${AXES[a].unit && ' ' + AXES[a].unit}`).join(', ');
+  const profile = (job, x) =>
+    job.answers &&
+    job.answers.peak_deflection_m *
+      (0.6 + 0.4 * Math.sin((Math.PI * x) / 50) ** 2) *
+      Math.sin((Math.PI * (x + 3)) / 106.5) ** 0.3;
+  const force = (job, joint, measure) =>
+    job.answers && job.answers[measure] * Math.sin((Math.PI * (joint - 1)) / MODULES) ** 0.5;
+  const over = (items, f) =>
+    jobs.filter(j => j.answers).length
+      ? items.map(item => Math.max(...rows.filter(j => j.answers).map(j => f(j, item))))
+      : null;
+  const deflection = over(bridge.position_x_m, profile),
+    ok = jobs.filter(j => j.answers).length;
+  const top = measureNames
+    .slice(0, 4)
+    .map(m => ({ m, job: best({ jobs }, m, 1) }))
+    .filter(c => c.job);
+  const nameAxes = job =>
+    axisNames
+      .filter(a => job[a] !== undefined && job[a] !== null)
+      .map(a => `${AXES[a].label} ${job[a]}${AXES[a].unit && ' ' + AXES[a].unit}`)
+      .join(', ');
   return {
-    format: 1, program: { version: '0.1.0', commit: 'b3c1f00' },
-    study: { name, question: 'How deep does the bridge go, and how hard are its connectors hit?', kind, settings: [
-      { label: 'Bridge', value: '15 modules of 6.7 m, 8.08 m wide, 1.07 m deep' }, { label: 'Vehicle', value: 'one footprint of 3.35 m, wheels at -1.4 m and 1.4 m' },
-      { label: 'Solver', value: 'operator, super-element, time step 0.01 s' } ] },
-    bridge, jobs: { total: jobs.length, ok, failed: jobs.length - ok, missing: 0 }, notes: [], axes, measures: measures(measureNames),
+    format: 1,
+    program: { version: '0.1.0', commit: 'b3c1f00' },
+    study: {
+      name,
+      question: 'How deep does the bridge go, and how hard are its connectors hit?',
+      kind,
+      settings: [
+        { label: 'Bridge', value: '15 modules of 6.7 m, 8.08 m wide, 1.07 m deep' },
+        { label: 'Vehicle', value: 'one footprint of 3.35 m, wheels at -1.4 m and 1.4 m' },
+        { label: 'Solver', value: 'operator, super-element, time step 0.01 s' },
+      ],
+    },
+    bridge,
+    jobs: { total: jobs.length, ok, failed: jobs.length - ok, missing: 0 },
+    notes: [],
+    axes,
+    measures: measures(measureNames),
     cells: {
-      count: list.length, axis: axes.map((_, a) => u16(list.map(c => c.at[a]))), jobs: u32(list.map(c => c.jobs.length)),
+      count: list.length,
+      axis: axes.map((_, a) => u16(list.map(c => c.at[a]))),
+      jobs: u32(list.map(c => c.jobs.length)),
       failed: u32(list.map(c => c.jobs.length - good(c).length)),
-      max: measureNames.map(m => f32(list.map(c => best(c, m, 1)?.answers[m] ?? null))), min: measureNames.map(m => f32(list.map(c => best(c, m, -1)?.answers[m] ?? null))),
+      max: measureNames.map(m => f32(list.map(c => best(c, m, 1)?.answers[m] ?? null))),
+      min: measureNames.map(m => f32(list.map(c => best(c, m, -1)?.answers[m] ?? null))),
       at: measureNames.map(m => u32(list.map(c => best(c, m, 1)?.job ?? 4294967295))),
     },
-    cards: top.map(({ m, job }) => ({ measure: m, label: MEASURES[m][0].replace('peak', 'largest'), value: job.answers[m], unit: MEASURES[m][1], where: 'position 14 at 6.3 s', job: job.job, axes: nameAxes(job) })),
-    failures: ok < jobs.length ? [{ count: jobs.length - ok, job: jobs.find(failed).job, reason: 'contacts did not settle at 3.21 s in 40 iterations' }] : [],
-    marks: [], envelope: deflection && {
-      x_m: bridge.position_x_m, deflection_m: f32(deflection), uplift_m: f32(deflection.map(v => v * 0.4)), joint_x_m: bridge.joints.map(j => bridge.position_x_m[j - 1]),
-      compression_n: f32(over(bridge.joints, (j, n) => force(j, n, 'peak_compression_n'))), tension_n: f32(over(bridge.joints, (j, n) => force(j, n, 'peak_tension_n'))) },
+    cards: top.map(({ m, job }) => ({
+      measure: m,
+      label: MEASURES[m][0].replace('peak', 'largest'),
+      value: job.answers[m],
+      unit: MEASURES[m][1],
+      where: 'position 14 at 6.3 s',
+      job: job.job,
+      axes: nameAxes(job),
+    })),
+    failures:
+      ok < jobs.length
+        ? [
+            {
+              count: jobs.length - ok,
+              job: jobs.find(failed).job,
+              reason: 'contacts did not settle at 3.21 s in 40 iterations',
+            },
+          ]
+        : [],
+    marks: [],
+    envelope: deflection && {
+      x_m: bridge.position_x_m,
+      deflection_m: f32(deflection),
+      uplift_m: f32(deflection.map(v => v * 0.4)),
+      joint_x_m: bridge.joints.map(j => bridge.position_x_m[j - 1]),
+      compression_n: f32(over(bridge.joints, (j, n) => force(j, n, 'peak_compression_n'))),
+      tension_n: f32(over(bridge.joints, (j, n) => force(j, n, 'peak_tension_n'))),
+    },
     rows: {
-      count: rows.length, note: rows.length === jobs.length ? `all ${jobs.length} jobs` : `${rows.length} of ${jobs.length} jobs: the largest, the failed and an even sample`,
+      count: rows.length,
+      note:
+        rows.length === jobs.length
+          ? `all ${jobs.length} jobs`
+          : `${rows.length} of ${jobs.length} jobs: the largest, the failed and an even sample`,
       columns: [
-        ...axes.map(axis => ({ name: axis.name, label: axis.label, unit: axis.unit, kind: axis.kind, data: axis.kind === 'number' ? f32(rows.map(j => j[axis.name] ?? null)) : words(rows.map(j => j[axis.name] ?? null)) })),
-        ...measureNames.map(m => ({ name: m, label: MEASURES[m][0], unit: MEASURES[m][1], kind: 'number', data: f32(rows.map(j => j.answers?.[m] ?? null)) })) ],
-      job: u32(rows.map(j => j.job)), ok: u8(rows.map(j => (j.answers ? 1 : 0))), reason: words(rows.map(j => (j.answers ? null : 'contacts did not settle at 3.21 s in 40 iterations'))),
-      profile: options.profile === false ? null : {
-        deflection_m: f32(rows.flatMap(j => bridge.position_x_m.map(x => profile(j, x)))), uplift_m: f32(rows.flatMap(j => bridge.position_x_m.map(x => profile(j, x) && 0.4 * profile(j, x)))),
-        compression_n: f32(rows.flatMap(j => bridge.joints.map(n => force(j, n, 'peak_compression_n')))), tension_n: f32(rows.flatMap(j => bridge.joints.map(n => force(j, n, 'peak_tension_n')))),
-        signed_m: kind === 'static' ? f32(rows.flatMap(j => bridge.position_x_m.map(x => j.answers && profile(j, x) * Math.cos((x - 50) / 18)))) : null } },
-    histories: kind === 'crossing' ? rows.filter(j => j.answers).slice(0, 6).flatMap(j => history(j, nameAxes(j))) : [],
-    plays: kind === 'crossing' ? rows.filter(j => j.answers).slice(0, options.plays ?? 12).map(play) : [],
-    modes: [{ label: 'floating free', list: modes() }], verdicts: null, provenance: [
-      { label: 'study hash', value: '5f0c7d1f9f0f2f8b1a6e' }, { label: 'bridge hash', value: 'a81d6d20f1c09f3aa0c3' }, { label: 'program', value: 'pontoon 0.1.0 (b3c1f00)' },
-      { label: 'ran', value: '2026-11-20 10:12:03 to 10:12:05 UTC on 2 threads' } ],
+        ...axes.map(axis => ({
+          name: axis.name,
+          label: axis.label,
+          unit: axis.unit,
+          kind: axis.kind,
+          data:
+            axis.kind === 'number'
+              ? f32(rows.map(j => j[axis.name] ?? null))
+              : words(rows.map(j => j[axis.name] ?? null)),
+        })),
+        ...measureNames.map(m => ({
+          name: m,
+          label: MEASURES[m][0],
+          unit: MEASURES[m][1],
+          kind: 'number',
+          data: f32(rows.map(j => j.answers?.[m] ?? null)),
+        })),
+      ],
+      job: u32(rows.map(j => j.job)),
+      ok: u8(rows.map(j => (j.answers ? 1 : 0))),
+      reason: words(rows.map(j => (j.answers ? null : 'contacts did not settle at 3.21 s in 40 iterations'))),
+      profile:
+        options.profile === false
+          ? null
+          : {
+              deflection_m: f32(rows.flatMap(j => bridge.position_x_m.map(x => profile(j, x)))),
+              uplift_m: f32(rows.flatMap(j => bridge.position_x_m.map(x => profile(j, x) && 0.4 * profile(j, x)))),
+              compression_n: f32(rows.flatMap(j => bridge.joints.map(n => force(j, n, 'peak_compression_n')))),
+              tension_n: f32(rows.flatMap(j => bridge.joints.map(n => force(j, n, 'peak_tension_n')))),
+              signed_m:
+                kind === 'static'
+                  ? f32(
+                      rows.flatMap(j =>
+                        bridge.position_x_m.map(x => j.answers && profile(j, x) * Math.cos((x - 50) / 18)),
+                      ),
+                    )
+                  : null,
+            },
+    },
+    histories:
+      kind === 'crossing'
+        ? rows
+            .filter(j => j.answers)
+            .slice(0, 6)
+            .flatMap(j => history(j, nameAxes(j)))
+        : [],
+    plays:
+      kind === 'crossing'
+        ? rows
+            .filter(j => j.answers)
+            .slice(0, options.plays ?? 12)
+            .map(play)
+        : [],
+    modes: [{ label: 'floating free', list: modes() }],
+    verdicts: null,
+    provenance: [
+      { label: 'study hash', value: '5f0c7d1f9f0f2f8b1a6e' },
+      { label: 'bridge hash', value: 'a81d6d20f1c09f3aa0c3' },
+      { label: 'program', value: 'pontoon 0.1.0 (b3c1f00)' },
+      { label: 'ran', value: '2026-11-20 10:12:03 to 10:12:05 UTC on 2 threads' },
+    ],
   };
 }
 
 function history(job, axes) {
-  const time = Array.from({ length: 400 }, (_, i) => i * 0.05), v = job.speed_m_s;
-  const bump = t => job.answers.peak_deflection_m * Math.exp(-(((v * t - 40.2) / 12) ** 2)) * (1 + 0.1 * Math.sin(5 * t));
+  const time = Array.from({ length: 400 }, (_, i) => i * 0.05),
+    v = job.speed_m_s;
+  const bump = t =>
+    job.answers.peak_deflection_m * Math.exp(-(((v * t - 40.2) / 12) ** 2)) * (1 + 0.1 * Math.sin(5 * t));
   return [
-    { job: job.job, axes, position: 7, quantity: 'deflection_m', unit: 'm', time_s: f32(time), value: f32(time.map(bump)) },
-    { job: job.job, axes, position: 7, quantity: 'force_n', unit: 'N', time_s: f32(time), value: f32(time.map(t => -bump(t) * 4e6 + 1e5 * Math.sin(4 * t))) } ];
+    {
+      job: job.job,
+      axes,
+      position: 7,
+      quantity: 'deflection_m',
+      unit: 'm',
+      time_s: f32(time),
+      value: f32(time.map(bump)),
+    },
+    {
+      job: job.job,
+      axes,
+      position: 7,
+      quantity: 'force_n',
+      unit: 'N',
+      time_s: f32(time),
+      value: f32(time.map(t => -bump(t) * 4e6 + 1e5 * Math.sin(4 * t))),
+    },
+  ];
 }
 
 function play(job) {
-  const F = 140, v = job.speed_m_s, end = (15 * LENGTH + 20) / v, time = Array.from({ length: F }, (_, i) => (i * end) / (F - 1));
-  const front = time.map(t => v * t), w = job.answers.peak_deflection_m, depth = (x, f) => w * Math.exp(-(((x - f + 3) / 11) ** 2)) - 0.25 * w * Math.exp(-(((x - f - 22) / 10) ** 2));
-  const forces = front.flatMap(f => bridge.joints.map(n => {
-    const x = bridge.position_x_m[n - 1], d = Math.abs(x - f + 3);
-    return d < 12 ? -job.answers.peak_compression_n * (1 - d / 12) : d < 24 ? job.answers.peak_tension_n * (1 - Math.abs(d - 18) / 6) : 0; }));
-  return { job: job.job, frames: F, time_s: f32(time), front_x_m: f32(front), axles: [{ behind_front_m: 0, share: 1, patch_length_m: 3.35 }], load_n: job.load_n,
-    deflection_m: i16(front.flatMap(f => bridge.position_x_m.map(x => depth(x, f))), w / 32000), force_n: i16(forces, 50),
-    state: u8(forces.map((f, i) => (f < -1 ? (i % 37 === 0 ? 3 : 1) : f > 1 ? 2 : 0))) };
+  const F = 140,
+    v = job.speed_m_s,
+    end = (15 * LENGTH + 20) / v,
+    time = Array.from({ length: F }, (_, i) => (i * end) / (F - 1));
+  const front = time.map(t => v * t),
+    w = job.answers.peak_deflection_m,
+    depth = (x, f) => w * Math.exp(-(((x - f + 3) / 11) ** 2)) - 0.25 * w * Math.exp(-(((x - f - 22) / 10) ** 2));
+  const forces = front.flatMap(f =>
+    bridge.joints.map(n => {
+      const x = bridge.position_x_m[n - 1],
+        d = Math.abs(x - f + 3);
+      return d < 12
+        ? -job.answers.peak_compression_n * (1 - d / 12)
+        : d < 24
+          ? job.answers.peak_tension_n * (1 - Math.abs(d - 18) / 6)
+          : 0;
+    }),
+  );
+  return {
+    job: job.job,
+    frames: F,
+    time_s: f32(time),
+    front_x_m: f32(front),
+    axles: [{ behind_front_m: 0, share: 1, patch_length_m: 3.35 }],
+    load_n: job.load_n,
+    deflection_m: i16(
+      front.flatMap(f => bridge.position_x_m.map(x => depth(x, f))),
+      w / 32000,
+    ),
+    force_n: i16(forces, 50),
+    state: u8(forces.map((f, i) => (f < -1 ? (i % 37 === 0 ? 3 : 1) : f > 1 ? 2 : 0))),
+  };
 }
 
 function modes() {
-  const shapes = [['heave', () => 1], ['pitch', s => 2 * s - 1], ['roll', null], ['vertical bending 1', s => Math.cos(2 * Math.PI * s)], ['torsion 1', null], ['vertical bending 2', s => Math.cos(3 * Math.PI * s)]];
+  const shapes = [
+    ['heave', () => 1],
+    ['pitch', s => 2 * s - 1],
+    ['roll', null],
+    ['vertical bending 1', s => Math.cos(2 * Math.PI * s)],
+    ['torsion 1', null],
+    ['vertical bending 2', s => Math.cos(3 * Math.PI * s)],
+  ];
   return shapes.map(([shape, f], n) => {
     const motion = [];
-    for (let m = 0; m < MODULES; m++) for (let c = 0; c < 8; c++) {
-      const s = (m + (c % 4 === 1 || c % 4 === 2 ? 1 : 0)) / MODULES, side = c % 4 === 2 || c % 4 === 3 ? 1 : -1;
-      motion.push(0, 0, f ? f(s) : side * (shape === 'roll' ? 1 : Math.cos(Math.PI * s)));
-    }
+    for (let m = 0; m < MODULES; m++)
+      for (let c = 0; c < 8; c++) {
+        const s = (m + (c % 4 === 1 || c % 4 === 2 ? 1 : 0)) / MODULES,
+          side = c % 4 === 2 || c % 4 === 3 ? 1 : -1;
+        motion.push(0, 0, f ? f(s) : side * (shape === 'roll' ? 1 : Math.cos(Math.PI * s)));
+      }
     return { number: n + 1, frequency_hz: 0.28 + 0.09 * n * n ** 0.5, shape, motion: f32(motion) };
   });
 }
 
-const product = axes => Object.entries(axes).reduce((list, [name, values]) => list.flatMap(job => values.map(v => ({ ...job, [name]: v }))), [{}]);
+const product = axes =>
+  Object.entries(axes).reduce(
+    (list, [name, values]) => list.flatMap(job => values.map(v => ({ ...job, [name]: v }))),
+    [{}],
+  );
 const CROSSING = ['connection', 'gap_tension_m', 'gap_compression_m', 'speed_m_s', 'load_n'];
 const PEAKS = ['peak_deflection_m', 'peak_uplift_m', 'peak_compression_n', 'peak_tension_n', 'dynamic_amplification'];
 
 /** The paper's 21 crossings: linear and four settings of the gaps, four speeds, and the test run. One job failed. */
 export function crossing() {
-  const gaps = [[0.028, 0.0055], [0.028, 0], [0.005, 0.0055], [0, 0.0055]], speed = [3, 7, 10, 15];
-  const jobs = [...product({ connection: ['linear'], speed_m_s: speed, load_n: [230300] }),
-    ...gaps.flatMap(([t, c]) => product({ connection: ['nonlinear'], gap_tension_m: [t], gap_compression_m: [c], speed_m_s: speed, load_n: [230300] })),
-    { connection: 'nonlinear', gap_tension_m: 0.028, gap_compression_m: 0.0055, speed_m_s: 6.09, load_n: 132300 }];
+  const gaps = [
+      [0.028, 0.0055],
+      [0.028, 0],
+      [0.005, 0.0055],
+      [0, 0.0055],
+    ],
+    speed = [3, 7, 10, 15];
+  const jobs = [
+    ...product({ connection: ['linear'], speed_m_s: speed, load_n: [230300] }),
+    ...gaps.flatMap(([t, c]) =>
+      product({
+        connection: ['nonlinear'],
+        gap_tension_m: [t],
+        gap_compression_m: [c],
+        speed_m_s: speed,
+        load_n: [230300],
+      }),
+    ),
+    { connection: 'nonlinear', gap_tension_m: 0.028, gap_compression_m: 0.0055, speed_m_s: 6.09, load_n: 132300 },
+  ];
   const data = study('crossing', 'fu2005', jobs, CROSSING, PEAKS, { failed: [9] });
   data.notes = ['The reference was measured on a model at 1 : 10.'];
   data.marks = [
-    ...speed.map((x, i) => ({ id: `fig14-${i}`, chart: 'speed', measure: 'peak_deflection_m', x, y: 0.19 + 0.03 * i, label: 'measured', position: 7, axes: { connection: 'nonlinear', gap_tension_m: 0.028, gap_compression_m: 0.0055 } })),
-    ...[2, 5, 7, 9, 12].map((p, i) => ({ id: `fig11-${i}`, chart: 'profile', measure: 'peak_deflection_m', x: (p - 1) * LENGTH, y: 0.15 + 0.02 * i, label: 'measured profile', position: p, axes: {} })),
-    { id: 'fig10', chart: 'history', measure: 'deflection_m', x: null, y: 0.12, label: 'measured hump', position: 7, axes: {} }];
-  data.verdicts = { source: 'Fu, Cui, Chen, Wang: Marine Structures 18 (2005) 85-107', good: false, lines: [
-    { id: 'hump', statement: 'The hump at 15 m/s is 1.5 times that at 3 m/s', role: 'hold', verdict: 'holds', expected: '1.5 within 3 %', found: '1.49', deviation: '-0.7 %', margin: '2.3 %', note: '' },
-    { id: 'growth', statement: 'Deflection grows with the tension gap at every speed', role: 'hold', verdict: 'falls short', expected: 'a larger value at each of 4 speeds', found: '3 of 4', deviation: '', margin: '', note: 'at 7 m/s it falls by 0.3 %' },
-    { id: 'largest', statement: 'The largest deflection is at position 7', role: 'expected-fail', verdict: 'fails as expected', expected: 'position 7', found: 'position 14', deviation: '', margin: '', note: 'the far end goes down at 15 m/s' },
-    { id: 'test-run', statement: '', role: 'record', verdict: 'record', expected: '0.12', found: '0.1196', deviation: '-0.3 %', margin: '', note: '' } ] };
+    ...speed.map((x, i) => ({
+      id: `fig14-${i}`,
+      chart: 'speed',
+      measure: 'peak_deflection_m',
+      x,
+      y: 0.19 + 0.03 * i,
+      label: 'measured',
+      position: 7,
+      axes: { connection: 'nonlinear', gap_tension_m: 0.028, gap_compression_m: 0.0055 },
+    })),
+    ...[2, 5, 7, 9, 12].map((p, i) => ({
+      id: `fig11-${i}`,
+      chart: 'profile',
+      measure: 'peak_deflection_m',
+      x: (p - 1) * LENGTH,
+      y: 0.15 + 0.02 * i,
+      label: 'measured profile',
+      position: p,
+      axes: {},
+    })),
+    {
+      id: 'fig10',
+      chart: 'history',
+      measure: 'deflection_m',
+      x: null,
+      y: 0.12,
+      label: 'measured hump',
+      position: 7,
+      axes: {},
+    },
+  ];
+  data.verdicts = {
+    source: 'Fu, Cui, Chen, Wang: Marine Structures 18 (2005) 85-107',
+    good: false,
+    lines: [
+      {
+        id: 'hump',
+        statement: 'The hump at 15 m/s is 1.5 times that at 3 m/s',
+        role: 'hold',
+        verdict: 'holds',
+        expected: '1.5 within 3 %',
+        found: '1.49',
+        deviation: '-0.7 %',
+        margin: '2.3 %',
+        note: '',
+      },
+      {
+        id: 'growth',
+        statement: 'Deflection grows with the tension gap at every speed',
+        role: 'hold',
+        verdict: 'falls short',
+        expected: 'a larger value at each of 4 speeds',
+        found: '3 of 4',
+        deviation: '',
+        margin: '',
+        note: 'at 7 m/s it falls by 0.3 %',
+      },
+      {
+        id: 'largest',
+        statement: 'The largest deflection is at position 7',
+        role: 'expected-fail',
+        verdict: 'fails as expected',
+        expected: 'position 7',
+        found: 'position 14',
+        deviation: '',
+        margin: '',
+        note: 'the far end goes down at 15 m/s',
+      },
+      {
+        id: 'test-run',
+        statement: '',
+        role: 'record',
+        verdict: 'record',
+        expected: '0.12',
+        found: '0.1196',
+        deviation: '-0.3 %',
+        margin: '',
+        note: '',
+      },
+    ],
+  };
   return data;
 }
 
 /** As large as a page may be: 40,000 cells, 2,000 rows of 40,000 jobs. */
 export function big() {
   const line = (n, a, b) => Array.from({ length: n }, (_, i) => +(a + ((b - a) * i) / (n - 1)).toFixed(5));
-  const jobs = product({ connection: ['nonlinear'], gap_tension_m: line(10, 0, 0.04), gap_compression_m: line(10, 0, 0.02), speed_m_s: line(40, 2, 20), load_n: line(10, 5e4, 6e5) });
-  const data = study('crossing', 'gaps-times-speed', jobs, CROSSING, PEAKS, { failed: [77, 5003], rows: j => j.job % 20 === 0 || j.job === 77, profile: undefined, plays: 12 });
+  const jobs = product({
+    connection: ['nonlinear'],
+    gap_tension_m: line(10, 0, 0.04),
+    gap_compression_m: line(10, 0, 0.02),
+    speed_m_s: line(40, 2, 20),
+    load_n: line(10, 5e4, 6e5),
+  });
+  const data = study('crossing', 'gaps-times-speed', jobs, CROSSING, PEAKS, {
+    failed: [77, 5003],
+    rows: j => j.job % 20 === 0 || j.job === 77,
+    profile: undefined,
+    plays: 12,
+  });
   data.notes = [];
   return data;
 }
@@ -186,37 +468,108 @@ export function wide() {
 export function still() {
   const jobs = product({ connection: ['linear'], load_x_m: [10, 30, 50.25], load_n: [1e5, 2e5] });
   AXES.load_x_m = { name: 'load_x_m', label: 'place of the load', unit: 'm', kind: 'number' };
-  return study('static', 'fig09_static', jobs, ['connection', 'load_x_m', 'load_n'], ['peak_deflection_m', 'peak_uplift_m', 'peak_compression_n', 'peak_tension_n', 'influential_length_m'], { failed: [5] });
+  return study(
+    'static',
+    'fig09_static',
+    jobs,
+    ['connection', 'load_x_m', 'load_n'],
+    ['peak_deflection_m', 'peak_uplift_m', 'peak_compression_n', 'peak_tension_n', 'influential_length_m'],
+    { failed: [5] },
+  );
 }
 
 export function natural() {
   const data = study('modes', 'table1', [{ load_n: 1 }, { load_n: 2 }], ['connection'], []);
   const list = modes();
-  return { ...data, study: { ...data.study, question: 'Which frequencies has the bridge of the paper?' }, envelope: null, cards: [],
-    rows: { ...data.rows, profile: null, columns: [{ name: 'bridge.modules', label: 'modules', unit: '', kind: 'number', data: f32([15, 7]) }] },
-    mode_table: [0, 1].flatMap(job => list.map(m => ({ job, axes: `modules ${job ? 7 : 15}`, number: m.number, frequency_hz: m.frequency_hz * (1 + job), shape: m.shape }))),
-    modes: [{ label: 'floating free', list }, { label: 'one module', list: list.slice(0, 3).map(m => ({ ...m, motion: f32(Array.from({ length: 24 }, (_, i) => (i % 3 === 2 ? 1 : 0))) })) }] };
+  return {
+    ...data,
+    study: { ...data.study, question: 'Which frequencies has the bridge of the paper?' },
+    envelope: null,
+    cards: [],
+    rows: {
+      ...data.rows,
+      profile: null,
+      columns: [{ name: 'bridge.modules', label: 'modules', unit: '', kind: 'number', data: f32([15, 7]) }],
+    },
+    mode_table: [0, 1].flatMap(job =>
+      list.map(m => ({
+        job,
+        axes: `modules ${job ? 7 : 15}`,
+        number: m.number,
+        frequency_hz: m.frequency_hz * (1 + job),
+        shape: m.shape,
+      })),
+    ),
+    modes: [
+      { label: 'floating free', list },
+      {
+        label: 'one module',
+        list: list
+          .slice(0, 3)
+          .map(m => ({ ...m, motion: f32(Array.from({ length: 24 }, (_, i) => (i % 3 === 2 ? 1 : 0))) })),
+      },
+    ],
+  };
 }
 
 export function allFailed() {
-  const data = study('crossing', 'all-failed', product({ speed_m_s: [3, 7], load_n: [230300] }), ['speed_m_s', 'load_n'], PEAKS, { failed: [0, 1] });
+  const data = study(
+    'crossing',
+    'all-failed',
+    product({ speed_m_s: [3, 7], load_n: [230300] }),
+    ['speed_m_s', 'load_n'],
+    PEAKS,
+    { failed: [0, 1] },
+  );
   return { ...data, notes: ['All 2 jobs failed: there is nothing to draw'], envelope: null, modes: [] };
 }
-export const oneJob = () => study('crossing', 'one-job', product({ speed_m_s: [6.09], load_n: [132300] }), ['speed_m_s', 'load_n'], PEAKS);
-export const oneAxis = () => study('crossing', 'one-axis', product({ speed_m_s: [3, 7, 10, 15], load_n: [230300] }), ['speed_m_s', 'load_n'], PEAKS);
+export const oneJob = () =>
+  study('crossing', 'one-job', product({ speed_m_s: [6.09], load_n: [132300] }), ['speed_m_s', 'load_n'], PEAKS);
+export const oneAxis = () =>
+  study(
+    'crossing',
+    'one-axis',
+    product({ speed_m_s: [3, 7, 10, 15], load_n: [230300] }),
+    ['speed_m_s', 'load_n'],
+    PEAKS,
+  );
 
 const EVIL = '</script><img src=x onerror="globalThis.hurt=1"><b>&amp;{{script}}$&';
 /** Every string is full of markup. */
 export function markup() {
   const data = crossing();
   const spoil = v => (typeof v === 'string' ? v + EVIL : v);
-  data.study.name = EVIL; data.study.question = EVIL; data.notes = [EVIL, 'long'.repeat(80)]; data.provenance.forEach(p => (p.value = spoil(p.value)));
-  data.study.settings.forEach(p => { p.value = spoil(p.value); p.label = spoil(p.label); });
-  data.axes.forEach(a => (a.label = spoil(a.label))); data.measures.forEach(m => (m.label = spoil(m.label))); data.cards.forEach(c => { c.where = spoil(c.where); c.axes = spoil(c.axes); c.label = spoil(c.label); });
-  data.failures.forEach(f => (f.reason = spoil(f.reason))); data.marks.forEach(m => (m.label = spoil(m.label))); data.rows.columns.forEach(c => (c.label = spoil(c.label)));
-  data.rows.reason.words = data.rows.reason.words.map(spoil); data.rows.columns[0].data.words = data.rows.columns[0].data.words.map(spoil); data.axes[0].values = data.axes[0].values.map(spoil);
-  data.histories.forEach(h => (h.axes = spoil(h.axes))); data.modes.forEach(m => { m.label = spoil(m.label); m.list.forEach(x => (x.shape = spoil(x.shape))); });
-  data.verdicts.lines.forEach(l => { l.statement = spoil(l.statement); l.note = spoil(l.note); }); data.verdicts.source = EVIL;
+  data.study.name = EVIL;
+  data.study.question = EVIL;
+  data.notes = [EVIL, 'long'.repeat(80)];
+  data.provenance.forEach(p => (p.value = spoil(p.value)));
+  data.study.settings.forEach(p => {
+    p.value = spoil(p.value);
+    p.label = spoil(p.label);
+  });
+  data.axes.forEach(a => (a.label = spoil(a.label)));
+  data.measures.forEach(m => (m.label = spoil(m.label)));
+  data.cards.forEach(c => {
+    c.where = spoil(c.where);
+    c.axes = spoil(c.axes);
+    c.label = spoil(c.label);
+  });
+  data.failures.forEach(f => (f.reason = spoil(f.reason)));
+  data.marks.forEach(m => (m.label = spoil(m.label)));
+  data.rows.columns.forEach(c => (c.label = spoil(c.label)));
+  data.rows.reason.words = data.rows.reason.words.map(spoil);
+  data.rows.columns[0].data.words = data.rows.columns[0].data.words.map(spoil);
+  data.axes[0].values = data.axes[0].values.map(spoil);
+  data.histories.forEach(h => (h.axes = spoil(h.axes)));
+  data.modes.forEach(m => {
+    m.label = spoil(m.label);
+    m.list.forEach(x => (x.shape = spoil(x.shape)));
+  });
+  data.verdicts.lines.forEach(l => {
+    l.statement = spoil(l.statement);
+    l.note = spoil(l.note);
+  });
+  data.verdicts.source = EVIL;
   return data;
 }
 
@@ -224,14 +577,24 @@ export function markup() {
 export function unread() {
   const data = crossing();
   data.notes = ['This program cannot read the study any more: crossings and shapes are left out.'];
-  return { ...data, bridge: null, study: { ...data.study, settings: [] }, plays: [], modes: [], marks: data.marks.filter(m => m.chart !== 'history') };
+  return {
+    ...data,
+    bridge: null,
+    study: { ...data.study, settings: [] },
+    plays: [],
+    modes: [],
+    marks: data.marks.filter(m => m.chart !== 'history'),
+  };
 }
 
 /** A run that is not done. */
 export function half() {
   const data = crossing();
   data.jobs = { total: 42, ok: 20, failed: 1, missing: 21 };
-  data.notes = ['21 of 42 jobs are missing: the run is not done. `pontoon run` goes on with it.', 'The tables are not written yet: this page is made from the journal.'];
+  data.notes = [
+    '21 of 42 jobs are missing: the run is not done. `pontoon run` goes on with it.',
+    'The tables are not written yet: this page is made from the journal.',
+  ];
   return { ...data, verdicts: null, histories: [], modes: [] };
 }
 

@@ -6,10 +6,19 @@ import { fileURLToPath } from 'node:url';
 import { order } from './build.mjs';
 
 const folder = fileURLToPath(new URL('..', import.meta.url));
-const COPIES = { 'vendor/d3.min.js': 'd3/dist/d3.min.js', 'vendor/d3.LICENSE': 'd3/LICENSE', 'vendor/plot.umd.min.js': '@observablehq/plot/dist/plot.umd.min.js', 'vendor/plot.LICENSE': '@observablehq/plot/LICENSE' };
+const COPIES = {
+  'vendor/d3.min.js': 'd3/dist/d3.min.js',
+  'vendor/d3.LICENSE': 'd3/LICENSE',
+  'vendor/plot.umd.min.js': '@observablehq/plot/dist/plot.umd.min.js',
+  'vendor/plot.LICENSE': '@observablehq/plot/LICENSE',
+};
 
 for (const [copy, original] of Object.entries(COPIES)) {
-  test(`${copy} is ${original} of npm`, () => assert.ok(readFileSync(folder + copy).equals(readFileSync(`${folder}node_modules/${original}`)), 'run scripts/vendor-page'));
+  test(`${copy} is ${original} of npm`, () =>
+    assert.ok(
+      readFileSync(folder + copy).equals(readFileSync(`${folder}node_modules/${original}`)),
+      'run scripts/vendor-page',
+    ));
 }
 
 test('all that every page carries is below 700 kB', () => {
