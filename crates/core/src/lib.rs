@@ -5,13 +5,12 @@
 //!
 //! | floor | module | charter |
 //! |---|---|---|
-//! | 0 | [`conventions`], [`input`] | axes, units, signs; what a refused number looks like |
+//! | 0 | [`conventions`], [`input`], [`response`] | axes, units, signs; what a refused number looks like; peaks, histories and the energy balance, data that every floor above fills |
 //! | 1 | [`fem`] | shells, beams, assembly, factorisation, eigenvalues; has never heard of a bridge |
 //! | 2 | [`module`], [`water`], [`superelement`] | the pontoon's geometry to finite elements, hydrostatics and added mass, condensation |
 //! | 3 | [`connector`], [`vehicle`], [`bridge`] | the gap law, the wheels, and the one place where they all meet |
 //! | 4 | [`scheme`], [`flexibility`], [`contact`], [`operator`] | time integration, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
 //! | 5 | [`analysis`] | modes, statics, crossings |
-//! | 6 | [`response`] | peaks, histories, the energy balance |
 
 pub mod analysis;
 pub mod bridge;

@@ -3,8 +3,8 @@
 //! Knows plane stress in the element's plane, dofs (u, v, theta_z) a node. Does not know bending.
 
 use super::frame::{GAUSS_2X2, QuadFrame, ShapeAt};
-use super::shell::ShellSection;
-use nalgebra::{Matrix3, SMatrix, SVector};
+use super::section::ShellSection;
+use nalgebra::{SMatrix, SVector};
 
 /// Membrane stiffness, dofs `(u, v, theta_z)` of the four nodes.
 pub(super) type MembraneMatrix = SMatrix<f64, 12, 12>;
@@ -23,7 +23,7 @@ const DRILLING_HOURGLASS: f64 = 1e-5;
 /// centre, where neither constant strain nor in-plane bending of a rectangle leaves anything.
 pub(super) fn stiffness(frame: &QuadFrame, section: &ShellSection) -> MembraneMatrix {
     let t = section.thickness_m;
-    let d = plane_stress(section) * t;
+    let d = section.plane_stress() * t;
     let centre = frame.shape(0.0, 0.0);
     let mut k = MembraneMatrix::zeros();
     let mut k_ua = SMatrix::<f64, 12, 4>::zeros();
@@ -40,13 +40,6 @@ pub(super) fn stiffness(frame: &QuadFrame, section: &ShellSection) -> MembraneMa
         k -= k_ua * inverse * k_ua.transpose();
     }
     k + drilling(frame, section, &centre)
-}
-
-/// Plane-stress matrix D [Pa].
-pub(super) fn plane_stress(section: &ShellSection) -> Matrix3<f64> {
-    let (e, nu) = (section.youngs_modulus_pa, section.poissons_ratio);
-    let c = e / (1.0 - nu * nu);
-    Matrix3::new(c, c * nu, 0.0, c * nu, c, 0.0, 0.0, 0.0, 0.5 * c * (1.0 - nu))
 }
 
 /// `(eps_x, eps_y, gamma_xy)` of the nodal displacements.

@@ -3,7 +3,7 @@
 //! Knows places and connectivity. Does not know matrices or loads.
 
 use super::beam::BeamSection;
-use super::shell::ShellSection;
+use super::section::ShellSection;
 use nalgebra::Vector3;
 
 /// Degrees of freedom of a node: three translations, three rotations.

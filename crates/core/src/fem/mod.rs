@@ -14,6 +14,7 @@ mod membrane;
 mod mesh;
 mod plate;
 mod probe;
+mod section;
 mod shell;
 mod sparse;
 
@@ -25,7 +26,8 @@ pub use frame::QuadFrame;
 pub use inertia::count_below;
 pub use mesh::{DOFS_PER_NODE, Mesh, NodeId};
 pub(crate) use probe::{allowed, diagonal, hold, pattern, residual, sizes};
-pub use shell::{Shell, ShellSection};
+pub use section::ShellSection;
+pub use shell::Shell;
 pub use sparse::{SparseRow, SymmetricMatrix};
 
 use thiserror::Error;

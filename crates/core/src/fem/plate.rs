@@ -4,8 +4,7 @@
 //! forces.
 
 use super::frame::{GAUSS_2X2, QuadFrame, ShapeAt};
-use super::membrane::plane_stress;
-use super::shell::ShellSection;
+use super::section::ShellSection;
 use nalgebra::{SMatrix, SVector};
 
 /// Plate stiffness, dofs `(w, theta_x, theta_y)` of the four nodes.
@@ -21,7 +20,7 @@ const SHEAR_CORRECTION: f64 = 5.0 / 6.0;
 /// 1985, 367-383), which removes shear locking.
 pub(super) fn stiffness(frame: &QuadFrame, section: &ShellSection) -> PlateMatrix {
     let t = section.thickness_m;
-    let d = plane_stress(section) * (t.powi(3) / 12.0);
+    let d = section.plane_stress() * (t.powi(3) / 12.0);
     let g = SHEAR_CORRECTION * section.shear_modulus_pa() * t;
     let tied = TiedShear::new(frame);
     let mut k = PlateMatrix::zeros();

@@ -1,14 +1,11 @@
 //! One residual after each factorisation: whether what was made belongs to the matrix that it was made from.
 //!
-//! Knows matrices, solutions, eigenpairs and what rounding may leave of them. Does not know how anything is factorised.
+//! Knows matrices, solutions and what rounding may leave of them. Does not know how anything is factorised.
 //!
 //! All is measured with every degree of freedom divided by its size, the root of the matrix's diagonal: metres and radians,
 //! stiff plates and soft water then count alike, and a matrix that is positive definite has no entry above 1.
 
-use super::eigen::{CONVERGED, ROUNDING};
-use super::{EigenPairs, FemError, SymmetricMatrix};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use super::{FemError, SymmetricMatrix};
 
 /// Backward error that a factorisation of order n may leave, `100 sqrt(n) eps`: what rounding adds up to by chance (Higham,
 /// Mary: SIAM J. Sci. Comput. 41, 2019, A2815-A2835), a hundred times. Found on the bridges of `studies/bridges`, condensed
@@ -20,9 +17,6 @@ pub(crate) fn allowed(n: usize) -> f64 {
 /// How much more than that where pivots are not positive: chosen among few, they may be poor, and rounding grows by them. On
 /// those bridges it does not; where it grows by more, eigenvalues are counted at another sigma.
 pub(super) const INDEFINITE_GROWTH: f64 = 100.0;
-
-/// How far above rounding and the eigensolver's own limits a pair's errors may be.
-const PAIR_MARGIN: f64 = 100.0;
 
 /// Entry i of the probe: between 1/2 and 1 of either sign, without period and without clusters, after the two-dimensional
 /// sequence of the plastic number.
@@ -79,7 +73,7 @@ pub(crate) fn residual(a: &SymmetricMatrix, sizes: &[f64], x: &[f64], b: &[f64])
 }
 
 /// The largest absolute value; infinite where one is not a number.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     let more = |m: f64, x: f64| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) };
     values.fold(0.0, more)
 }
@@ -96,67 +90,4 @@ pub(crate) fn hold(name: &'static str, dofs: usize, residual: f64, allowed: f64)
         residual,
         allowed,
     })
-}
-
-impl EigenPairs {
-    /// Measures each pair of `K x = lambda M x` against K and M themselves and refuses the set where one is off; gives the
-    /// largest error as a share of what is allowed.
-    ///
-    /// With `mu = s / (lambda + s)`, D^2 the diagonal of `K + s M` and `|x|^2 = x^T D^2 x / (lambda + s)`, the errors
-    ///
-    /// - residual, `|D^-1 (K x - lambda M x)| / sqrt(lambda + s)`, in which [`lowest_modes`](super::lowest_modes) converges,
-    /// - eigenvalue, `|x^T K x - lambda| / (lambda + s)`,
-    /// - orthonormality, the entries of `X^T M X - I` up to the pair's column
-    ///
-    /// may each be `100 (1e-9 + 1e-14 / mu + eps |x|^2)`: where a pair has converged, the rounding of the operator that was
-    /// solved and that of the products taken here, each a hundred times. The last counts where a shape hardly strains plates
-    /// that are stiff: |x|^2 is how much the energies of its parts exceed that of the whole. Found on the bridges of
-    /// `studies/bridges` is a three-hundredth of it or less. Verified by `tests/tests/probe.rs`.
-    ///
-    /// # Errors
-    /// [`FemError::BadPair`].
-    pub fn probe(&self, k: &SymmetricMatrix, m: &SymmetricMatrix, s: f64) -> Result<f64, FemError> {
-        let (dofs, count) = (k.order(), self.lambda.len());
-        let product = |a: &SymmetricMatrix| {
-            let mut ax = Mat::<f64>::zeros(dofs, count);
-            a.multiply_columns(self.shapes.as_ref(), ax.as_mut());
-            ax
-        };
-        let (kx, mx) = (product(k), product(m));
-        let sizes = sizes(diagonal(k).zip(diagonal(m)).map(|(k, m)| k + s * m));
-        let mut gram = Mat::<f64>::zeros(count, count);
-        let shapes_t = self.shapes.transpose();
-        matmul(gram.as_mut(), Accum::Replace, shapes_t, mx.as_ref(), 1.0, Par::Seq);
-        let mut share: f64 = 0.0;
-        for (j, lambda) in self.lambda.iter().enumerate() {
-            let (mut left, mut energy, mut parts) = (0.0, 0.0, 0.0);
-            for (i, size) in sizes.iter().enumerate() {
-                let (x, kx) = (self.shapes[(i, j)], kx[(i, j)]);
-                left += ((kx - lambda * mx[(i, j)]) / size).powi(2);
-                energy += x * kx;
-                parts += (x * size).powi(2);
-            }
-            let scale = lambda + s;
-            let unit = |i: usize| if i == j { 1.0 } else { 0.0 };
-            let allowed = PAIR_MARGIN * (CONVERGED + ROUNDING * scale / s + f64::EPSILON * parts / scale);
-            for (measure, found) in [
-                ("residual", (left / scale).sqrt()),
-                ("eigenvalue", (energy - lambda).abs() / scale),
-                ("orthonormality", largest((0..=j).map(|i| gram[(i, j)] - unit(i)))),
-            ] {
-                let holds = found <= allowed;
-                if !holds {
-                    return Err(FemError::BadPair {
-                        mode: j + 1,
-                        dofs,
-                        measure,
-                        found,
-                        allowed,
-                    });
-                }
-                share = share.max(found / allowed);
-            }
-        }
-        Ok(share)
-    }
 }

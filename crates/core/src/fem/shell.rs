@@ -3,44 +3,12 @@
 //! Knows how the two parts share the nodes' six degrees of freedom, and warping. Does not know assembly.
 
 use super::frame::{GAUSS_2X2, QuadFrame};
-use super::{FemError, membrane, plate, require};
+use super::section::ShellSection;
+use super::{FemError, membrane, plate};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// A matrix of the element's 24 degrees of freedom, in global directions.
 pub type ShellMatrix = SMatrix<f64, 24, 24>;
-
-/// Plate of uniform thickness and material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShellSection {
-    /// Thickness [m].
-    pub thickness_m: f64,
-    /// Young's modulus [Pa].
-    pub youngs_modulus_pa: f64,
-    /// Poisson's ratio.
-    pub poissons_ratio: f64,
-    /// Density [kg/m^3].
-    pub density_kg_m3: f64,
-}
-
-impl ShellSection {
-    /// `G = E / (2 (1 + nu))` [Pa].
-    pub fn shear_modulus_pa(&self) -> f64 {
-        0.5 * self.youngs_modulus_pa / (1.0 + self.poissons_ratio)
-    }
-
-    fn check(&self, element: usize) -> Result<(), FemError> {
-        let (t, e, nu, rho) = (
-            self.thickness_m,
-            self.youngs_modulus_pa,
-            self.poissons_ratio,
-            self.density_kg_m3,
-        );
-        require(element, "thickness", t, t > 0.0)?;
-        require(element, "Young's modulus", e, e > 0.0)?;
-        require(element, "Poisson's ratio", nu, nu > -1.0 && nu <= 0.5)?;
-        require(element, "density", rho, rho >= 0.0)
-    }
-}
 
 /// A shell element: its frame and section.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,8 +4,8 @@
 //! rest. Does not know who exerts them.
 
 use super::level::Level;
-use super::riders::{Node, add_to, dot};
-use super::wheels::Wheels;
+use super::sums::{add_to, dot};
+use super::wheels::{Node, Wheels};
 use crate::scheme::Scheme;
 
 /// Stations of a line side by side, the vehicle's own and one more at each end.

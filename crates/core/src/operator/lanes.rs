@@ -3,155 +3,17 @@
 //! Knows the state that a crossing carries from step to step, and how a lane is begun, saved and taken elsewhere. Does not
 //! know the step's arithmetic or when a crossing ends.
 
-use super::basis::{BridgeOperator, Sizes};
+use super::basis::BridgeOperator;
 use super::beside::Beside;
+use super::lane::{Lane, Passage};
+use super::motion::{Motion, Scratch};
 use super::panel::InstructionPath;
-use super::riders::{Free, Riders};
-use super::settle::{Small, Unsettled};
-use super::watch::Watch;
-use super::wheels::{Ride, Wheels};
+use super::settle::Unsettled;
+use super::watch::{LanePeaks, Watch};
+use super::wheels::Ride;
 use crate::connector::{Law, State};
 use crate::response::Statistics;
 use std::sync::Arc;
-
-/// One crossing as its lane knows it.
-#[derive(Debug, Clone)]
-pub struct Passage {
-    /// The vehicle on the deck.
-    pub wheels: Arc<Wheels>,
-    /// Its small flexibilities at the step length.
-    pub ride: Arc<Ride>,
-    /// The connectors' law.
-    pub law: Law,
-    /// Weight of the vehicle [N].
-    pub load_n: f64,
-    /// Speed [m/s].
-    pub speed_m_s: f64,
-}
-
-/// What a lane has beside its numbers.
-#[derive(Debug)]
-pub(super) struct Lane {
-    pub passage: Option<Passage>,
-    /// Place of the vehicle's front at the end of the step under way [m], and the time then [s].
-    pub front_x_m: f64,
-    pub time_s: f64,
-    pub small: Small,
-    pub riders: Riders,
-    /// Weight on each axle that is on the bridge [N], and whether all its points are.
-    pub axles: Vec<(f64, bool)>,
-    pub inertia: Vec<f64>,
-    /// Downward forces on stations: line, station, force; lines of the weights, then of the masses.
-    pub weights: Vec<(usize, usize, f64)>,
-    pub masses: Vec<(usize, usize, f64)>,
-    /// Steps since the vehicle left, up to two: by then all traces of its load are zero.
-    pub unloaded: u8,
-    pub statistics: Statistics,
-    pub unsettled: Option<Unsettled>,
-}
-
-/// Numbers that a lane carries from step to step: for each row one a lane, side by side.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Motion {
-    /// Modes: `q, q', q''`, the modal forces of the connectors.
-    pub q: Vec<f64>,
-    pub v: Vec<f64>,
-    pub a: Vec<f64>,
-    pub contact: Vec<f64>,
-    /// Downward weights and inertia forces as modes, connectors and observed rows see them.
-    pub weights: Vec<f64>,
-    pub inertia: Vec<f64>,
-    /// Connector forces as what the modes leave out has followed them, `s, s', s''`, and `R_BB` times these.
-    pub s: [Vec<f64>; 3],
-    pub sigma: [Vec<f64>; 3],
-    /// Displacements of connectors and observed rows by deck loads, beside the modes, and their derivatives.
-    pub r: [Vec<f64>; 3],
-    /// Connectors: force N, `R_BB N`, elongation.
-    pub n: Vec<f64>,
-    pub rn: Vec<f64>,
-    pub e: Vec<f64>,
-    /// Energies at the end of the step [J]: kinetic, strain, connectors.
-    pub kinetic: Vec<f64>,
-    pub strain: Vec<f64>,
-    pub springs: Vec<f64>,
-}
-
-impl Motion {
-    fn new(sizes: &Sizes, lanes: usize) -> Self {
-        let of = |rows: usize| vec![0.0; rows * lanes];
-        let (m, nc, nv) = (sizes.modes, sizes.connectors, sizes.observed);
-        Self {
-            q: of(m),
-            v: of(m),
-            a: of(m),
-            contact: of(m),
-            weights: of(sizes.followed()),
-            inertia: of(sizes.followed()),
-            s: [(); 3].map(|()| of(nc)),
-            sigma: [(); 3].map(|()| of(nc)),
-            r: [(); 3].map(|()| of(nc + nv)),
-            n: of(nc),
-            rn: of(nc),
-            e: of(nc),
-            kinetic: of(1),
-            strain: of(1),
-            springs: of(1),
-        }
-    }
-
-    fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        let Self {
-            q,
-            v,
-            a,
-            contact,
-            weights,
-            inertia,
-            s,
-            sigma,
-            r,
-            n,
-            rn,
-            e,
-            kinetic,
-            strain,
-            springs,
-        } = self;
-        [q, v, a, contact, weights, inertia, n, rn, e, kinetic, strain, springs]
-            .into_iter()
-            .chain(s)
-            .chain(sigma)
-            .chain(r)
-    }
-}
-
-/// Numbers of the step under way.
-#[derive(Debug, Default)]
-pub(super) struct Scratch {
-    pub weights: Vec<f64>,
-    pub inertia: Vec<f64>,
-    pub contact: Vec<f64>,
-    pub d: Vec<f64>,
-    pub ds: Vec<f64>,
-    pub dsigma: Vec<f64>,
-    pub dr: Vec<f64>,
-    pub n: Vec<f64>,
-    pub rn: Vec<f64>,
-    pub e: Vec<f64>,
-    /// Free motion of the modes.
-    pub free: [Vec<f64>; 3],
-    /// `[q; s]`, observed rows.
-    pub x: Vec<f64>,
-    pub w: Vec<f64>,
-    pub inside: Vec<f64>,
-    /// `sum of omega^2 q^2`, `s^T R s`.
-    pub modal_strain: Vec<f64>,
-    pub residual_strain: Vec<f64>,
-    pub lane_free: Free,
-    /// One lane's connector forces.
-    pub lane_n: Vec<f64>,
-    pub active: Vec<usize>,
-}
 
 /// Crossings side by side on one operator.
 #[derive(Debug)]
@@ -181,54 +43,15 @@ impl Lanes {
     pub fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
         let width = InstructionPath::of_this_machine().lanes;
         let sizes = &operator.sizes;
-        let of = |rows: usize| vec![0.0; rows * width];
-        let (m, nc, nv) = (sizes.modes, sizes.connectors, sizes.observed);
-        let lane = || Lane {
-            passage: None,
-            front_x_m: 0.0,
-            time_s: 0.0,
-            small: Small::new(nc, most_nodes, newton_limit),
-            riders: Riders::new(nc, most_nodes),
-            axles: Vec::new(),
-            inertia: Vec::new(),
-            weights: Vec::with_capacity(most_nodes),
-            masses: Vec::with_capacity(most_nodes),
-            unloaded: 0,
-            statistics: Statistics::default(),
-            unsettled: None,
-        };
+        let lane = || Lane::new(sizes.connectors, most_nodes, newton_limit);
         Self {
             width,
             most_nodes,
-            half_compliance: of(1),
+            half_compliance: vec![0.0; width],
             motion: Motion::new(sizes, width),
             watch: Watch::new(operator, width),
             lanes: (0..width).map(|_| lane()).collect(),
-            scratch: Scratch {
-                weights: of(sizes.followed()),
-                inertia: of(sizes.followed()),
-                contact: of(m),
-                d: of(m),
-                ds: of(nc),
-                dsigma: of(nc),
-                dr: of(nc + nv),
-                n: of(nc),
-                rn: of(nc),
-                e: of(nc),
-                free: [(); 3].map(|()| of(m)),
-                x: of(m + nc),
-                w: of(nv),
-                inside: of(sizes.inside),
-                modal_strain: of(1),
-                residual_strain: of(1),
-                lane_free: Free {
-                    q: vec![0.0; m],
-                    v: vec![0.0; m],
-                    a: vec![0.0; m],
-                },
-                lane_n: vec![0.0; nc],
-                active: Vec::with_capacity(nc),
-            },
+            scratch: Scratch::new(sizes, width),
         }
     }
 
@@ -375,6 +198,24 @@ impl Lanes {
     /// The passage of a lane.
     pub fn passage(&self, lane: usize) -> Option<&Passage> {
         self.lanes[lane].passage.as_ref()
+    }
+
+    /// What a lane's crossing leaves behind, peaks in the order of positions and joints.
+    pub fn peaks(&self, lane: usize) -> LanePeaks {
+        self.watch.peaks(lane, self.width)
+    }
+
+    /// Deflection of a position now, positive downward [m].
+    pub fn deflection_m(&self, lane: usize, position: usize) -> f64 {
+        // nothing is 0, not -0
+        0.0 - self.scratch.w[(position - 1) * self.width + lane]
+    }
+
+    /// Force of a joint now, its connectors added, tension positive [N].
+    pub fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
+        let per_joint = self.watch.per_joint();
+        let forces = self.motion.n.chunks_exact(self.width).skip((joint - 2) * per_joint);
+        forces.take(per_joint).map(|n| n[lane]).sum()
     }
 
     /// Downward weights on the deck at the vehicle's place, as modes, connectors and observed rows see them.

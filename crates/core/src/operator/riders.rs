@@ -5,16 +5,10 @@
 
 use super::beside::{Beside, Pressing};
 use super::level::Level;
-use super::wheels::{Ride, WheelLine, Wheels};
+use super::sums::{add_to, dot};
+use super::wheels::{Node, Ride, WheelLine, Wheels};
 use crate::bridge::Track;
 use crate::vehicle::{GRAVITY_M_S2, Inertia};
-
-/// A node of the deck under the vehicle: line of [`Wheels`] and station.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Node {
-    pub line: usize,
-    pub station: usize,
-}
 
 /// A mass and its rows on nodes.
 #[derive(Debug, Clone, Copy)]
@@ -499,32 +493,4 @@ fn add(row: &mut Vec<(usize, f64)>, from: usize, node: usize, w: f64) {
         Some((_, sum)) => *sum += w,
         None => row.push((node, w)),
     }
-}
-
-/// `sum := sum + w x`.
-#[inline(always)]
-pub(super) fn add_to(sum: &mut [f64], w: f64, x: &[f64]) {
-    for (sum, x) in sum.iter_mut().zip(x) {
-        *sum = w.mul_add(*x, *sum);
-    }
-}
-
-/// Dot product in eight running sums, so that the order is one and the same on every path.
-#[inline(always)]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let n = a.len().min(b.len());
-    let (a, b) = (&a[..n], &b[..n]);
-    let mut sums = [0.0; 8];
-    let (a8, a_rest) = a.as_chunks::<8>();
-    let (b8, b_rest) = b.as_chunks::<8>();
-    for (a, b) in a8.iter().zip(b8) {
-        for i in 0..8 {
-            sums[i] = f64::mul_add(a[i], b[i], sums[i]);
-        }
-    }
-    let mut sum = ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
-    for (a, b) in a_rest.iter().zip(b_rest) {
-        sum = a.mul_add(*b, sum);
-    }
-    sum
 }

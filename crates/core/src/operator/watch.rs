@@ -3,8 +3,9 @@
 //! Knows the observed rows. Does not know how the motion came about.
 
 use super::basis::{BridgeOperator, Observed};
-use super::lanes::Lanes;
+use super::lane::Lane;
 use super::level::Level;
+use super::motion::{Motion, Scratch};
 use super::panel::{lanes, lanes_mut};
 use super::vector::Ops;
 use crate::response::{EnergySummary, ForcePeaks, JointPeaks, Peak};
@@ -108,42 +109,27 @@ impl Watch {
         sums[4] = o.max(sums[4], o.abs(gap));
         sums[5] = o.max(sums[5], o.abs(sums[1]));
     }
-}
 
-/// Peaks of all rows, to be raised one after the other.
-struct Peaks<'a, S: Simd> {
-    o: Ops<S>,
-    now: S::f64s,
-    rows: std::iter::Zip<std::slice::IterMut<'a, S::f64s>, std::slice::IterMut<'a, S::f64s>>,
-}
-
-impl<S: Simd> Peaks<'_, S> {
-    /// Takes the next row's value where it is larger than all before.
-    #[inline(always)]
-    fn take(&mut self, value: S::f64s) {
-        if let Some((best, time)) = self.rows.next() {
-            let larger = self.o.0.greater_than_f64s(value, *best);
-            *best = self.o.0.select_f64s(larger, value, *best);
-            *time = self.o.0.select_f64s(larger, self.now, *time);
-        }
+    /// Connectors of a joint.
+    pub(super) fn per_joint(&self) -> usize {
+        self.per_joint
     }
 
-    /// The next two rows: one for the value's other sense, one for its own.
-    #[inline(always)]
-    fn take_both(&mut self, value: S::f64s) {
-        self.take(self.o.neg(value));
-        self.take(value);
-    }
-}
-
-impl Lanes {
     /// Reads the rows after a step.
     #[inline(always)]
-    pub(super) fn watch<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, level: &Level) {
+    pub(super) fn read<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        operator: &BridgeOperator,
+        level: &Level,
+        motion: &Motion,
+        now: &mut Scratch,
+        each: &[Lane],
+    ) {
         let width = S::F64_LANES;
-        let (motion, now, watch) = (&self.motion, &mut self.scratch, &mut self.watch);
+        let watch = &mut *self;
         for (lane, time) in watch.now.iter_mut().enumerate() {
-            *time = self.lanes[lane].time_s;
+            *time = each[lane].time_s;
         }
         let (m, nc) = (level.c.len(), level.modal.nrows());
         now.x[..m * width].copy_from_slice(&motion.q);
@@ -205,7 +191,7 @@ impl Lanes {
         for &z in &w[positions + corners..][..bottom_corners] {
             *bottom = o.max(*bottom, z);
         }
-        self.watch_inside(o, operator, level);
+        self.read_inside(o, operator, level, now, each);
     }
 
     /// Edges inside the modules, where one may be lower than any edge before. A station is off the straight line between its
@@ -213,11 +199,18 @@ impl Lanes {
     /// q^2)` for the modes, the same with R and s for what the connectors add, the load times its largest reach for the
     /// rest, which follows the load at once.
     #[inline(always)]
-    fn watch_inside<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, level: &Level) {
+    fn read_inside<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        operator: &BridgeOperator,
+        level: &Level,
+        now: &mut Scratch,
+        each: &[Lane],
+    ) {
         let (width, sizes) = (S::F64_LANES, &operator.sizes);
-        let (now, watch) = (&mut self.scratch, &mut self.watch);
+        let watch = self;
         let mut loads = [0.0; MOST_LANES];
-        for (load, of) in loads.iter_mut().zip(&self.lanes) {
+        for (load, of) in loads.iter_mut().zip(each) {
             for (.., force) in of.weights.iter().chain(&of.masses) {
                 *load += force.abs();
             }
@@ -237,7 +230,7 @@ impl Lanes {
             let mut lowests = [0.0; MOST_LANES];
             lanes_mut::<S>(&mut lowests)[0] = lowest;
             let mut computed = false;
-            for (lane, of) in self.lanes.iter().enumerate() {
+            for (lane, of) in each.iter().enumerate() {
                 let lower = lowests[lane] > watch.edge[lane];
                 let (Some(passage), true) = (&of.passage, lower) else {
                     continue;
@@ -267,8 +260,8 @@ impl Lanes {
     }
 
     /// What a lane's crossing leaves behind, peaks in the order of positions and joints.
-    pub fn peaks(&self, lane: usize) -> LanePeaks {
-        let (watch, width) = (&self.watch, self.width);
+    pub(super) fn peaks(&self, lane: usize, width: usize) -> LanePeaks {
+        let watch = self;
         let at = |row: usize| Peak {
             value: watch.value[row * width + lane],
             time_s: watch.time[row * width + lane],
@@ -295,18 +288,31 @@ impl Lanes {
             },
         }
     }
+}
 
-    /// Deflection of a position now, positive downward [m].
-    pub fn deflection_m(&self, lane: usize, position: usize) -> f64 {
-        // nothing is 0, not -0
-        0.0 - self.scratch.w[(position - 1) * self.width + lane]
+/// Peaks of all rows, to be raised one after the other.
+struct Peaks<'a, S: Simd> {
+    o: Ops<S>,
+    now: S::f64s,
+    rows: std::iter::Zip<std::slice::IterMut<'a, S::f64s>, std::slice::IterMut<'a, S::f64s>>,
+}
+
+impl<S: Simd> Peaks<'_, S> {
+    /// Takes the next row's value where it is larger than all before.
+    #[inline(always)]
+    fn take(&mut self, value: S::f64s) {
+        if let Some((best, time)) = self.rows.next() {
+            let larger = self.o.0.greater_than_f64s(value, *best);
+            *best = self.o.0.select_f64s(larger, value, *best);
+            *time = self.o.0.select_f64s(larger, self.now, *time);
+        }
     }
 
-    /// Force of a joint now, its connectors added, tension positive [N].
-    pub fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
-        let per_joint = self.watch.per_joint;
-        let forces = self.motion.n.chunks_exact(self.width).skip((joint - 2) * per_joint);
-        forces.take(per_joint).map(|n| n[lane]).sum()
+    /// The next two rows: one for the value's other sense, one for its own.
+    #[inline(always)]
+    fn take_both(&mut self, value: S::f64s) {
+        self.take(self.o.neg(value));
+        self.take(value);
     }
 }
 

@@ -22,6 +22,13 @@ pub(super) struct WheelLine {
     pub reach: Vec<f64>,
 }
 
+/// A node of the deck under the vehicle: line of [`Wheels`] and station.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Node {
+    pub line: usize,
+    pub station: usize,
+}
+
 /// A vehicle on an operator's deck.
 #[derive(Debug)]
 pub struct Wheels {

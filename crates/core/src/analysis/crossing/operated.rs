@@ -6,7 +6,7 @@ use super::{Crossing, CrossingSettings, span};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign};
 use crate::connector::Law;
-use crate::operator::{BridgeOperator, Lanes, Level, Passage, Ride, Unsettled, Wheels};
+use crate::operator::{BridgeOperator, Lanes, Level, Passage, Ride, Unsettled, Wheels, step};
 use crate::response::{CrossingResponse, History, PositionPeaks, Quantity, Record};
 use crate::vehicle::Vehicle;
 use std::sync::{Arc, OnceLock};
@@ -151,8 +151,8 @@ impl Crew<'_> {
                 }
             }
             let level = self.solver.level(self.refinement);
-            self.lanes
-                .step(&self.solver.operator, level, self.solver.settings.newton_limit);
+            let limit = self.solver.settings.newton_limit;
+            step(&mut self.lanes, &self.solver.operator, level, limit);
             for (lane, slot) in under.iter_mut().enumerate() {
                 let Some(of) = slot else {
                     continue;
@@ -316,7 +316,8 @@ impl Crew<'_> {
         for (from_s, to_s) in [(from_s, middle_s), (middle_s, to_s)] {
             solo.take_ride(0, Arc::clone(&ride));
             solo.place(0, to_s);
-            solo.step(
+            step(
+                solo,
                 &self.solver.operator,
                 self.solver.level(level),
                 self.solver.settings.newton_limit,
