@@ -2,6 +2,14 @@
 
 #![allow(clippy::expect_used)]
 
+#[path = "architecture/arrows.rs"]
+mod arrows;
+#[path = "architecture/circles.rs"]
+mod circles;
+#[path = "architecture/modules.rs"]
+mod modules;
+
+use circles::Crate;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -106,56 +114,106 @@ fn study_prints_nothing() {
     }
 }
 
-/// Floors of core from the ground up; a room knows its own floor and those below. A response is data that every floor
-/// above the ground may fill.
-const FLOORS: [&[&str]; 6] = [
-    &["conventions", "ids", "input", "response"],
-    &["fem"],
-    &["module", "water", "superelement"],
-    &["connector", "vehicle", "bridge"],
-    &["flexibility", "scheme", "contact", "operator"],
-    &["analysis"],
-];
+/// A crate below `crates`, by the name of its folder.
+fn read_crate(member: &str) -> Crate {
+    let src = root().join("crates").join(member).join("src");
+    let library = src.join("lib.rs").exists();
+    Crate::read(if library { "lib.rs" } else { "main.rs" }, &|name| {
+        fs::read_to_string(src.join(name)).ok()
+    })
+}
 
-fn floor(room: &str) -> usize {
-    FLOORS
+/// Floors of core from the ground up, as the table at the head of its root has them: a room knows its own floor and those
+/// below.
+fn floors() -> Vec<Vec<String>> {
+    let mut floors: Vec<Vec<String>> = Vec::new();
+    let text = read(&root().join("crates/core/src/lib.rs"));
+    for row in text.lines().filter_map(|line| line.strip_prefix("//! | ")).skip(1) {
+        let [floor, rooms, charter] = row.split('|').map(str::trim).collect::<Vec<_>>()[..3] else {
+            panic!("{row} is not floor, rooms and charter");
+        };
+        assert_eq!(floor, floors.len().to_string(), "{row}");
+        assert!(!charter.is_empty(), "{row} has no charter");
+        floors.push(rooms.split('`').skip(1).step_by(2).map(str::to_owned).collect());
+    }
+    floors
+}
+
+#[test]
+fn the_table_of_core_names_each_of_its_rooms_once() {
+    let mut named = floors().concat();
+    named.sort();
+    let core = read_crate("core");
+    let mut rooms: Vec<String> = core.modules.files[0]
+        .items
         .iter()
-        .position(|rooms| rooms.contains(&room))
-        .unwrap_or_else(|| panic!("{room} has no floor"))
+        .filter_map(|item| match item {
+            syn::Item::Mod(room) => Some(room.ident.to_string()),
+            _ => None,
+        })
+        .collect();
+    rooms.sort();
+    assert!(rooms.len() > 10, "only {rooms:?} found");
+    assert_eq!(named, rooms);
 }
 
 #[test]
 fn rooms_of_core_know_only_their_own_floor_and_those_below() {
-    let src = root().join("crates/core/src");
+    let (core, floors) = (read_crate("core"), floors());
+    let floor = |room: &str| {
+        let at = floors.iter().position(|rooms| rooms.iter().any(|r| r == room));
+        at.unwrap_or_else(|| panic!("{room} has no floor"))
+    };
     let mut seen = 0;
-    for file in files(&src, ".rs") {
-        let inside = file
-            .strip_prefix(&src)
-            .expect("below src")
-            .to_string_lossy()
-            .into_owned();
-        let room = inside.split(['/', '.']).next().unwrap_or_default().to_owned();
-        if room == "lib" {
-            continue;
-        }
-        for line in read(&file).lines().filter(|line| !line.trim_start().starts_with("//")) {
-            for used in line.split("crate::").skip(1) {
-                let used = used
-                    .split(|c: char| !c.is_ascii_lowercase() && c != '_')
-                    .next()
-                    .unwrap_or_default();
-                if !used.is_empty() {
-                    seen += 1;
-                    assert!(
-                        floor(used) <= floor(&room),
-                        "{inside} of floor {} knows {used}",
-                        floor(&room)
-                    );
-                }
-            }
-        }
+    for ((from, to), names) in core.uses.program.iter().chain(&core.uses.tests) {
+        let [file, used] = [from, to].map(|&file| &core.modules.files[file]);
+        let (Some(own), Some(other)) = (file.module.first(), used.module.first()) else {
+            panic!(
+                "{} knows {names:?} of {}: the root holds rooms alone",
+                file.name, used.name
+            );
+        };
+        seen += usize::from(own != other);
+        assert!(
+            floor(other) <= floor(own),
+            "{} of floor {} knows {names:?} of {}",
+            file.name,
+            floor(own),
+            used.name
+        );
     }
     assert!(seen > 20, "only {seen} uses found");
+}
+
+/// Crates without circles among their files. Those of the others are told, not refused.
+const WITHOUT_CIRCLES: [&str; 1] = ["core"];
+
+#[test]
+fn files_of_a_crate_go_in_no_circle_but_parent_and_child() {
+    let crates = fs::read_dir(root().join("crates")).expect("crates");
+    let mut members: Vec<String> = crates
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.join("src").exists())
+        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    members.sort();
+    for member in &members {
+        let read = read_crate(member);
+        let told: Vec<String> = [read.circles_of_rooms(), read.circles(), read.outside()].concat();
+        assert!(
+            !read.uses.program.is_empty() || read.modules.files.len() == 1,
+            "{member}: no arrow found"
+        );
+        if WITHOUT_CIRCLES.contains(&member.as_str()) {
+            assert!(told.is_empty(), "{member}:\n{}", told.join("\n"));
+        }
+        for told in told {
+            println!("{member}: {told}");
+        }
+    }
+    for member in WITHOUT_CIRCLES {
+        assert!(members.iter().any(|m| m == member), "{member} is no crate");
+    }
 }
 
 /// The lower floors of the studies from the ground up: whatever is not named here stands above them.
