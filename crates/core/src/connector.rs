@@ -10,9 +10,9 @@ pub enum Connection {
     /// `N = k (e - gap_tension)` above the tension gap, `N = k (e + gap_compression)` below minus the compression gap,
     /// 0 between.
     Nonlinear {
-        /// Tension gap [m], at least 0.
+        /// Tension gap `[m]`, at least 0.
         gap_tension_m: f64,
-        /// Compression gap [m], at least 0.
+        /// Compression gap `[m]`, at least 0.
         gap_compression_m: f64,
     },
 }
@@ -31,26 +31,26 @@ pub enum State {
     Both,
 }
 
-/// A line `N = k e - n0` of the connector law: its slope k [N/m] and offset n0 [N].
+/// A line `N = k e - n0` of the connector law: its slope k `[N/m]` and offset n0 `[N]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
-    /// Slope [N/m].
+    /// Slope `[N/m]`.
     pub k: f64,
-    /// Offset [N].
+    /// Offset `[N]`.
     pub n0: f64,
 }
 
 /// The law of one connector in one job.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
-    /// Stiffness of one truss [N/m].
+    /// Stiffness of one truss `[N/m]`.
     pub k: f64,
     /// The connection.
     pub connection: Connection,
 }
 
 impl Law {
-    /// The state that elongation `e` [m] asks for.
+    /// The state that elongation `e` `[m]` asks for.
     #[inline]
     pub fn state(&self, e: f64) -> State {
         match self.connection {
@@ -81,14 +81,14 @@ impl Law {
         }
     }
 
-    /// Force at elongation `e`, tension positive [N].
+    /// Force at elongation `e`, tension positive `[N]`.
     #[inline]
     pub fn force(&self, e: f64) -> f64 {
         let line = self.line(self.state(e));
         line.k * e - line.n0
     }
 
-    /// Strain energy at elongation `e` [J].
+    /// Strain energy at elongation `e` `[J]`.
     #[inline]
     pub fn energy(&self, e: f64) -> f64 {
         let line = self.line(self.state(e));

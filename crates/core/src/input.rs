@@ -77,7 +77,7 @@ pub fn within(key: &str, value: f64, from: f64, to: f64) -> Result<f64, InvalidI
     }
 }
 
-/// Places closer than this are one place [m]: they share a line of the mesh.
+/// Places closer than this are one place `[m]`: they share a line of the mesh.
 pub const SAME_PLACE_M: f64 = 1e-6;
 
 /// Refuses a place that is the same as an earlier one of its list.

@@ -15,7 +15,7 @@
 /// alpha_m for the acceleration, alpha_f for everything else. Newmark's trapezoidal rule is `rho = 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scheme {
-    /// Length of the step [s].
+    /// Length of the step `[s]`.
     pub h: f64,
     /// Weight of the old acceleration.
     pub alpha_m: f64,
@@ -25,22 +25,22 @@ pub struct Scheme {
     pub gamma: f64,
     /// Newmark's beta.
     pub beta: f64,
-    /// da_1/dd [1/s^2].
+    /// da_1/dd `[1/s^2]`.
     pub c_a: f64,
-    /// da_1/dv_0 [1/s].
+    /// da_1/dv_0 `[1/s]`.
     pub a_v: f64,
     /// da_1/da_0.
     pub a_a: f64,
-    /// dv_1/dd [1/s].
+    /// dv_1/dd `[1/s]`.
     pub c_v: f64,
     /// dv_1/dv_0.
     pub v_v: f64,
-    /// dv_1/da_0 [s].
+    /// dv_1/da_0 `[s]`.
     pub v_a: f64,
 }
 
 impl Scheme {
-    /// The constants for a step `h` [s] and spectral radius `rho` from 0 to 1.
+    /// The constants for a step `h` `[s]` and spectral radius `rho` from 0 to 1.
     pub fn new(h: f64, rho: f64) -> Self {
         let alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
         let alpha_f = rho / (rho + 1.0);
@@ -86,8 +86,8 @@ impl Scheme {
 /// Rayleigh coefficients of `C = a K + b M`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rayleigh {
-    /// Stiffness-proportional part [s].
+    /// Stiffness-proportional part `[s]`.
     pub a: f64,
-    /// Mass-proportional part [1/s].
+    /// Mass-proportional part `[1/s]`.
     pub b: f64,
 }

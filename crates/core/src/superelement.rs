@@ -21,7 +21,7 @@ pub struct SuperElement {
     pub transformation: Mat<f64>,
 }
 
-/// Shift of the fixed-master eigenproblem [1/s^2]: the square of 1 Hz, below any fixed-master mode of a module.
+/// Shift of the fixed-master eigenproblem `[1/s^2]`: the square of 1 Hz, below any fixed-master mode of a module.
 const SHIFT: f64 = 39.5;
 
 impl SuperElement {

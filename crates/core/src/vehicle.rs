@@ -7,7 +7,7 @@ use crate::input::{InvalidInput, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Standard gravity [m/s^2], by which a weight becomes a mass.
+/// Standard gravity `[m/s^2]`, by which a weight becomes a mass.
 pub const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// How the vehicle's mass takes part in the motion.
@@ -27,16 +27,16 @@ pub enum Inertia {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axle {
-    /// Distance of the patch centre behind the vehicle's front [m].
+    /// Distance of the patch centre behind the vehicle's front `[m]`.
     pub behind_front_m: f64,
     /// Share of the vehicle's weight; the shares of all axles sum to 1.
     pub share: f64,
-    /// Length of the patch along the bridge [m]; 0 is a point.
+    /// Length of the patch along the bridge `[m]`; 0 is a point.
     pub patch_length_m: f64,
-    /// Width of the patch across the bridge [m]; 0 is a line.
+    /// Width of the patch across the bridge `[m]`; 0 is a line.
     #[serde(default)]
     pub patch_width_m: f64,
-    /// Places of the tracks across the bridge [m]; the axle's share is split evenly between them.
+    /// Places of the tracks across the bridge `[m]`; the axle's share is split evenly between them.
     pub track_y_m: Vec<f64>,
 }
 
@@ -44,10 +44,10 @@ pub struct Axle {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleDesign {
-    /// Length of the single footprint [m]; its centre is the vehicle's front. Not together with `axles`.
+    /// Length of the single footprint `[m]`; its centre is the vehicle's front. Not together with `axles`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub footprint_length_m: Option<f64>,
-    /// Tracks of the single footprint [m]. Not together with `axles`.
+    /// Tracks of the single footprint `[m]`. Not together with `axles`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub track_y_m: Option<Vec<f64>>,
     /// Axles in place of the single footprint.
@@ -78,17 +78,17 @@ impl Default for VehicleDesign {
     }
 }
 
-/// Footprint length of the paper's vehicle as identified [m].
+/// Footprint length of the paper's vehicle as identified `[m]`.
 const DEFAULT_FOOTPRINT_LENGTH_M: f64 = 3.35;
-/// Tracks of the paper's vehicle as identified [m].
+/// Tracks of the paper's vehicle as identified `[m]`.
 const DEFAULT_TRACK_Y_M: [f64; 2] = [-1.4, 1.4];
 
 /// One point that carries weight and mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WheelPoint {
-    /// Distance of the point ahead of the vehicle's front [m]; negative behind it.
+    /// Distance of the point ahead of the vehicle's front `[m]`; negative behind it.
     pub ahead_m: f64,
-    /// Place across the bridge [m].
+    /// Place across the bridge `[m]`.
     pub y_m: f64,
     /// Share of the vehicle's weight.
     pub share: f64,
@@ -99,9 +99,9 @@ pub struct WheelPoint {
 pub struct Patch {
     /// Number of the axle, from 0.
     pub axle: usize,
-    /// Distance of the patch centre ahead of the vehicle's front [m]; negative behind it.
+    /// Distance of the patch centre ahead of the vehicle's front `[m]`; negative behind it.
     pub ahead_m: f64,
-    /// Length along the bridge [m].
+    /// Length along the bridge `[m]`.
     pub length_m: f64,
     /// Share of the vehicle's weight.
     pub share: f64,
@@ -251,12 +251,12 @@ fn patch(k: usize, axle: &Axle, y: f64, share: f64, along: usize) -> Patch {
 }
 
 impl Vehicle {
-    /// Farthest point ahead of the front [m].
+    /// Farthest point ahead of the front `[m]`.
     pub fn ahead_m(&self) -> f64 {
         self.points().map(|p| p.ahead_m).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Farthest point behind the front [m].
+    /// Farthest point behind the front `[m]`.
     pub fn behind_m(&self) -> f64 {
         self.points().map(|p| -p.ahead_m).fold(f64::NEG_INFINITY, f64::max)
     }
@@ -266,7 +266,7 @@ impl Vehicle {
         self.patches.iter().flat_map(|p| p.points.iter())
     }
 
-    /// Distance of the vehicle's centre (weighted by the shares) ahead of its front [m].
+    /// Distance of the vehicle's centre (weighted by the shares) ahead of its front `[m]`.
     pub fn centre_ahead_m(&self) -> f64 {
         self.points().map(|p| p.share * p.ahead_m).sum()
     }

@@ -20,7 +20,7 @@ pub enum WaterDistribution {
 }
 
 /// z of the bottom, as node pairs with their share of a quantity of `per_area` over the whole bottom [11-12, 16-17]:
-/// p_b [Pa/m] gives a stiffness [N/m], an added mass per area [kg/m^2] a mass [kg].
+/// p_b `[Pa/m]` gives a stiffness `[N/m]`, an added mass per area `[kg/m^2]` a mass `[kg]`.
 ///
 /// Consistent on a rectangle of area A: `A/36` times 4 on the diagonal, 2 between neighbours, 1 across; lumped: `A/4` on
 /// the diagonal.

@@ -17,13 +17,13 @@ pub enum AnalysisError {
         "contact not settled at t = {time_s:.6} s in connector {connector} (joint {joint}, y = {y_m} m) after {bisections} bisections"
     )]
     NotConverged {
-        /// Time of the step's end [s].
+        /// Time of the step's end `[s]`.
         time_s: f64,
         /// Connector number, from 1, joints from left to right.
         connector: usize,
         /// Position number of its joint.
         joint: usize,
-        /// Its place across [m].
+        /// Its place across `[m]`.
         y_m: f64,
         /// Bisections made.
         bisections: usize,
@@ -33,13 +33,13 @@ pub enum AnalysisError {
     StaticNotConverged {
         /// Newton solutions made.
         iterations: usize,
-        /// Place of the load's centre [m].
+        /// Place of the load's centre `[m]`.
         load_x_m: f64,
     },
     /// A number left the finite range.
     #[error("response not finite at t = {time_s:.6} s")]
     NotFinite {
-        /// Time [s].
+        /// Time `[s]`.
         time_s: f64,
     },
     /// The bridge's matrices could not be factorised.

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// One named mode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode {
-    /// Natural frequency [Hz].
+    /// Natural frequency `[Hz]`.
     pub frequency_hz: f64,
     /// Name of the shape: `heave`, `pitch`, `roll`, `surge`, `sway`, `yaw`, or `vertical bending n`, `torsion n`,
     /// `horizontal bending n`, `axial n`, `local n`, numbered by frequency within their family.
@@ -27,10 +27,10 @@ pub struct Mode {
     pub axial_share: f64,
 }
 
-/// Shift of the eigenproblem [1/s^2]: the square of 0.1 Hz, below the 0.3 Hz at which bridges heave.
+/// Shift of the eigenproblem `[1/s^2]`: the square of 0.1 Hz, below the 0.3 Hz at which bridges heave.
 const SHIFT: f64 = 0.4;
 
-/// Below this frequency a mode is a motion that nothing restores [Hz].
+/// Below this frequency a mode is a motion that nothing restores `[Hz]`.
 const RIGID_BELOW_HZ: f64 = 1e-3;
 
 /// A family's share of the kinetic energy below which a shape is local to plates. Shapes of the whole bridge have above
@@ -149,7 +149,7 @@ pub fn rayleigh(ratio: f64, frequencies_hz: [f64; 2]) -> Rayleigh {
 /// their own below them.
 const SEARCHED: [usize; 3] = [16, 64, 192];
 
-/// The first two vertical bending frequencies of the linearly connected bridge floating free [Hz].
+/// The first two vertical bending frequencies of the linearly connected bridge floating free `[Hz]`.
 ///
 /// # Errors
 /// [`AnalysisError::ModeMissing`] where the lowest modes hold no two, as for a single module.

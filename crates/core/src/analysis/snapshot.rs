@@ -11,9 +11,9 @@ use crate::vehicle::{Inertia, Vehicle};
 /// A bridge under a vehicle at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
-    /// The time [s]; 0 of a static case.
+    /// The time `[s]`; 0 of a static case.
     pub time_s: f64,
-    /// Displacement of each dof of the bridge [m or rad].
+    /// Displacement of each dof of the bridge `[m or rad]`.
     pub u: Vec<f64>,
     /// What the stiffness acts on, `u + a u'` with the damping's a.
     pub elastic: Vec<f64>,
@@ -30,9 +30,9 @@ pub struct Snapshot {
 pub struct ConnectorNow {
     /// Which truss is at work.
     pub state: State,
-    /// Force, tension positive [N].
+    /// Force, tension positive `[N]`.
     pub force_n: f64,
-    /// Elongation [m].
+    /// Elongation `[m]`.
     pub elongation_m: f64,
 }
 
@@ -43,13 +43,13 @@ pub struct WheelNow {
     pub axle: usize,
     /// Number of its patch, from 0.
     pub patch: usize,
-    /// Place along the bridge [m].
+    /// Place along the bridge `[m]`.
     pub x_m: f64,
-    /// Place across [m].
+    /// Place across `[m]`.
     pub y_m: f64,
     /// The track's row under it; none off the bridge.
     pub row: Option<SparseRow>,
-    /// Force between it and the deck, weight and inertia, downward on the deck positive [N]; 0 off the bridge.
+    /// Force between it and the deck, weight and inertia, downward on the deck positive `[N]`; 0 off the bridge.
     pub contact_force_n: f64,
 }
 
@@ -64,7 +64,7 @@ pub(super) fn connectors(states: &[State], forces: &[f64], elongations: &[f64]) 
 }
 
 /// The points of a vehicle of weight `load_n` with its front at `front_x_m`. `load` is the same vehicle there and `inertia`
-/// the inertia force of each of its riders [N]: a point's own, or its share of the patch's.
+/// the inertia force of each of its riders `[N]`: a point's own, or its share of the patch's.
 pub(super) fn wheels(
     track: &Track,
     vehicle: &Vehicle,

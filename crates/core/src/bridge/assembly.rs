@@ -14,7 +14,7 @@ use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 pub struct ConnectorPlace {
     /// Position number of the joint, 2 to modules.
     pub joint: usize,
-    /// Place across [m].
+    /// Place across `[m]`.
     pub y_m: f64,
     /// `e = row . u`: the right deck node's motion along x minus the left one's.
     pub row: SparseRow,
@@ -45,7 +45,7 @@ pub struct Bridge {
     pub(crate) bottom_corners: Vec<SparseRow>,
     /// Motion along, across and up of each module's eight corners, see [`crate::analysis::modes::shapes`].
     pub(crate) corners: Vec<[SparseRow; 3]>,
-    /// Roll of the module ends [rad per unit dof].
+    /// Roll of the module ends `[rad per unit dof]`.
     pub(crate) rolls: Vec<SparseRow>,
     /// z across the deck at each line along, for telling shapes apart (the bottom's plates carry the water, and shapes of
     /// their own would pass for the bridge's): place x, then (y, row) for each line across.

@@ -25,13 +25,13 @@ pub struct BridgeDesign {
     pub modules: usize,
     /// The module.
     pub module: ModuleDesign,
-    /// Hydrostatic stiffness p_b: pressure per metre of sinking [Pa/m]. Either this or `draft_buoyancy`.
+    /// Hydrostatic stiffness p_b: pressure per metre of sinking `[Pa/m]`. Either this or `draft_buoyancy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hydrostatic_stiffness_pa_m: Option<f64>,
     /// Draft-buoyancy table, whose slope at the still-water draft gives p_b.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draft_buoyancy: Option<DraftBuoyancy>,
-    /// Added mass per metre of bridge [kg/m]. Either this or `todd`.
+    /// Added mass per metre of bridge `[kg/m]`. Either this or `todd`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub added_mass_kg_m: Option<f64>,
     /// Todd's formula for the added mass.
@@ -47,10 +47,10 @@ pub struct BridgeDesign {
     /// Supports of the two ends.
     #[serde(default)]
     pub supports: Supports,
-    /// Still-water draft [m], for reporting whether the bottom emerged.
+    /// Still-water draft `[m]`, for reporting whether the bottom emerged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draft_m: Option<f64>,
-    /// Height of the deck above the still water [m], for reporting whether the deck was submerged.
+    /// Height of the deck above the still water `[m]`, for reporting whether the deck was submerged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub freeboard_m: Option<f64>,
     /// How a module is condensed to a super-element.
@@ -62,11 +62,11 @@ pub struct BridgeDesign {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DraftBuoyancy {
-    /// Drafts, increasing [m].
+    /// Drafts, increasing `[m]`.
     pub draft_m: Vec<f64>,
-    /// Buoyancy of a module at each draft [N].
+    /// Buoyancy of a module at each draft `[N]`.
     pub buoyancy_n: Vec<f64>,
-    /// The draft at which the unloaded module floats [m].
+    /// The draft at which the unloaded module floats `[m]`.
     pub still_water_draft_m: f64,
 }
 
@@ -74,7 +74,7 @@ pub struct DraftBuoyancy {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Todd {
-    /// Density of the water rho_w [kg/m^3].
+    /// Density of the water rho_w `[kg/m^3]`.
     pub water_density_kg_m3: f64,
     /// Section coefficient C.
     pub section_coefficient: f64,
@@ -86,7 +86,7 @@ pub struct Todd {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hinges {
-    /// Places across [m].
+    /// Places across `[m]`.
     pub y_m: Vec<f64>,
 }
 
@@ -94,13 +94,13 @@ pub struct Hinges {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Connectors {
-    /// Places across [m].
+    /// Places across `[m]`.
     pub y_m: Vec<f64>,
-    /// Stiffness of one truss [N/m].
+    /// Stiffness of one truss `[N/m]`.
     pub stiffness_n_m: f64,
-    /// Elongation at which the tension truss begins to pull [m], unless the study says otherwise.
+    /// Elongation at which the tension truss begins to pull `[m]`, unless the study says otherwise.
     pub gap_tension_m: f64,
-    /// Shortening at which the compression truss begins to push [m], unless the study says otherwise.
+    /// Shortening at which the compression truss begins to push `[m]`, unless the study says otherwise.
     pub gap_compression_m: f64,
 }
 
@@ -162,7 +162,7 @@ impl Default for Condensation {
     }
 }
 
-/// Most memory that the dense matrices of one bridge may take [GiB].
+/// Most memory that the dense matrices of one bridge may take `[GiB]`.
 const MOST_GIB: f64 = 4.0;
 
 impl BridgeDesign {
@@ -281,12 +281,12 @@ impl BridgeDesign {
         }
     }
 
-    /// Length of the bridge [m].
+    /// Length of the bridge `[m]`.
     pub fn length_m(&self) -> f64 {
         self.modules as f64 * self.module.length_m
     }
 
-    /// Lines across that a module's mesh has for its joints: places of hinges, then of connectors [m].
+    /// Lines across that a module's mesh has for its joints: places of hinges, then of connectors `[m]`.
     pub fn joint_lines_y_m(&self) -> Vec<f64> {
         self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect()
     }
@@ -296,18 +296,18 @@ impl BridgeDesign {
         self.modules + 1
     }
 
-    /// Place of a position (from 1) along the bridge [m].
+    /// Place of a position (from 1) along the bridge `[m]`.
     pub fn position_x_m(&self, position: usize) -> f64 {
         (position as f64 - 1.0) * self.module.length_m
     }
 
-    /// Mass of one module's plates and beams [kg]: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
+    /// Mass of one module's plates and beams `[kg]`: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
     /// Verified by `tests/tests/superelement.rs`.
     pub fn structural_mass_kg(&self) -> f64 {
         mesh_module(&self.module, &self.joint_lines_y_m()).mesh.mass_kg()
     }
 
-    /// p_b [Pa/m], from the value or the table.
+    /// p_b `[Pa/m]`, from the value or the table.
     pub fn p_b(&self) -> f64 {
         match (self.hydrostatic_stiffness_pa_m, &self.draft_buoyancy) {
             (Some(p_b), _) => p_b,
@@ -316,7 +316,7 @@ impl BridgeDesign {
         }
     }
 
-    /// m_a per metre of bridge [kg/m], from the value or Todd's formula.
+    /// m_a per metre of bridge `[kg/m]`, from the value or Todd's formula.
     pub fn m_a(&self) -> f64 {
         match (self.added_mass_kg_m, &self.todd) {
             (Some(m_a), _) => m_a,
@@ -378,7 +378,7 @@ impl DraftBuoyancy {
         within("still_water_draft_m", self.still_water_draft_m, self.draft_m[0], last).map(|_| ())
     }
 
-    /// Slope of the table at the still-water draft [N/m]: of the segment that holds it, of the two neighbours' mean
+    /// Slope of the table at the still-water draft `[N/m]`: of the segment that holds it, of the two neighbours' mean
     /// on a table point.
     pub fn slope_n_m(&self) -> f64 {
         let slope = |i: usize| (self.buoyancy_n[i + 1] - self.buoyancy_n[i]) / (self.draft_m[i + 1] - self.draft_m[i]);
@@ -399,7 +399,7 @@ impl Todd {
         Ok(())
     }
 
-    /// `m_a = 1/2 pi rho_w C J (B/2)^2` [kg/m].
+    /// `m_a = 1/2 pi rho_w C J (B/2)^2` `[kg/m]`.
     pub fn added_mass_kg_m(&self, breadth_m: f64) -> f64 {
         0.5 * std::f64::consts::PI
             * self.water_density_kg_m3

@@ -10,7 +10,7 @@ use crate::vehicle::{GRAVITY_M_S2, Inertia, Patch, Vehicle};
 /// `r u'' + 2 V r_x u' + V^2 r_xx u`.
 #[derive(Debug, Clone)]
 pub struct Rider {
-    /// Mass [kg].
+    /// Mass `[kg]`.
     pub mass_kg: f64,
     /// Axle it belongs to.
     pub axle: usize,
@@ -23,11 +23,11 @@ pub struct Rider {
 /// A vehicle on the track at one instant.
 #[derive(Debug, Clone, Default)]
 pub struct Load {
-    /// Downward force of the weights on each track column, as one row [N].
+    /// Downward force of the weights on each track column, as one row `[N]`.
     pub weight: SparseRow,
     /// The masses.
     pub riders: Vec<Rider>,
-    /// Weight of each axle that is on the bridge [N], and whether all its points are.
+    /// Weight of each axle that is on the bridge `[N]`, and whether all its points are.
     pub axles: Vec<(f64, bool)>,
 }
 

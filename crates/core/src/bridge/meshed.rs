@@ -20,7 +20,7 @@ pub struct ShellCell {
     pub module: usize,
     /// The plate that it is part of.
     pub plate: Plate,
-    /// Its thickness [m].
+    /// Its thickness `[m]`.
     pub thickness_m: f64,
 }
 
@@ -38,7 +38,7 @@ pub struct BeamCell {
 pub struct Link {
     /// Position number of the joint, 2 to modules.
     pub joint: usize,
-    /// Place across [m].
+    /// Place across `[m]`.
     pub y_m: f64,
     /// The left and the right module's node, as places in [`MeshedBridge::nodes_m`]; at rest they are at one place.
     pub nodes: [usize; 2],
@@ -47,7 +47,7 @@ pub struct Link {
 /// The mesh of a whole bridge and its motion. Nodes are numbered module after module, each in the order of its mesh.
 #[derive(Debug)]
 pub struct MeshedBridge {
-    /// Places of the nodes [m].
+    /// Places of the nodes `[m]`.
     pub nodes_m: Vec<[f64; 3]>,
     /// Shells, module after module.
     pub shells: Vec<ShellCell>,
@@ -133,14 +133,14 @@ impl MeshedBridge {
         })
     }
 
-    /// How far each node moves where the bridge's dofs move by `u` [m or rad]: x, y and z [m]. The dofs inside a condensed
+    /// How far each node moves where the bridge's dofs move by `u` `[m or rad]`: x, y and z `[m]`. The dofs inside a condensed
     /// module follow as they were condensed, `u2 = -k22^-1 k21 u1 + Phi q`: statically exact where no force acts on them,
     /// else as exact as the super-element. Verified by `tests/tests/meshed.rs`.
     pub fn displacement_m(&self, u: &[f64]) -> Vec<[f64; 3]> {
         self.triples(u, 0)
     }
 
-    /// How far each node turns about x, y and z [rad], as [`Self::displacement_m`].
+    /// How far each node turns about x, y and z `[rad]`, as [`Self::displacement_m`].
     pub fn rotation_rad(&self, u: &[f64]) -> Vec<[f64; 3]> {
         self.triples(u, 3)
     }
@@ -174,7 +174,7 @@ impl MeshedBridge {
         })
     }
 
-    /// Force along the bridge in each hinge, tension positive [N]: what the module right of it needs at its left end to move
+    /// Force along the bridge in each hinge, tension positive `[N]`: what the module right of it needs at its left end to move
     /// as it does, `N = -(k (u + a v) + m (u'' + b v))` in the hinge's row. `elastic` is `u + a v`, `inertial` is
     /// `u'' + b v` or nothing at rest, both of all dofs of the bridge.
     pub fn hinge_forces_n(&self, elastic: &[f64], inertial: Option<&[f64]>) -> Vec<f64> {

@@ -62,7 +62,7 @@ impl PreparedModule {
     ///
     /// `k = k_structure + k_b`, `m = m_structure + m_a` as for the box (`crate::water::spread` over the cells of the grid's
     /// bottom, p_b and m_a the design's), so that beams in place of plates meet the same bridge, statics and crossings. Of
-    /// the design's module only length, breadth and depth count here [m], and `mesh.elements_along` for the places of
+    /// the design's module only length, breadth and depth count here `[m]`, and `mesh.elements_along` for the places of
     /// [`crate::analysis::statics::StaticSolver::creeping_peak_m`]. The grid spans that length and breadth, bottom nodes lie
     /// at z = 0 and deck nodes at the depth, and a line across is where a hinge or a connector is.
     ///
@@ -165,12 +165,12 @@ impl PreparedModule {
         })
     }
 
-    /// `r^T M r` of a unit heave, structure alone [kg].
+    /// `r^T M r` of a unit heave, structure alone `[kg]`.
     pub fn structural_mass_kg(&self) -> f64 {
         self.structural_mass_kg
     }
 
-    /// Inertia of a unit roll about the axis at mid-depth, water included [kg m^2].
+    /// Inertia of a unit roll about the axis at mid-depth, water included `[kg m^2]`.
     pub(crate) fn roll_inertia_kg_m2(&self) -> f64 {
         self.roll_inertia_kg_m2
     }

@@ -34,7 +34,7 @@ impl Track {
         }
     }
 
-    /// Length of the bridge [m].
+    /// Length of the bridge `[m]`.
     pub fn length_m(&self) -> f64 {
         self.modules as f64 * self.module_length_m
     }
@@ -65,7 +65,7 @@ impl Track {
         self.interpolate(x_m, y_m, |s, _| (1.0 - s, s))
     }
 
-    /// Its derivative along x [1/m].
+    /// Its derivative along x `[1/m]`.
     pub fn slope_row(&self, x_m: f64, y_m: f64) -> Option<SparseRow> {
         self.interpolate(x_m, y_m, |_, length| (-1.0 / length, 1.0 / length))
     }
@@ -105,13 +105,13 @@ impl Track {
         [(iy, 1.0 - t), (iy + 1, t)]
     }
 
-    /// Shortest distance between stations of a module [m].
+    /// Shortest distance between stations of a module `[m]`.
     pub fn shortest_m(&self) -> f64 {
         let lengths = self.lines_x.windows(2).map(|w| w[1] - w[0]);
         lengths.fold(f64::INFINITY, f64::min)
     }
 
-    /// Length of a module [m].
+    /// Length of a module `[m]`.
     pub fn module_length_m(&self) -> f64 {
         self.module_length_m
     }
@@ -124,7 +124,7 @@ pub struct Along {
     pub station: usize,
     /// Where between it and the next, 0 to 1.
     pub part: f64,
-    /// Their distance [m].
+    /// Their distance `[m]`.
     pub length_m: f64,
 }
 

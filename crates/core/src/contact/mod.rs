@@ -14,9 +14,9 @@ pub use warm::WarmContact;
 /// `e = e_free - connectors N' - connectors_riders q'`, `riders q' = riders_free - riders_connectors N'`.
 #[derive(Debug)]
 pub struct ContactProblem<'a> {
-    /// Elongations without connector and rider forces [m].
+    /// Elongations without connector and rider forces `[m]`.
     pub e_free: Vec<f64>,
-    /// Flexibility among the connectors [m/N].
+    /// Flexibility among the connectors `[m/N]`.
     pub connectors: &'a DMatrix<f64>,
     /// Weight of the new force in the balance: `N' = weight N` (1 in statics, `1 - alpha_f` in a step).
     pub weight: f64,
@@ -35,9 +35,9 @@ pub struct ContactProblem<'a> {
 pub struct ContactSolution {
     /// State of each connector.
     pub states: Vec<State>,
-    /// Force of each connector, tension positive [N].
+    /// Force of each connector, tension positive `[N]`.
     pub forces: Vec<f64>,
-    /// Elongation of each connector [m].
+    /// Elongation of each connector `[m]`.
     pub elongations: Vec<f64>,
     /// Scaled rider forces q'.
     pub riders: Vec<f64>,

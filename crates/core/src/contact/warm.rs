@@ -17,7 +17,7 @@ pub struct WarmContact<'a> {
 }
 
 impl<'a> WarmContact<'a> {
-    /// Connectors with the flexibility `connectors` [m/N] among them, at rest.
+    /// Connectors with the flexibility `connectors` `[m/N]` among them, at rest.
     pub fn new(connectors: &'a DMatrix<f64>, law: Law) -> Self {
         let nc = connectors.nrows();
         Self {
@@ -35,7 +35,7 @@ impl<'a> WarmContact<'a> {
         }
     }
 
-    /// Solves for the elongations without forces `e_free` [m], from the last states on; gives the number of Newton
+    /// Solves for the elongations without forces `e_free` `[m]`, from the last states on; gives the number of Newton
     /// solutions.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl<'a> WarmContact<'a> {
         self.tangent.elongations.copy_from_slice(&solution.elongations);
     }
 
-    /// Force of each connector, tension positive [N].
+    /// Force of each connector, tension positive `[N]`.
     pub fn forces(&self) -> &[f64] {
         &self.tangent.forces
     }

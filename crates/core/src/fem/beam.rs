@@ -12,21 +12,21 @@ pub type BeamMatrix = SMatrix<f64, 12, 12>;
 /// Section and material of a beam. Local x is the axis; `i_y` resists bending in the x-z plane, `i_z` in x-y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeamSection {
-    /// Area [m^2].
+    /// Area `[m^2]`.
     pub area_m2: f64,
-    /// Second moment about local y [m^4].
+    /// Second moment about local y `[m^4]`.
     pub i_y_m4: f64,
-    /// Second moment about local z [m^4].
+    /// Second moment about local z `[m^4]`.
     pub i_z_m4: f64,
-    /// Torsion constant [m^4].
+    /// Torsion constant `[m^4]`.
     pub torsion_m4: f64,
-    /// Shear area in both directions [m^2]; none: no shear deformation.
+    /// Shear area in both directions `[m^2]`; none: no shear deformation.
     pub shear_area_m2: Option<f64>,
-    /// Young's modulus [Pa].
+    /// Young's modulus `[Pa]`.
     pub youngs_modulus_pa: f64,
     /// Poisson's ratio.
     pub poissons_ratio: f64,
-    /// Density [kg/m^3].
+    /// Density `[kg/m^3]`.
     pub density_kg_m3: f64,
 }
 

@@ -12,7 +12,7 @@ use faer::{Accum, Mat, MatMut, Par};
 /// Modes in rising order of eigenvalue.
 #[derive(Debug, Clone)]
 pub struct EigenPairs {
-    /// Eigenvalues lambda [1/s^2 where K and M are a stiffness and a mass].
+    /// Eigenvalues lambda `[1/s^2 where K and M are a stiffness and a mass]`.
     pub lambda: Vec<f64>,
     /// Shapes, a column each, `x^T M x = 1`.
     pub shapes: Mat<f64>,

@@ -27,11 +27,11 @@ pub(super) const GAUSS_2X2: [(f64, f64); 4] = [
 pub struct QuadFrame {
     /// Rows are the local axes.
     pub axes: Matrix3<f64>,
-    /// Local x of the corners [m].
+    /// Local x of the corners `[m]`.
     pub x: [f64; 4],
-    /// Local y of the corners [m].
+    /// Local y of the corners `[m]`.
     pub y: [f64; 4],
-    /// Heights of the corners above the mean plane [m].
+    /// Heights of the corners above the mean plane `[m]`.
     pub warp: [f64; 4],
 }
 
@@ -94,7 +94,7 @@ impl QuadFrame {
         Ok(frame)
     }
 
-    /// Area in the mean plane [m^2].
+    /// Area in the mean plane `[m^2]`.
     pub fn area(&self) -> f64 {
         GAUSS_2X2
             .iter()

@@ -44,7 +44,7 @@ pub struct MeshBeam {
 /// A mesh of shells and beams.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
-    /// Places of the nodes [m].
+    /// Places of the nodes `[m]`.
     pub nodes: Vec<Vector3<f64>>,
     /// Shells.
     pub shells: Vec<MeshShell>,
@@ -69,12 +69,12 @@ impl Mesh {
         self.beams.push(MeshBeam { nodes, section, up });
     }
 
-    /// Place of a node [m].
+    /// Place of a node `[m]`.
     pub fn place(&self, node: NodeId) -> Vector3<f64> {
         self.nodes[node.0]
     }
 
-    /// Mass of all elements [kg]: `rho t A` of shells, A half the product of their diagonals, and `rho A L` of beams.
+    /// Mass of all elements `[kg]`: `rho t A` of shells, A half the product of their diagonals, and `rho A L` of beams.
     pub fn mass_kg(&self) -> f64 {
         let shells = self.shells.iter().map(|shell| {
             let [a, b, c, d] = shell.nodes.map(|node| self.place(node));

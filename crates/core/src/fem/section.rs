@@ -8,23 +8,23 @@ use nalgebra::Matrix3;
 /// Plate of uniform thickness and material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShellSection {
-    /// Thickness [m].
+    /// Thickness `[m]`.
     pub thickness_m: f64,
-    /// Young's modulus [Pa].
+    /// Young's modulus `[Pa]`.
     pub youngs_modulus_pa: f64,
     /// Poisson's ratio.
     pub poissons_ratio: f64,
-    /// Density [kg/m^3].
+    /// Density `[kg/m^3]`.
     pub density_kg_m3: f64,
 }
 
 impl ShellSection {
-    /// `G = E / (2 (1 + nu))` [Pa].
+    /// `G = E / (2 (1 + nu))` `[Pa]`.
     pub fn shear_modulus_pa(&self) -> f64 {
         0.5 * self.youngs_modulus_pa / (1.0 + self.poissons_ratio)
     }
 
-    /// Plane-stress matrix D [Pa].
+    /// Plane-stress matrix D `[Pa]`.
     pub(super) fn plane_stress(&self) -> Matrix3<f64> {
         let (e, nu) = (self.youngs_modulus_pa, self.poissons_ratio);
         let c = e / (1.0 - nu * nu);

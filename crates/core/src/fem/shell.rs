@@ -36,7 +36,7 @@ impl Shell {
         })
     }
 
-    /// Stiffness [N/m, N, N m].
+    /// Stiffness `[N/m, N, N m]`.
     ///
     /// A warped element's corners are joined to the mean plane by rigid links: with h the height above the plane, the
     /// projected corner moves by `u - h theta_y`, `v + h theta_x`. Verified by `crates/core/tests/fem_patch.rs`,
@@ -63,7 +63,7 @@ impl Shell {
         turn(&(links.transpose() * local * links), &self.frame.axes)
     }
 
-    /// Consistent mass `integral of N^T diag(rho t, rho t^3/12) N dA` [kg, kg m^2]; drilling carries none. Verified by
+    /// Consistent mass `integral of N^T diag(rho t, rho t^3/12) N dA` `[kg, kg m^2]`; drilling carries none. Verified by
     /// `crates/core/tests/fem_vibration.rs`.
     pub fn mass_consistent(&self) -> ShellMatrix {
         let mut local = ShellMatrix::zeros();

@@ -9,7 +9,7 @@ use crate::input::SAME_PLACE_M;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Meshes a checked design, with extra lines across at `extra_y` [m].
+/// Meshes a checked design, with extra lines across at `extra_y` `[m]`.
 pub fn mesh_module(design: &ModuleDesign, extra_y: &[f64]) -> ModuleMesh {
     Builder::new(design, extra_y).build()
 }

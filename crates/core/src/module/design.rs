@@ -11,19 +11,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModuleDesign {
-    /// Length along the bridge [m].
+    /// Length along the bridge `[m]`.
     pub length_m: f64,
-    /// Breadth across the bridge [m].
+    /// Breadth across the bridge `[m]`.
     pub breadth_m: f64,
-    /// Depth from bottom plate to deck plate [m].
+    /// Depth from bottom plate to deck plate `[m]`.
     pub depth_m: f64,
-    /// Thickness of the deck plate [m].
+    /// Thickness of the deck plate `[m]`.
     pub deck_thickness_m: f64,
-    /// Thickness of the bottom plate [m].
+    /// Thickness of the bottom plate `[m]`.
     pub bottom_thickness_m: f64,
-    /// Thickness of the two side plates [m].
+    /// Thickness of the two side plates `[m]`.
     pub side_thickness_m: f64,
-    /// Thickness of the two end plates [m].
+    /// Thickness of the two end plates `[m]`.
     pub end_thickness_m: f64,
     /// Longitudinal walls inside the box.
     #[serde(default)]
@@ -44,9 +44,9 @@ pub struct ModuleDesign {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LongitudinalWalls {
-    /// Thickness [m].
+    /// Thickness `[m]`.
     pub thickness_m: f64,
-    /// Places across [m].
+    /// Places across `[m]`.
     pub y_m: Vec<f64>,
 }
 
@@ -54,9 +54,9 @@ pub struct LongitudinalWalls {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TransverseWalls {
-    /// Thickness [m].
+    /// Thickness `[m]`.
     pub thickness_m: f64,
-    /// Places along [m].
+    /// Places along `[m]`.
     pub x_m: Vec<f64>,
 }
 
@@ -64,18 +64,18 @@ pub struct TransverseWalls {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stiffeners {
-    /// Cross-section area [m^2].
+    /// Cross-section area `[m^2]`.
     pub area_m2: f64,
-    /// Second moment of area about both axes [m^4].
+    /// Second moment of area about both axes `[m^4]`.
     pub second_moment_m4: f64,
-    /// Torsion constant [m^4].
+    /// Torsion constant `[m^4]`.
     pub torsion_constant_m4: f64,
-    /// Shear area, both directions [m^2]; absent: no shear deformation.
+    /// Shear area, both directions `[m^2]`; absent: no shear deformation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_area_m2: Option<f64>,
-    /// Places of the transverse beams along the module [m].
+    /// Places of the transverse beams along the module `[m]`.
     pub transverse_x_m: Vec<f64>,
-    /// Places of the longitudinal beams across the module [m].
+    /// Places of the longitudinal beams across the module `[m]`.
     pub longitudinal_y_m: Vec<f64>,
 }
 
@@ -83,11 +83,11 @@ pub struct Stiffeners {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Young's modulus [Pa].
+    /// Young's modulus `[Pa]`.
     pub youngs_modulus_pa: f64,
     /// Poisson's ratio.
     pub poissons_ratio: f64,
-    /// Density [kg/m^3], fittings included.
+    /// Density `[kg/m^3]`, fittings included.
     pub density_kg_m3: f64,
 }
 

@@ -9,9 +9,9 @@ use crate::input::{InvalidInput, SAME_PLACE_M};
 /// across.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// Lines along the module, from 0 to the length [m].
+    /// Lines along the module, from 0 to the length `[m]`.
     pub x: Vec<f64>,
-    /// Lines across, from minus to plus half the breadth [m].
+    /// Lines across, from minus to plus half the breadth `[m]`.
     pub y: Vec<f64>,
     pub(super) deck: Vec<NodeId>,
     pub(super) bottom: Vec<NodeId>,
@@ -20,7 +20,7 @@ pub struct Grid {
 impl Grid {
     /// A grid over nodes that a mesh already has.
     ///
-    /// `x` and `y`: the places of the lines [m], at least two each way, increasing. `deck`, `bottom`: the nodes at
+    /// `x` and `y`: the places of the lines `[m]`, at least two each way, increasing. `deck`, `bottom`: the nodes at
     /// `(x[i], y[j])` at place `i y.len() + j`, each node once: `x.len() y.len()` of each. What lies between the nodes may be
     /// anything; wheels see the deck as bilinear between them, water the bottom as bilinear cells.
     ///
@@ -90,7 +90,7 @@ impl Grid {
         vec![(1.0 - share, right - 1), (share, right)]
     }
 
-    /// Bottom cells: their corner nodes in cyclic order and their area [m^2].
+    /// Bottom cells: their corner nodes in cyclic order and their area `[m^2]`.
     pub fn bottom_cells(&self) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
         cells(self.x.len(), self.y.len()).map(|(i, j)| {
             let area = (self.x[i + 1] - self.x[i]) * (self.y[j + 1] - self.y[j]);

@@ -50,7 +50,7 @@ impl Plate {
         }
     }
 
-    /// The plate of the plane in which four `corners` [m, of the module] lie. A wall that a design puts in the plane of a
+    /// The plate of the plane in which four `corners` `[m, of the module]` lie. A wall that a design puts in the plane of a
     /// side or an end is that side or end.
     pub fn of(design: &ModuleDesign, corners: [Vector3<f64>; 4]) -> Self {
         let plane = |direction: usize| {

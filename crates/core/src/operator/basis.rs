@@ -10,7 +10,7 @@ use faer::Mat;
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-/// Shift of eigenproblem and flexibilities [1/s^2], the square of 0.1 Hz: a bridge that nothing holds along has an operator
+/// Shift of eigenproblem and flexibilities `[1/s^2]`, the square of 0.1 Hz: a bridge that nothing holds along has an operator
 /// as well. It changes residual flexibilities by less than `SHIFT / omega^2` of themselves, 1e-4 at 10 Hz.
 const SHIFT: f64 = 0.4;
 

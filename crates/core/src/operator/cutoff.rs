@@ -6,7 +6,7 @@ use crate::fem::EigenPairs;
 use faer::Mat;
 use std::f64::consts::PI;
 
-/// Forces up to this frequency are what the stated error is about [Hz]: ten times the band in which the bridge heaves and
+/// Forces up to this frequency are what the stated error is about `[Hz]`: ten times the band in which the bridge heaves and
 /// rolls, the pace at which contacts open and close.
 pub const REFERENCE_HZ: f64 = 5.0;
 
@@ -15,7 +15,7 @@ pub const REFERENCE_HZ: f64 = 5.0;
 pub struct Cutoff {
     /// Modes kept.
     pub modes: usize,
-    /// Frequency of the highest one [Hz].
+    /// Frequency of the highest one `[Hz]`.
     pub frequency_hz: f64,
     /// Error asked for.
     pub tolerance: f64,

@@ -18,9 +18,9 @@ pub struct Passage {
     pub ride: Arc<Ride>,
     /// The connectors' law.
     pub law: Law,
-    /// Weight of the vehicle [N].
+    /// Weight of the vehicle `[N]`.
     pub load_n: f64,
-    /// Speed [m/s].
+    /// Speed `[m/s]`.
     pub speed_m_s: f64,
 }
 
@@ -28,12 +28,12 @@ pub struct Passage {
 #[derive(Debug)]
 pub(super) struct Lane {
     pub passage: Option<Passage>,
-    /// Place of the vehicle's front at the end of the step under way [m], and the time then [s].
+    /// Place of the vehicle's front at the end of the step under way `[m]`, and the time then `[s]`.
     pub front_x_m: f64,
     pub time_s: f64,
     pub small: Small,
     pub riders: Riders,
-    /// Weight on each axle that is on the bridge [N], and whether all its points are.
+    /// Weight on each axle that is on the bridge `[N]`, and whether all its points are.
     pub axles: Vec<(f64, bool)>,
     pub inertia: Vec<f64>,
     /// Downward forces on stations: line, station, force; lines of the weights, then of the masses.

@@ -205,13 +205,13 @@ impl Lanes {
         self.watch.peaks(lane, self.width)
     }
 
-    /// Deflection of a position now, positive downward [m].
+    /// Deflection of a position now, positive downward `[m]`.
     pub fn deflection_m(&self, lane: usize, position: usize) -> f64 {
         // nothing is 0, not -0
         0.0 - self.scratch.w[(position - 1) * self.width + lane]
     }
 
-    /// Force of a joint now, its connectors added, tension positive [N].
+    /// Force of a joint now, its connectors added, tension positive `[N]`.
     pub fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
         let per_joint = self.watch.per_joint();
         let forces = self.motion.n.chunks_exact(self.width).skip((joint - 2) * per_joint);

@@ -25,7 +25,7 @@ pub(super) struct Motion {
     pub n: Vec<f64>,
     pub rn: Vec<f64>,
     pub e: Vec<f64>,
-    /// Energies at the end of the step [J]: kinetic, strain, connectors.
+    /// Energies at the end of the step `[J]`: kinetic, strain, connectors.
     pub kinetic: Vec<f64>,
     pub strain: Vec<f64>,
     pub springs: Vec<f64>,

@@ -10,11 +10,11 @@ use nalgebra::DMatrix;
 /// Room for the small system of one lane, kept from step to step.
 #[derive(Debug)]
 pub(super) struct Small {
-    /// Elongations without connector and rider forces, then with them [m].
+    /// Elongations without connector and rider forces, then with them `[m]`.
     pub e: Vec<f64>,
     /// State of each connector.
     pub states: Vec<State>,
-    /// Scaled forces `N' = weight N` of the active connectors, 0 of the others [N].
+    /// Scaled forces `N' = weight N` of the active connectors, 0 of the others `[N]`.
     pub forces: Vec<f64>,
     /// Scaled rider forces q'.
     pub riders: Vec<f64>,

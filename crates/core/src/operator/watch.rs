@@ -23,7 +23,7 @@ pub(super) struct Watch {
     /// connector; and when.
     value: Vec<f64>,
     time: Vec<f64>,
-    /// Time of the step [s].
+    /// Time of the step `[s]`.
     now: Vec<f64>,
     /// Largest downward deflection of corners and edges, height of bottom corners, roll; largest corner deflection.
     edge: Vec<f64>,
@@ -319,19 +319,19 @@ impl<S: Simd> Peaks<'_, S> {
 /// What a lane's crossing leaves behind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LanePeaks {
-    /// Downward and upward of each position [m].
+    /// Downward and upward of each position `[m]`.
     pub positions: Vec<[Peak; 2]>,
-    /// Of each joint the sum, then each connector [N].
+    /// Of each joint the sum, then each connector `[N]`.
     pub forces: Vec<ForcePeaks>,
-    /// Largest downward deflection of the deck's edges, and of the deck's corners alone [m].
+    /// Largest downward deflection of the deck's edges, and of the deck's corners alone `[m]`.
     pub edge_m: f64,
     /// See `edge_m`.
     pub corner_m: f64,
-    /// Largest height of a bottom corner [m]; 0 where none is followed.
+    /// Largest height of a bottom corner `[m]`; 0 where none is followed.
     pub bottom_m: f64,
-    /// Largest roll of a module end [rad].
+    /// Largest roll of a module end `[rad]`.
     pub roll_rad: f64,
-    /// Smallest force of an axle [N].
+    /// Smallest force of an axle `[N]`.
     pub min_contact_force_n: f64,
     /// The energy balance.
     pub energy: EnergySummary,

@@ -8,7 +8,7 @@ use crate::bridge::Track;
 use crate::vehicle::{Inertia, Vehicle};
 use nalgebra::DMatrix;
 
-/// Place ahead of the front [m], share of the weight, axle.
+/// Place ahead of the front `[m]`, share of the weight, axle.
 type OnLine = (f64, f64, usize);
 
 /// Wheel points on one line along the bridge, or on several that carry the same.

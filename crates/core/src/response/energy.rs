@@ -2,7 +2,7 @@
 //!
 //! Knows the sums and how far they are from closing. Does not know the scheme that produced the increments.
 
-/// Energies of one step [J], by the scheme's own increments.
+/// Energies of one step `[J]`, by the scheme's own increments.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StepEnergies {
     /// Kinetic energy at its end, `1/2 v^T M v`.

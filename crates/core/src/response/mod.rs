@@ -24,9 +24,9 @@ pub struct Statistics {
 /// What a history records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
-    /// Deflection of a position, positive downward [m].
+    /// Deflection of a position, positive downward `[m]`.
     Deflection,
-    /// Force of a joint, its connectors added, tension positive [N].
+    /// Force of a joint, its connectors added, tension positive `[N]`.
     Force,
 }
 
@@ -79,11 +79,11 @@ pub struct CrossingResponse {
     pub positions: Vec<PositionPeaks>,
     /// Peaks of each joint 2 to modules, in order.
     pub joints: Vec<JointPeaks>,
-    /// Largest downward deflection of the deck's two edges [m].
+    /// Largest downward deflection of the deck's two edges `[m]`.
     pub peak_edge_deflection_m: f64,
-    /// Largest roll of a module end, either sense [rad].
+    /// Largest roll of a module end, either sense `[rad]`.
     pub peak_roll_rad: f64,
-    /// Smallest contact force of an axle while all its points are on the bridge [N]; below zero it would have lifted off.
+    /// Smallest contact force of an axle while all its points are on the bridge `[N]`; below zero it would have lifted off.
     pub min_contact_force_n: f64,
     /// Whether a corner of a module's bottom rose above the water; unknown without a draft.
     pub bottom_emerged: Option<bool>,
@@ -93,7 +93,7 @@ pub struct CrossingResponse {
     pub statistics: Statistics,
     /// The energy balance.
     pub energy: EnergySummary,
-    /// Times of the histories [s]; empty where none was asked for.
+    /// Times of the histories `[s]`; empty where none was asked for.
     pub history_time_s: Vec<f64>,
     /// The histories, positions before joints.
     pub histories: Vec<History>,
@@ -125,16 +125,16 @@ fn largest<T: Copy>(list: &[T], key: impl Fn(&T) -> f64) -> T {
 /// The response to one static case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticResponse {
-    /// Deflection of each position 1 to modules + 1, positive downward [m].
+    /// Deflection of each position 1 to modules + 1, positive downward `[m]`.
     pub deflection_m: Vec<f64>,
     /// Forces of each joint 2 to modules, in order.
     pub joints: Vec<JointForces>,
-    /// Largest downward deflection of the deck's two edges [m].
+    /// Largest downward deflection of the deck's two edges `[m]`.
     pub peak_edge_deflection_m: f64,
-    /// Largest roll of a module end, either sense [rad].
+    /// Largest roll of a module end, either sense `[rad]`.
     pub peak_roll_rad: f64,
     /// Distance between the first zero crossings of the deflection left and right of the load, along the centre line
-    /// at the bottom [m]; the support where there is none.
+    /// at the bottom `[m]`; the support where there is none.
     pub influential_length_m: f64,
     /// As for a crossing.
     pub bottom_emerged: Option<bool>,
@@ -146,8 +146,8 @@ pub struct StaticResponse {
     pub equilibrium: Equilibrium,
 }
 
-/// Resultants about the origin (left end, centre line) in a static case: force up [N], moment about x [N m] and about
-/// y [N m]. Load, water and supports sum to zero.
+/// Resultants about the origin (left end, centre line) in a static case: force up `[N]`, moment about x `[N m]` and about
+/// y `[N m]`. Load, water and supports sum to zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Equilibrium {
     /// The vehicle's weight.

@@ -7,7 +7,7 @@
 pub struct Peak {
     /// The largest value so far, at least 0.
     pub value: f64,
-    /// When it occurred [s].
+    /// When it occurred `[s]`.
     pub time_s: f64,
 }
 
@@ -26,15 +26,15 @@ impl Peak {
 pub struct PositionPeaks {
     /// Position number, from 1.
     pub position: usize,
-    /// Its place along the bridge [m].
+    /// Its place along the bridge `[m]`.
     pub x_m: f64,
-    /// Downward [m].
+    /// Downward `[m]`.
     pub deflection: Peak,
-    /// Upward [m].
+    /// Upward `[m]`.
     pub uplift: Peak,
 }
 
-/// Peaks of a force, both as positive numbers [N].
+/// Peaks of a force, both as positive numbers `[N]`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ForcePeaks {
     /// Largest compression.
@@ -59,17 +59,17 @@ pub struct JointPeaks {
     pub joint: usize,
     /// Peaks of the sum over its connectors.
     pub sum: ForcePeaks,
-    /// Each connector's place across [m] and its own peaks.
+    /// Each connector's place across `[m]` and its own peaks.
     pub connectors: Vec<(f64, ForcePeaks)>,
 }
 
-/// Forces of a joint in a static case, tension positive [N].
+/// Forces of a joint in a static case, tension positive `[N]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointForces {
     /// Position number of the joint, 2 to modules.
     pub joint: usize,
     /// Sum over its connectors.
     pub sum_n: f64,
-    /// Each connector's place across [m] and its force.
+    /// Each connector's place across `[m]` and its force.
     pub connectors: Vec<(f64, f64)>,
 }

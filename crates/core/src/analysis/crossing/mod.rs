@@ -26,7 +26,7 @@ pub use under_way::UnderWay;
 /// What all crossings of a solver share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossingSettings {
-    /// Time step [s].
+    /// Time step `[s]`.
     pub time_step_s: f64,
     /// Spectral radius of the generalized-alpha scheme, 0 to 1.
     pub spectral_radius: f64,
@@ -43,13 +43,13 @@ pub struct CrossingSettings {
 pub struct Crossing {
     /// How the connectors work.
     pub connection: Connection,
-    /// Stiffness of one truss [N/m].
+    /// Stiffness of one truss `[N/m]`.
     pub connector_stiffness_n_m: f64,
-    /// Weight of the vehicle [N].
+    /// Weight of the vehicle `[N]`.
     pub load_n: f64,
-    /// Speed [m/s].
+    /// Speed `[m/s]`.
     pub speed_m_s: f64,
-    /// How long to go on after the last point has left [s].
+    /// How long to go on after the last point has left `[s]`.
     pub tail_s: f64,
     /// Histories to keep.
     pub record: Record,

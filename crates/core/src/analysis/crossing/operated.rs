@@ -111,7 +111,7 @@ impl OperatorSolver {
         crew.run(crossings)
     }
 
-    /// The time step after some halvings [s].
+    /// The time step after some halvings `[s]`.
     pub fn time_step_s(&self, halvings: usize) -> f64 {
         self.settings.time_step_s / (1_u64 << halvings) as f64
     }

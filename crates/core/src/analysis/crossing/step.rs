@@ -28,7 +28,7 @@ pub(super) struct Instant {
     pub forces: Vec<f64>,
     pub elongations: Vec<f64>,
     pub load: Load,
-    /// Inertia force of each rider, `m (r u'' + ...)` [N].
+    /// Inertia force of each rider, `m (r u'' + ...)` `[N]`.
     pub inertia: Vec<f64>,
     pub newton_iterations: usize,
     /// Energies of the step that led here.

@@ -14,14 +14,14 @@ use nalgebra::DMatrix;
 /// One vehicle on one bridge, made ready for cases of any connection and weight. Shared read-only between jobs and threads.
 #[derive(Debug, Clone)]
 pub struct CreepingLoad {
-    /// Places of the vehicle's centre [m].
+    /// Places of the vehicle's centre `[m]`.
     places_m: Vec<f64>,
     /// Of a vehicle of weight 1 N at each place: shortening of each connector and below them deflection of each position,
-    /// no connector at work [m/N].
+    /// no connector at work `[m/N]`.
     unit: DMatrix<f64>,
-    /// Flexibility among the connectors [m/N].
+    /// Flexibility among the connectors `[m/N]`.
     among: DMatrix<f64>,
-    /// What each position sees of unit forces at the connectors, positions x connectors [m/N].
+    /// What each position sees of unit forces at the connectors, positions x connectors `[m/N]`.
     positions: DMatrix<f64>,
 }
 
@@ -57,7 +57,7 @@ impl CreepingLoad {
         }
     }
 
-    /// Largest static deflection of each position over all places [m]; `load_x_m` of the case is not used. The contact at
+    /// Largest static deflection of each position over all places `[m]`; `load_x_m` of the case is not used. The contact at
     /// each place starts from the states at the place before: the law nowhere falls and the flexibility is positive, so
     /// that there is one solution and any start that settles has found it.
     ///

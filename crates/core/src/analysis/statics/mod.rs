@@ -22,11 +22,11 @@ use std::sync::{Arc, OnceLock};
 pub struct StaticCase {
     /// How the connectors work.
     pub connection: Connection,
-    /// Stiffness of one truss [N/m].
+    /// Stiffness of one truss `[N/m]`.
     pub connector_stiffness_n_m: f64,
-    /// Weight of the vehicle [N].
+    /// Weight of the vehicle `[N]`.
     pub load_n: f64,
-    /// Place of the vehicle's centre [m].
+    /// Place of the vehicle's centre `[m]`.
     pub load_x_m: f64,
 }
 
@@ -145,7 +145,7 @@ impl StaticSolver {
         Ok((load, contact, u))
     }
 
-    /// Largest static deflection of any position over all places of the load along the bridge [m].
+    /// Largest static deflection of any position over all places of the load along the bridge `[m]`.
     ///
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
@@ -154,7 +154,7 @@ impl StaticSolver {
         Ok(peaks.into_iter().fold(0.0, f64::max))
     }
 
-    /// Largest static deflection of each position over all places of the load along the bridge [m]: places a quarter of
+    /// Largest static deflection of each position over all places of the load along the bridge `[m]`: places a quarter of
     /// an element apart (`load_x_m` of the case is not used). For many cases of one vehicle see [`Self::creeping`].
     ///
     /// # Errors
