@@ -33,7 +33,7 @@ pub enum State {
 
 /// A line `N = k e - n0` of the connector law: its slope k `[N/m]` and offset n0 `[N]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
+pub(crate) struct Line {
     /// Slope `[N/m]`.
     pub k: f64,
     /// Offset `[N]`.
@@ -42,7 +42,7 @@ pub struct Line {
 
 /// The law of one connector in one job.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Law {
+pub(crate) struct Law {
     /// Stiffness of one truss `[N/m]`.
     pub k: f64,
     /// The connection.
@@ -52,7 +52,7 @@ pub struct Law {
 impl Law {
     /// The state that elongation `e` `[m]` asks for.
     #[inline]
-    pub fn state(&self, e: f64) -> State {
+    pub(crate) fn state(&self, e: f64) -> State {
         match self.connection {
             Connection::Linear => State::Both,
             Connection::Nonlinear { gap_tension_m, .. } if e > gap_tension_m => State::Tension,
@@ -63,7 +63,7 @@ impl Law {
 
     /// The line of the law in a state.
     #[inline]
-    pub fn line(&self, state: State) -> Line {
+    pub(crate) fn line(&self, state: State) -> Line {
         match (state, self.connection) {
             (State::Open, _) => Line { k: 0.0, n0: 0.0 },
             (_, Connection::Linear) | (State::Both, _) => Line {
@@ -81,16 +81,9 @@ impl Law {
         }
     }
 
-    /// Force at elongation `e`, tension positive `[N]`.
-    #[inline]
-    pub fn force(&self, e: f64) -> f64 {
-        let line = self.line(self.state(e));
-        line.k * e - line.n0
-    }
-
     /// Strain energy at elongation `e` `[J]`.
     #[inline]
-    pub fn energy(&self, e: f64) -> f64 {
+    pub(crate) fn energy(&self, e: f64) -> f64 {
         let line = self.line(self.state(e));
         if line.k == 0.0 {
             0.0

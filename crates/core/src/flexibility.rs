@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 /// The factor of A, the columns `A^-1 B^T` of the connectors and, line by line, `A^-1 E` of unit loads on the deck's z.
 /// Shared read-only between jobs and threads.
 #[derive(Debug)]
-pub struct Flexibility {
+pub(crate) struct Flexibility {
     factor: Factor,
     track: Track,
     /// `A^-1 B^T`.
@@ -28,7 +28,7 @@ impl Flexibility {
     ///
     /// # Errors
     /// [`FemError`] where `a` is not positive definite or its factor fails [`Factor::probe`].
-    pub fn new(name: &'static str, a: &SymmetricMatrix, bridge: &Bridge) -> Result<Self, FemError> {
+    pub(crate) fn new(name: &'static str, a: &SymmetricMatrix, bridge: &Bridge) -> Result<Self, FemError> {
         let factor = Factor::new(name, a)?;
         let track = Track::new(bridge);
         let connectors = responses(&factor, bridge.connectors.iter().map(|c| &c.row));
@@ -49,12 +49,12 @@ impl Flexibility {
     }
 
     /// The track on which rows are given.
-    pub fn track(&self) -> &Track {
+    pub(crate) fn track(&self) -> &Track {
         &self.track
     }
 
     /// `x := A^-1 x`.
-    pub fn solve(&self, x: &mut [f64]) {
+    pub(crate) fn solve(&self, x: &mut [f64]) {
         self.factor.solve(x);
     }
 
@@ -74,12 +74,12 @@ impl Flexibility {
     }
 
     /// `B A^-1 B^T` among the connectors, symmetric to the last bit.
-    pub fn among_connectors(&self) -> &DMatrix<f64> {
+    pub(crate) fn among_connectors(&self) -> &DMatrix<f64> {
         &self.among
     }
 
     /// `b_i . A^-1 row^T` of a connector and a track row.
-    pub fn connector_to_track(&self, i: usize, row: &SparseRow) -> f64 {
+    pub(crate) fn connector_to_track(&self, i: usize, row: &SparseRow) -> f64 {
         row.0
             .iter()
             .map(|&(c, v)| v * self.connectors[(self.track.dof(c), i)])
@@ -87,7 +87,7 @@ impl Flexibility {
     }
 
     /// `row_a . A^-1 row_b^T` of two track rows.
-    pub fn track_to_track(&self, a: &SparseRow, b: &SparseRow) -> f64 {
+    pub(crate) fn track_to_track(&self, a: &SparseRow, b: &SparseRow) -> f64 {
         let column = |c: usize, w: f64| {
             let (columns, j) = self.column(c);
             w * a
@@ -100,19 +100,19 @@ impl Flexibility {
     }
 
     /// A track row on a vector of the bridge's dofs.
-    pub fn track_dot(&self, row: &SparseRow, u: &[f64]) -> f64 {
+    pub(crate) fn track_dot(&self, row: &SparseRow, u: &[f64]) -> f64 {
         row.0.iter().map(|&(c, v)| v * u[self.track.dof(c)]).sum()
     }
 
     /// `f += force * row^T` of a track row.
-    pub fn add_track_force(&self, row: &SparseRow, force: f64, f: &mut [f64]) {
+    pub(crate) fn add_track_force(&self, row: &SparseRow, force: f64, f: &mut [f64]) {
         for &(c, v) in &row.0 {
             f[self.track.dof(c)] += force * v;
         }
     }
 
     /// `u += A^-1 row^T` of a track row.
-    pub fn add_track_response(&self, row: &SparseRow, u: &mut [f64]) {
+    pub(crate) fn add_track_response(&self, row: &SparseRow, u: &mut [f64]) {
         for &(c, v) in &row.0 {
             let (columns, j) = self.column(c);
             add_column(columns, j, v, u);
@@ -120,14 +120,14 @@ impl Flexibility {
     }
 
     /// `u += force A^-1 b^T` of a connector.
-    pub fn add_connector_response(&self, connector: usize, force: f64, u: &mut [f64]) {
+    pub(crate) fn add_connector_response(&self, connector: usize, force: f64, u: &mut [f64]) {
         if force != 0.0 {
             add_column(self.connectors.as_ref(), connector, force, u);
         }
     }
 
     /// `row . A^-1 B^T`: what an observed row sees of unit forces at the connectors.
-    pub fn observe_connectors(&self, row: &SparseRow) -> Vec<f64> {
+    pub(crate) fn observe_connectors(&self, row: &SparseRow) -> Vec<f64> {
         (0..self.connectors.ncols())
             .map(|j| row.0.iter().map(|&(i, v)| v * self.connectors[(i, j)]).sum())
             .collect()
@@ -135,7 +135,7 @@ impl Flexibility {
 
     /// `[B; rows] A^-1 E`: what each connector and below them each observed row sees of a unit force on each column of the
     /// track, (connectors + rows) x columns. By Maxwell-Betti from `A^-1 rows^T`, so that no column is solved for.
-    pub fn influence(&self, rows: &[SparseRow]) -> DMatrix<f64> {
+    pub(crate) fn influence(&self, rows: &[SparseRow]) -> DMatrix<f64> {
         let observed = responses(&self.factor, rows.iter());
         let nc = self.connectors.ncols();
         DMatrix::from_fn(nc + rows.len(), self.track.columns(), |i, column| {
@@ -146,15 +146,6 @@ impl Flexibility {
             };
             seen[(self.track.dof(column), j)]
         })
-    }
-
-    /// `row . A^-1 track_row^T`: what an observed row sees of a track row.
-    pub fn observe_track(&self, row: &SparseRow, track_row: &SparseRow) -> f64 {
-        let column = |c: usize, w: f64| {
-            let (columns, j) = self.column(c);
-            w * row.0.iter().map(|&(i, v)| v * columns[(i, j)]).sum::<f64>()
-        };
-        track_row.0.iter().map(|&(c, w)| column(c, w)).sum()
     }
 }
 

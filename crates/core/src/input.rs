@@ -78,13 +78,13 @@ pub fn within(key: &str, value: f64, from: f64, to: f64) -> Result<f64, InvalidI
 }
 
 /// Places closer than this are one place `[m]`: they share a line of the mesh.
-pub const SAME_PLACE_M: f64 = 1e-6;
+pub(crate) const SAME_PLACE_M: f64 = 1e-6;
 
 /// Refuses a place that is the same as an earlier one of its list.
 ///
 /// # Errors
 /// [`InvalidInput`] on the place in the list `key`.
-pub fn apart(key: &str, places: &[f64]) -> Result<(), InvalidInput> {
+pub(crate) fn apart(key: &str, places: &[f64]) -> Result<(), InvalidInput> {
     for (i, &place) in places.iter().enumerate() {
         if places[..i].iter().any(|&other| (other - place).abs() <= SAME_PLACE_M) {
             let found = format!("{place} twice");

@@ -9,21 +9,21 @@
 //! | 1 | [`fem`] | shells, beams, assembly, factorisation, eigenvalues; has never heard of a bridge |
 //! | 2 | [`module`], [`water`], [`superelement`] | the pontoon's geometry to finite elements, hydrostatics and added mass, condensation |
 //! | 3 | [`connector`], [`vehicle`], [`bridge`] | the gap law, the wheels, and the one place where they all meet |
-//! | 4 | [`scheme`], [`flexibility`], [`contact`], [`operator`] | time integration, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
+//! | 4 | `scheme`, `flexibility`, `contact`, [`operator`] | time integration, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
 //! | 5 | [`analysis`] | modes, statics, crossings |
 
 pub mod analysis;
 pub mod bridge;
 pub mod connector;
-pub mod contact;
+mod contact;
 pub mod conventions;
 pub mod fem;
-pub mod flexibility;
+mod flexibility;
 pub mod input;
 pub mod module;
 pub mod operator;
 pub mod response;
-pub mod scheme;
+mod scheme;
 pub mod superelement;
 pub mod vehicle;
 pub mod water;

@@ -14,7 +14,7 @@
 /// `M a_alpha + C v_alpha + K u_alpha = f_alpha`, `x_alpha = (1 - alpha) x_1 + alpha x_0`,
 /// alpha_m for the acceleration, alpha_f for everything else. Newmark's trapezoidal rule is `rho = 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scheme {
+pub(crate) struct Scheme {
     /// Length of the step `[s]`.
     pub h: f64,
     /// Weight of the old acceleration.
@@ -41,7 +41,7 @@ pub struct Scheme {
 
 impl Scheme {
     /// The constants for a step `h` `[s]` and spectral radius `rho` from 0 to 1.
-    pub fn new(h: f64, rho: f64) -> Self {
+    pub(crate) fn new(h: f64, rho: f64) -> Self {
         let alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
         let alpha_f = rho / (rho + 1.0);
         let gamma = 0.5 - alpha_m + alpha_f;
@@ -62,7 +62,7 @@ impl Scheme {
     }
 
     /// Factors of M, C and K in the matrix of the step.
-    pub fn effective(&self) -> (f64, f64, f64) {
+    pub(crate) fn effective(&self) -> (f64, f64, f64) {
         (
             (1.0 - self.alpha_m) * self.c_a,
             (1.0 - self.alpha_f) * self.c_v,
@@ -72,13 +72,13 @@ impl Scheme {
 
     /// `(1 - alpha_m) new + alpha_m old`.
     #[inline]
-    pub fn at_m(&self, new: f64, old: f64) -> f64 {
+    pub(crate) fn at_m(&self, new: f64, old: f64) -> f64 {
         (1.0 - self.alpha_m) * new + self.alpha_m * old
     }
 
     /// `(1 - alpha_f) new + alpha_f old`.
     #[inline]
-    pub fn at_f(&self, new: f64, old: f64) -> f64 {
+    pub(crate) fn at_f(&self, new: f64, old: f64) -> f64 {
         (1.0 - self.alpha_f) * new + self.alpha_f * old
     }
 }

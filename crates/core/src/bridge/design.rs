@@ -380,7 +380,7 @@ impl DraftBuoyancy {
 
     /// Slope of the table at the still-water draft `[N/m]`: of the segment that holds it, of the two neighbours' mean
     /// on a table point.
-    pub fn slope_n_m(&self) -> f64 {
+    pub(crate) fn slope_n_m(&self) -> f64 {
         let slope = |i: usize| (self.buoyancy_n[i + 1] - self.buoyancy_n[i]) / (self.draft_m[i + 1] - self.draft_m[i]);
         let at = self.still_water_draft_m;
         let segments: Vec<f64> = (0..self.draft_m.len() - 1)

@@ -9,7 +9,7 @@ use crate::vehicle::{GRAVITY_M_S2, Inertia, Patch, Vehicle};
 /// A mass that rides along: the row on which its force acts and the rows that make its acceleration
 /// `r u'' + 2 V r_x u' + V^2 r_xx u`.
 #[derive(Debug, Clone)]
-pub struct Rider {
+pub(crate) struct Rider {
     /// Mass `[kg]`.
     pub mass_kg: f64,
     /// Axle it belongs to.
@@ -22,7 +22,7 @@ pub struct Rider {
 
 /// A vehicle on the track at one instant.
 #[derive(Debug, Clone, Default)]
-pub struct Load {
+pub(crate) struct Load {
     /// Downward force of the weights on each track column, as one row `[N]`.
     pub weight: SparseRow,
     /// The masses.
@@ -33,7 +33,7 @@ pub struct Load {
 
 impl Load {
     /// A vehicle of weight `load_n` with its front at `front_x_m`. A point off the bridge neither loads nor weighs.
-    pub fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64) -> Self {
+    pub(crate) fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64) -> Self {
         let mut load = Self {
             axles: vec![(0.0, true); vehicle.axles],
             ..Self::default()

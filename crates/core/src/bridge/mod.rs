@@ -15,12 +15,12 @@ mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
 pub use design::{BridgeDesign, Condensation, Connectors, Direction, DraftBuoyancy, Hinges, Supports, Todd};
-pub use load::{Load, Rider};
+pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 pub use prepared::PreparedModule;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 use thiserror::Error;
-pub use track::{Along, Track};
+pub use track::Track;
 
 /// Which matrices a module contributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

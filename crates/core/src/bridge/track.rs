@@ -45,7 +45,7 @@ impl Track {
     }
 
     /// Columns of a line.
-    pub fn stations(&self) -> usize {
+    pub(crate) fn stations(&self) -> usize {
         self.modules * self.lines_x.len()
     }
 
@@ -66,7 +66,7 @@ impl Track {
     }
 
     /// Its derivative along x `[1/m]`.
-    pub fn slope_row(&self, x_m: f64, y_m: f64) -> Option<SparseRow> {
+    pub(crate) fn slope_row(&self, x_m: f64, y_m: f64) -> Option<SparseRow> {
         self.interpolate(x_m, y_m, |_, length| (-1.0 / length, 1.0 / length))
     }
 
@@ -86,7 +86,7 @@ impl Track {
 
     /// The interval between two stations that holds `x_m`; none off the bridge.
     #[inline]
-    pub fn along(&self, x_m: f64) -> Option<Along> {
+    pub(crate) fn along(&self, x_m: f64) -> Option<Along> {
         if !(0.0..=self.length_m()).contains(&x_m) {
             return None;
         }
@@ -106,7 +106,7 @@ impl Track {
     }
 
     /// Shortest distance between stations of a module `[m]`.
-    pub fn shortest_m(&self) -> f64 {
+    pub(crate) fn shortest_m(&self) -> f64 {
         let lengths = self.lines_x.windows(2).map(|w| w[1] - w[0]);
         lengths.fold(f64::INFINITY, f64::min)
     }
@@ -119,7 +119,7 @@ impl Track {
 
 /// A place between a station and the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Along {
+pub(crate) struct Along {
     /// The station on the left.
     pub station: usize,
     /// Where between it and the next, 0 to 1.

@@ -7,13 +7,13 @@ mod warm;
 
 use crate::connector::{Law, State};
 use nalgebra::{DMatrix, DVector};
-pub use warm::WarmContact;
+pub(crate) use warm::WarmContact;
 
 /// The small system: with `N' = weight N(e)` and the scaled rider forces q',
 ///
 /// `e = e_free - connectors N' - connectors_riders q'`, `riders q' = riders_free - riders_connectors N'`.
 #[derive(Debug)]
-pub struct ContactProblem<'a> {
+pub(crate) struct ContactProblem<'a> {
     /// Elongations without connector and rider forces `[m]`.
     pub e_free: Vec<f64>,
     /// Flexibility among the connectors `[m/N]`.
@@ -32,7 +32,7 @@ pub struct ContactProblem<'a> {
 
 /// The answer of the small system.
 #[derive(Debug, Clone)]
-pub struct ContactSolution {
+pub(crate) struct ContactSolution {
     /// State of each connector.
     pub states: Vec<State>,
     /// Force of each connector, tension positive `[N]`.
@@ -47,7 +47,7 @@ pub struct ContactSolution {
 
 /// The active set came back to one it had been before, or the limit was reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NotSettled {
+pub(crate) struct NotSettled {
     /// A connector that still wanted to change.
     pub connector: usize,
     /// Newton solutions made.
@@ -59,7 +59,7 @@ impl ContactProblem<'_> {
     ///
     /// # Errors
     /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is singular.
-    pub fn solve(&self, law: &Law, first: &[State], limit: usize) -> Result<ContactSolution, NotSettled> {
+    pub(crate) fn solve(&self, law: &Law, first: &[State], limit: usize) -> Result<ContactSolution, NotSettled> {
         let mut states: Vec<State> = match law.state(0.0) {
             State::Both => vec![State::Both; first.len()],
             _ => first.to_vec(),

@@ -9,7 +9,7 @@ use nalgebra::{Cholesky, DMatrix, DVectorViewMut, Dyn};
 
 /// Connectors and their law, with the states, forces and elongations of the last load.
 #[derive(Debug)]
-pub struct WarmContact<'a> {
+pub(crate) struct WarmContact<'a> {
     law: Law,
     states: Vec<State>,
     seen: Vec<State>,
@@ -18,7 +18,7 @@ pub struct WarmContact<'a> {
 
 impl<'a> WarmContact<'a> {
     /// Connectors with the flexibility `connectors` `[m/N]` among them, at rest.
-    pub fn new(connectors: &'a DMatrix<f64>, law: Law) -> Self {
+    pub(crate) fn new(connectors: &'a DMatrix<f64>, law: Law) -> Self {
         let nc = connectors.nrows();
         Self {
             law,
@@ -41,7 +41,7 @@ impl<'a> WarmContact<'a> {
     /// # Errors
     /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is not positive definite; forces
     /// are then no solution's until [`Self::restart`].
-    pub fn solve(&mut self, e_free: &[f64], limit: usize) -> Result<usize, NotSettled> {
+    pub(crate) fn solve(&mut self, e_free: &[f64], limit: usize) -> Result<usize, NotSettled> {
         let (law, tangent) = (&self.law, &mut self.tangent);
         let ((), iterations) = settle(&mut self.states, &mut self.seen, limit, |states, asked| {
             tangent.solve(law, states, e_free)?;
@@ -52,14 +52,14 @@ impl<'a> WarmContact<'a> {
     }
 
     /// Goes on from a solution that was found otherwise.
-    pub fn restart(&mut self, solution: &ContactSolution) {
+    pub(crate) fn restart(&mut self, solution: &ContactSolution) {
         self.states.copy_from_slice(&solution.states);
         self.tangent.forces.copy_from_slice(&solution.forces);
         self.tangent.elongations.copy_from_slice(&solution.elongations);
     }
 
     /// Force of each connector, tension positive `[N]`.
-    pub fn forces(&self) -> &[f64] {
+    pub(crate) fn forces(&self) -> &[f64] {
         &self.tangent.forces
     }
 }

@@ -7,7 +7,7 @@ use super::{FemError, require};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// A matrix of the beam's 12 degrees of freedom.
-pub type BeamMatrix = SMatrix<f64, 12, 12>;
+pub(crate) type BeamMatrix = SMatrix<f64, 12, 12>;
 
 /// Section and material of a beam. Local x is the axis; `i_y` resists bending in the x-z plane, `i_z` in x-y.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,7 +162,7 @@ impl Beam {
     }
 
     /// Lumped mass: half the beam's mass, its polar inertia and its rotary inertia at each end.
-    pub fn mass_lumped(&self) -> BeamMatrix {
+    pub(crate) fn mass_lumped(&self) -> BeamMatrix {
         let s = &self.section;
         let half = 0.5 * s.density_kg_m3 * self.length;
         let mut m = BeamMatrix::zeros();

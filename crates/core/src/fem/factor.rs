@@ -68,11 +68,6 @@ impl Factor {
         self.symbolic.nrows()
     }
 
-    /// Entries of the factor.
-    pub fn nnz(&self) -> usize {
-        self.values.len()
-    }
-
     /// `x := A^-1 x`.
     pub fn solve(&self, x: &mut [f64]) {
         let n = x.len();
@@ -80,7 +75,7 @@ impl Factor {
     }
 
     /// `X := A^-1 X` for a block of columns.
-    pub fn solve_columns(&self, x: MatMut<'_, f64>) {
+    pub(crate) fn solve_columns(&self, x: MatMut<'_, f64>) {
         let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), Par::Seq));
         LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
@@ -180,7 +175,7 @@ mod tests {
                 x
             };
             let (sound, mut refused) = (solution(&factor), 0);
-            for i in 0..factor.nnz() {
+            for i in 0..factor.values.len() {
                 let right = factor.values[i];
                 factor.values[i] = 1.05 * right;
                 match factor.probe("plate", &a) {

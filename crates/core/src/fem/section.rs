@@ -20,7 +20,7 @@ pub struct ShellSection {
 
 impl ShellSection {
     /// `G = E / (2 (1 + nu))` `[Pa]`.
-    pub fn shear_modulus_pa(&self) -> f64 {
+    pub(crate) fn shear_modulus_pa(&self) -> f64 {
         0.5 * self.youngs_modulus_pa / (1.0 + self.poissons_ratio)
     }
 

@@ -8,7 +8,7 @@ use super::{FemError, membrane, plate};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// A matrix of the element's 24 degrees of freedom, in global directions.
-pub type ShellMatrix = SMatrix<f64, 24, 24>;
+pub(crate) type ShellMatrix = SMatrix<f64, 24, 24>;
 
 /// A shell element: its frame and section.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +79,7 @@ impl Shell {
     }
 
     /// Lumped mass: the nodes' shares `integral of N_i dA` on the diagonal blocks.
-    pub fn mass_lumped(&self) -> ShellMatrix {
+    pub(crate) fn mass_lumped(&self) -> ShellMatrix {
         let mut local = ShellMatrix::zeros();
         for (xi, eta) in GAUSS_2X2 {
             let at = self.frame.shape(xi, eta);

@@ -50,7 +50,7 @@ impl SymmetricMatrix {
     }
 
     /// Stored entries.
-    pub fn nnz(&self) -> usize {
+    pub(crate) fn nnz(&self) -> usize {
         self.inner.val().len()
     }
 
@@ -155,7 +155,7 @@ impl SparseRow {
 
     /// `x += c row^T`.
     #[inline]
-    pub fn add_to(&self, c: f64, x: &mut [f64]) {
+    pub(crate) fn add_to(&self, c: f64, x: &mut [f64]) {
         for &(i, v) in &self.0 {
             x[i] += c * v;
         }

@@ -16,7 +16,7 @@ pub fn mesh_module(design: &ModuleDesign, extra_y: &[f64]) -> ModuleMesh {
 
 /// Size of a mesh that has not been made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MeshSize {
+pub(crate) struct MeshSize {
     /// Lines along the module.
     pub lines_along: usize,
     /// Lines across.
@@ -26,7 +26,7 @@ pub struct MeshSize {
 }
 
 /// The size of the mesh of [`mesh_module`], counted from its lines.
-pub fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
+pub(crate) fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
     let Builder { x, y, z, .. } = Builder::new(design, extra_y);
     let (nx, ny) = (x.len(), y.len());
     let plates = |lines: &[f64], walls: &[f64]| {

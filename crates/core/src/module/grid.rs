@@ -91,7 +91,7 @@ impl Grid {
     }
 
     /// Bottom cells: their corner nodes in cyclic order and their area `[m^2]`.
-    pub fn bottom_cells(&self) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
+    pub(crate) fn bottom_cells(&self) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
         cells(self.x.len(), self.y.len()).map(|(i, j)| {
             let area = (self.x[i + 1] - self.x[i]) * (self.y[j + 1] - self.y[j]);
             (

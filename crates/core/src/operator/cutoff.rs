@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Forces up to this frequency are what the stated error is about `[Hz]`: ten times the band in which the bridge heaves and
 /// rolls, the pace at which contacts open and close.
-pub const REFERENCE_HZ: f64 = 5.0;
+const REFERENCE_HZ: f64 = 5.0;
 
 /// What an operator left out and how much it matters.
 #[derive(Debug, Clone, Copy, PartialEq)]

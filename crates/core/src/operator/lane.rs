@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// One crossing as its lane knows it.
 #[derive(Debug, Clone)]
-pub struct Passage {
+pub(crate) struct Passage {
     /// The vehicle on the deck.
     pub wheels: Arc<Wheels>,
     /// Its small flexibilities at the step length.

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Crossings side by side on one operator.
 #[derive(Debug)]
-pub struct Lanes {
+pub(crate) struct Lanes {
     pub(super) width: usize,
     most_nodes: usize,
     /// `1 / (2 k)` of the connectors at work.
@@ -30,7 +30,7 @@ pub struct Lanes {
 
 /// A lane's numbers by themselves.
 #[derive(Debug, Clone)]
-pub struct Saved {
+pub(crate) struct Saved {
     numbers: Vec<f64>,
     states: Vec<State>,
     beside: Beside,
@@ -40,7 +40,7 @@ pub struct Saved {
 
 impl Lanes {
     /// As many lanes as this machine's vectors have, with room for vehicles of `most_nodes` nodes.
-    pub fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
+    pub(crate) fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
         let width = InstructionPath::of_this_machine().lanes;
         let sizes = &operator.sizes;
         let lane = || Lane::new(sizes.connectors, most_nodes, newton_limit);
@@ -56,17 +56,12 @@ impl Lanes {
     }
 
     /// Number of lanes.
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.width
     }
 
-    /// Lanes that are free.
-    pub fn is_free(&self, lane: usize) -> bool {
-        self.lanes[lane].passage.is_none()
-    }
-
     /// Begins a crossing at rest, the front of the vehicle where it is one step before the first one.
-    pub fn begin(&mut self, operator: &BridgeOperator, lane: usize, passage: Passage, time_s: f64) {
+    pub(crate) fn begin(&mut self, operator: &BridgeOperator, lane: usize, passage: Passage, time_s: f64) {
         self.rest(lane);
         self.watch.begin(lane);
         let of = &mut self.lanes[lane];
@@ -92,14 +87,14 @@ impl Lanes {
     }
 
     /// Says where a lane's vehicle is at the end of the coming step.
-    pub fn place(&mut self, lane: usize, time_s: f64) {
+    pub(crate) fn place(&mut self, lane: usize, time_s: f64) {
         let of = &mut self.lanes[lane];
         of.time_s = time_s;
         of.front_x_m = of.passage.as_ref().map_or(0.0, |p| p.speed_m_s * time_s);
     }
 
     /// Frees a lane, which then rests.
-    pub fn end(&mut self, lane: usize) {
+    pub(crate) fn end(&mut self, lane: usize) {
         self.rest(lane);
         let of = &mut self.lanes[lane];
         of.passage = None;
@@ -117,22 +112,22 @@ impl Lanes {
     }
 
     /// Whether a lane's last step found no equilibrium; it then stands where it stood before.
-    pub fn unsettled(&self, lane: usize) -> Option<Unsettled> {
+    pub(crate) fn unsettled(&self, lane: usize) -> Option<Unsettled> {
         self.lanes[lane].unsettled
     }
 
     /// Whether a lane's energies are finite.
-    pub fn is_finite(&self, lane: usize) -> bool {
+    pub(crate) fn is_finite(&self, lane: usize) -> bool {
         self.motion.kinetic[lane].is_finite() && self.motion.strain[lane].is_finite()
     }
 
     /// What the solver did in a lane.
-    pub fn statistics(&mut self, lane: usize) -> &mut Statistics {
+    pub(crate) fn statistics(&mut self, lane: usize) -> &mut Statistics {
         &mut self.lanes[lane].statistics
     }
 
     /// A lane's numbers.
-    pub fn save(&mut self, lane: usize) -> Saved {
+    pub(crate) fn save(&mut self, lane: usize) -> Saved {
         let width = self.width;
         let numbers = self.motion.all().chain(self.watch.all());
         Saved {
@@ -147,7 +142,7 @@ impl Lanes {
     }
 
     /// Puts numbers back into a lane, or into another of the same operator.
-    pub fn restore(&mut self, lane: usize, saved: &Saved) {
+    pub(crate) fn restore(&mut self, lane: usize, saved: &Saved) {
         let width = self.width;
         let places = self.motion.all().chain(self.watch.all());
         let places = places.flat_map(|x| x.iter_mut().skip(lane).step_by(width));
@@ -163,7 +158,7 @@ impl Lanes {
     }
 
     /// Takes up a crossing that was saved elsewhere, with the small flexibilities of its step length.
-    pub fn resume(&mut self, lane: usize, passage: Passage, saved: &Saved) {
+    pub(crate) fn resume(&mut self, lane: usize, passage: Passage, saved: &Saved) {
         // a crossing without riding masses writes no inertia forces, so that none may be left of the one before
         self.rest(lane);
         let of = &mut self.lanes[lane];
@@ -175,7 +170,7 @@ impl Lanes {
     }
 
     /// Changes to another step length.
-    pub fn take_ride(&mut self, lane: usize, ride: Arc<Ride>) {
+    pub(crate) fn take_ride(&mut self, lane: usize, ride: Arc<Ride>) {
         let of = &mut self.lanes[lane];
         of.small.forget();
         if let Some(passage) = &mut of.passage {
@@ -184,7 +179,7 @@ impl Lanes {
     }
 
     /// Nodes of the largest vehicle that has room.
-    pub fn most_nodes(&self) -> usize {
+    pub(crate) fn most_nodes(&self) -> usize {
         self.most_nodes
     }
 
@@ -196,23 +191,23 @@ impl Lanes {
     }
 
     /// The passage of a lane.
-    pub fn passage(&self, lane: usize) -> Option<&Passage> {
+    pub(crate) fn passage(&self, lane: usize) -> Option<&Passage> {
         self.lanes[lane].passage.as_ref()
     }
 
     /// What a lane's crossing leaves behind, peaks in the order of positions and joints.
-    pub fn peaks(&self, lane: usize) -> LanePeaks {
+    pub(crate) fn peaks(&self, lane: usize) -> LanePeaks {
         self.watch.peaks(lane, self.width)
     }
 
     /// Deflection of a position now, positive downward `[m]`.
-    pub fn deflection_m(&self, lane: usize, position: usize) -> f64 {
+    pub(crate) fn deflection_m(&self, lane: usize, position: usize) -> f64 {
         // nothing is 0, not -0
         0.0 - self.scratch.w[(position - 1) * self.width + lane]
     }
 
     /// Force of a joint now, its connectors added, tension positive `[N]`.
-    pub fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
+    pub(crate) fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
         let per_joint = self.watch.per_joint();
         let forces = self.motion.n.chunks_exact(self.width).skip((joint - 2) * per_joint);
         forces.take(per_joint).map(|n| n[lane]).sum()

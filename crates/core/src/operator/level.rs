@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 /// f the forces in the balance at alpha; what the modes leave out by the same rule without mass, stiffness 1 and damping a:
 /// `ds = rho (f - s_0 - on_s1 s'_0 - on_s2 s''_0)`.
 #[derive(Debug)]
-pub struct Level {
+pub(crate) struct Level {
     pub(super) scheme: Scheme,
     pub(super) rayleigh: Rayleigh,
     pub(super) c: Vec<f64>,
@@ -49,7 +49,7 @@ pub(super) struct Panels {
 
 impl Level {
     /// The constants of steps of length `time_step_s` with a spectral radius and damping.
-    pub fn new(operator: &BridgeOperator, time_step_s: f64, spectral_radius: f64, rayleigh: Rayleigh) -> Self {
+    pub(crate) fn new(operator: &BridgeOperator, time_step_s: f64, spectral_radius: f64, rayleigh: Rayleigh) -> Self {
         let s = Scheme::new(time_step_s, spectral_radius);
         let Rayleigh { a, b } = rayleigh;
         let (c_m, c_c, c_k) = s.effective();

@@ -5,8 +5,8 @@
 //!
 //! `u = Phi q + K^-1 (what the modes leave out)`: the modes obey `q'' + (a omega^2 + b) q' + omega^2 q = Phi^T f`, the
 //! rest answers without mass, `K (u + a u') = f`, which leaves residual flexibilities R between connectors B, deck L and
-//! observed rows V. [`BridgeOperator`] holds them, [`Level`] what one step length makes of them, [`Wheels`] what a
-//! vehicle sees of the deck, [`Lanes`] the motion.
+//! observed rows V. [`BridgeOperator`] holds them, `Level` what one step length makes of them, `Wheels` what a
+//! vehicle sees of the deck, `Lanes` the motion.
 
 mod basis;
 mod beside;
@@ -27,12 +27,11 @@ mod wheels;
 
 pub use basis::{BridgeOperator, OperatorError};
 pub use cutoff::Cutoff;
-pub use lane::Passage;
-pub use lanes::{Lanes, Saved};
-pub use level::Level;
+pub(crate) use lane::Passage;
+pub(crate) use lanes::Lanes;
+pub(crate) use level::Level;
 pub use panel::InstructionPath;
 pub use parts::{OperatorParts, SOURCES};
-pub use settle::Unsettled;
-pub use step::step;
-pub use watch::LanePeaks;
-pub use wheels::{Ride, Wheels};
+pub(crate) use settle::Unsettled;
+pub(crate) use step::step;
+pub(crate) use wheels::{Ride, Wheels};

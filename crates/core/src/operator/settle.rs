@@ -37,7 +37,7 @@ pub(super) struct Small {
 
 /// The active set came back to one it had been before, or the limit was reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Unsettled {
+pub(crate) struct Unsettled {
     /// A connector that still wanted to change.
     pub connector: usize,
     /// Newton solutions made.

@@ -22,7 +22,7 @@ struct Step<'a> {
 
 /// Steps every lane at work to where [`Lanes::place`] has put it. A lane whose contact does not settle stands as before
 /// and says so by [`Lanes::unsettled`].
-pub fn step(lanes: &mut Lanes, operator: &BridgeOperator, level: &Level, newton_limit: usize) {
+pub(crate) fn step(lanes: &mut Lanes, operator: &BridgeOperator, level: &Level, newton_limit: usize) {
     Arch::new().dispatch(Step {
         operator,
         level,

@@ -318,7 +318,7 @@ impl<S: Simd> Peaks<'_, S> {
 
 /// What a lane's crossing leaves behind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LanePeaks {
+pub(crate) struct LanePeaks {
     /// Downward and upward of each position `[m]`.
     pub positions: Vec<[Peak; 2]>,
     /// Of each joint the sum, then each connector `[N]`.
@@ -339,7 +339,7 @@ pub struct LanePeaks {
 
 impl LanePeaks {
     /// Peaks of the joints 2 to modules with their connectors at `y_m`.
-    pub fn joints(&self, y_m: &[f64]) -> Vec<JointPeaks> {
+    pub(crate) fn joints(&self, y_m: &[f64]) -> Vec<JointPeaks> {
         (2..)
             .zip(self.forces.chunks_exact(1 + y_m.len()))
             .map(|(joint, forces)| JointPeaks {

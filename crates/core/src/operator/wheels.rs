@@ -31,7 +31,7 @@ pub(super) struct Node {
 
 /// A vehicle on an operator's deck.
 #[derive(Debug)]
-pub struct Wheels {
+pub(crate) struct Wheels {
     pub(super) vehicle: Vehicle,
     /// Lines for the weights, those that carry the same taken together.
     pub(super) weights: Vec<WheelLine>,
@@ -50,7 +50,7 @@ pub struct Wheels {
 
 impl Wheels {
     /// A vehicle on the deck of an operator.
-    pub fn new(operator: &BridgeOperator, vehicle: &Vehicle) -> Self {
+    pub(crate) fn new(operator: &BridgeOperator, vehicle: &Vehicle) -> Self {
         let track = &operator.track;
         let mut lines: Vec<(f64, Vec<OnLine>)> = Vec::new();
         let mut point_lines = Vec::new();
@@ -112,12 +112,12 @@ impl Wheels {
     }
 
     /// The most nodes of the deck under the masses at once.
-    pub fn most_nodes(&self) -> usize {
+    pub(crate) fn most_nodes(&self) -> usize {
         self.masses.len() * (self.band + 1)
     }
 
     /// The same of a vehicle that is not on the deck yet, or more.
-    pub fn most_nodes_of(operator: &BridgeOperator, vehicle: &Vehicle) -> usize {
+    pub(crate) fn most_nodes_of(operator: &BridgeOperator, vehicle: &Vehicle) -> usize {
         let mut lines: Vec<f64> = vehicle.points().map(|p| p.y_m).collect();
         lines.sort_by(f64::total_cmp);
         lines.dedup();
@@ -214,7 +214,7 @@ fn band(track: &Track, vehicle: &Vehicle) -> usize {
 
 /// Small flexibilities of a step at the deck's stations under the masses of one vehicle.
 #[derive(Debug)]
-pub struct Ride {
+pub(crate) struct Ride {
     /// Stations farther apart are not kept.
     pub(super) band: usize,
     lines: usize,
@@ -228,7 +228,7 @@ pub struct Ride {
 
 impl Ride {
     /// The flexibilities of a vehicle at a step length.
-    pub fn new(operator: &BridgeOperator, level: &Level, wheels: &Wheels) -> Self {
+    pub(crate) fn new(operator: &BridgeOperator, level: &Level, wheels: &Wheels) -> Self {
         let (m, nc) = (operator.sizes.modes, operator.sizes.connectors);
         let (lines, stations, band) = (wheels.masses.len(), wheels.stations, wheels.band);
         let row = |node: usize| wheels.masses[node / stations].reach(node % stations, wheels.width);
