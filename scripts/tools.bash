@@ -4,7 +4,7 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck disable=SC2034 # for who reads this
-page=$root/crates/cli/page
+page=$root/crates/view/page
 
 # Programs, tests, lints and documentation use one profile, so that nothing is compiled twice.
 profile=${PONTOON_PROFILE:-quick}

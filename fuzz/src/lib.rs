@@ -1,14 +1,14 @@
 //! Bytes given to the readers as a run gives them a file: a study, a bridge, a reference, a file of a journal.
 //!
 //! Knows where each file lies and what a run asks of it before it solves anything. Does not know who makes the bytes: a
-//! fuzzer, or the test that replays what is kept (`tests/tests/corpus.rs`). Whatever the bytes are, each function returns;
+//! fuzzer, or the test that replays what is kept (`tests/house/corpus.rs`). Whatever the bytes are, each function returns;
 //! what a reader says of them is not judged here.
 
-use pontoon_study::Study;
-use pontoon_study::document::read;
-use pontoon_study::journal::{Book, FOLDER};
-use pontoon_study::plan::Jobs;
-use pontoon_study::reference::Reference;
+use pontoon_journal::{Book, FOLDER};
+use pontoon_judge::reference::Reference;
+use pontoon_plan::input::read;
+use pontoon_plan::job::Jobs;
+use pontoon_plan::study_file::Study;
 use pontoon_study::sweep::{explain, standings};
 use serde_json::Value;
 use std::fs;

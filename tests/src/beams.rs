@@ -11,7 +11,7 @@ use pontoon_core::vehicle::{Axle, Inertia, Vehicle, VehicleDesign};
 use pontoon_core::water::WaterDistribution;
 use std::array::from_fn;
 
-/// Young's modulus of all sections [Pa]; what is given is the product with it.
+/// Young's modulus of all sections `[Pa]`; what is given is the product with it.
 const E_PA: f64 = 2e11;
 
 /// A module of beams; stiffness and mass are those of both lines together.
@@ -21,21 +21,21 @@ const E_PA: f64 = 2e11;
 /// nothing and the posts carry loads down and connector forces as moments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BeamModule {
-    /// Length [m].
+    /// Length `[m]`.
     pub length_m: f64,
-    /// Distance of the two lines [m].
+    /// Distance of the two lines `[m]`.
     pub breadth_m: f64,
-    /// Height of the posts [m].
+    /// Height of the posts `[m]`.
     pub depth_m: f64,
     /// Elements along a line.
     pub elements: usize,
-    /// EI [N m^2].
+    /// EI `[N m^2]`.
     pub bending_stiffness_n_m2: f64,
-    /// EA [N].
+    /// EA `[N]`.
     pub axial_stiffness_n: f64,
-    /// Mass per length [kg/m].
+    /// Mass per length `[kg/m]`.
     pub mass_kg_m: f64,
-    /// EI [N m^2] and EA [N] of the two posts at one place.
+    /// EI `[N m^2]` and EA `[N]` of the two posts at one place.
     pub posts: (f64, f64),
 }
 
@@ -113,7 +113,7 @@ impl BeamModule {
         })
     }
 
-    /// Places of the two lines across [m].
+    /// Places of the two lines across `[m]`.
     pub fn lines(&self) -> [f64; 2] {
         from_fn(|i| (i as f64 - 0.5) * self.breadth_m)
     }
@@ -156,7 +156,7 @@ impl BeamModule {
     }
 }
 
-/// A section by its products with E, EI [N m^2] and EA [N], and its mass per length [kg/m]; as stiff in torsion (G = E/2)
+/// A section by its products with E, EI `[N m^2]` and EA `[N]`, and its mass per length `[kg/m]`; as stiff in torsion (G = E/2)
 /// as in bending.
 fn section(ei_n_m2: f64, ea_n: f64, mass_kg_m: f64) -> BeamSection {
     let area_m2 = ea_n / E_PA;

@@ -21,27 +21,27 @@ pub struct Chain {
     pub modules: usize,
     /// A module.
     pub module: BeamModule,
-    /// Hydrostatic stiffness a metre of bridge [N/m^2].
+    /// Hydrostatic stiffness a metre of bridge `[N/m^2]`.
     pub hydrostatic_stiffness_n_m2: f64,
-    /// Added mass a metre of bridge [kg/m].
+    /// Added mass a metre of bridge `[kg/m]`.
     pub added_mass_kg_m: f64,
-    /// Stiffness of a joint in one sense [N/m].
+    /// Stiffness of a joint in one sense `[N/m]`.
     pub joint_stiffness_n_m: f64,
-    /// Tension gap [m].
+    /// Tension gap `[m]`.
     pub gap_tension_m: f64,
-    /// Compression gap [m].
+    /// Compression gap `[m]`.
     pub gap_compression_m: f64,
     /// On everything but the connectors.
     pub rayleigh: Rayleigh,
-    /// Weight that moves [N].
+    /// Weight that moves `[N]`.
     pub weight_n: f64,
-    /// Length over which it is spread [m].
+    /// Length over which it is spread `[m]`.
     pub footprint_length_m: f64,
     /// Points that carry it.
     pub points: usize,
-    /// Connection, linear or with the gaps, and speed [m/s].
+    /// Connection, linear or with the gaps, and speed `[m/s]`.
     pub crossings: Vec<(bool, f64)>,
-    /// Time after the last point has left [s].
+    /// Time after the last point has left `[s]`.
     pub tail_s: f64,
 }
 

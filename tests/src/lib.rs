@@ -26,10 +26,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The paper's gaps, 28 and 5.5 mm.
 pub const PAPER_GAPS: Connection = gaps(0.028, 0.0055);
 
-/// The paper's load [N].
+/// The paper's load `[N]`.
 pub const PAPER_LOAD_N: f64 = 230_300.0;
 
-/// A connection with gaps [m].
+/// A connection with gaps `[m]`.
 pub const fn gaps(gap_tension_m: f64, gap_compression_m: f64) -> Connection {
     Connection::Nonlinear {
         gap_tension_m,
@@ -246,7 +246,7 @@ pub fn axles(list: &[(f64, f64, f64)], inertia: Inertia, patch_points: usize) ->
     operated::wide_axles(&list, inertia, patch_points)
 }
 
-/// Frequency of the mode of a name [Hz].
+/// Frequency of the mode of a name `[Hz]`.
 pub fn frequency_hz(modes: &[Mode], name: &str) -> f64 {
     let mode = modes.iter().find(|m| m.name == name);
     let names = || modes.iter().map(|m| m.name.as_str()).collect::<Vec<_>>();

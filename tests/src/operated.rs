@@ -125,13 +125,13 @@ fn over_largest(found: &[f64], expected: &[f64]) -> f64 {
     if found == expected { 0.0 } else { apart(found, expected) }
 }
 
-/// Peaks of all positions, deflection and uplift in turn [m].
+/// Peaks of all positions, deflection and uplift in turn `[m]`.
 pub fn deflections(r: &CrossingResponse) -> Vec<f64> {
     let of = |p: &[Peak; 2]| [p[0].value, p[1].value];
     r.positions.iter().flat_map(|p| of(&[p.deflection, p.uplift])).collect()
 }
 
-/// Peaks of all joints and their connectors, compression and tension in turn [N].
+/// Peaks of all joints and their connectors, compression and tension in turn `[N]`.
 pub fn forces(r: &CrossingResponse) -> Vec<f64> {
     let of = |p: &ForcePeaks| [p.compression.value, p.tension.value];
     let joints = r.joints.iter();

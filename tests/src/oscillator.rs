@@ -2,7 +2,7 @@
 //!
 //! Knows the exact motion of a damped oscillator under a force linear in time. Does not know where the force comes from.
 
-/// A damped oscillator, under-damped: mass [kg], damping [kg/s], stiffness [N/m].
+/// A damped oscillator, under-damped: mass `[kg]`, damping `[kg/s]`, stiffness `[N/m]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillator {
     /// m.
@@ -13,7 +13,7 @@ pub struct Oscillator {
     pub stiffness: f64,
 }
 
-/// Place [m] and velocity [m/s].
+/// Place `[m]` and velocity `[m/s]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// u.
@@ -23,7 +23,7 @@ pub struct Motion {
 }
 
 impl Oscillator {
-    /// The motion a time `t` after `from`, under the force `p + r t` [N, N/s].
+    /// The motion a time `t` after `from`, under the force `p + r t` `[N, N/s]`.
     ///
     /// With `u_p = (p + r t)/k - c r/k^2` the rest is free: `e^(-h t) (a cos w t + b sin w t)`, `h = c/2m`, `w^2 = k/m - h^2`.
     pub fn after(&self, t: f64, from: Motion, p: f64, r: f64) -> Motion {

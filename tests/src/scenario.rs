@@ -16,10 +16,10 @@ pub const BRIDGE: &str = "fu2005";
 /// The operator's tolerance.
 pub const OPERATOR_TOLERANCE: f64 = 6e-4;
 
-/// The time step [s].
+/// The time step `[s]`.
 pub const TIME_STEP_S: f64 = 0.01;
 
-/// How long a crossing goes on after the vehicle has left [s].
+/// How long a crossing goes on after the vehicle has left `[s]`.
 pub const TAIL_S: f64 = 2.0;
 
 /// The bridge made ready, with its operator.

@@ -3,8 +3,8 @@
 //! Knows flags and their help. Does not know what they lead to.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use pontoon_study::plan::Shard;
-use pontoon_study::spec::ModelSpec;
+use pontoon_plan::job::Shard;
+use pontoon_plan::study_file::ModelSpec;
 use std::path::PathBuf;
 
 /// Parametric studies of the hydroelastic response of floating ribbon bridges.
@@ -334,11 +334,11 @@ pub struct ExportArguments {
     /// Modes of the bridge on its supports in place of floating free.
     #[arg(long)]
     pub supports: bool,
-    /// Weight of a vehicle that stands on the bridge [N]: a static case. The vehicle is the study's, a single footprint of
+    /// Weight of a vehicle that stands on the bridge, in N: a static case. The vehicle is the study's, a single footprint of
     /// 3.35 m on two tracks of a bridge file.
     #[arg(long, value_name = "N")]
     pub load_n: Option<f64>,
-    /// Place of its centre [m].
+    /// Place of its centre, in m.
     #[arg(long, value_name = "X", requires = "load_n", conflicts_with = "load_position")]
     pub load_x_m: Option<f64>,
     /// Position of its centre, 1 to modules + 1.
@@ -347,10 +347,10 @@ pub struct ExportArguments {
     /// How the connectors work under it; nonlinear where absent.
     #[arg(long, value_enum, requires = "load_n")]
     pub connection: Option<ConnectionArgument>,
-    /// Tension gap under it [m]; the bridge's where absent.
+    /// Tension gap under it, in m; the bridge's where absent.
     #[arg(long, value_name = "X", requires = "load_n")]
     pub gap_tension_m: Option<f64>,
-    /// Compression gap under it [m]; the bridge's where absent.
+    /// Compression gap under it, in m; the bridge's where absent.
     #[arg(long, value_name = "X", requires = "load_n")]
     pub gap_compression_m: Option<f64>,
     /// Number of the job, from 0; the one with the largest deflection where absent.

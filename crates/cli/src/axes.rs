@@ -3,7 +3,7 @@
 //! Knows designs as points. Does not know what the points lead to.
 
 use crate::summary::told;
-use pontoon_study::Study;
+use pontoon_plan::study_file::Study;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};

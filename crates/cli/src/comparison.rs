@@ -7,9 +7,10 @@ use crate::terminal::{BAD, FAINT, GOOD, HEAD, Look, NOTABLE};
 use crate::words;
 use anstyle::Style;
 use anyhow::Result;
-use pontoon_study::compare::{Comparison, Line, Verdict};
+use pontoon_judge::compare::{Comparison, Line, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
+use unicode_width::UnicodeWidthStr;
 
 const COLUMNS: [&str; 7] = ["check", "expected", "got", "deviation", "margin", "verdict", "remark"];
 
@@ -56,7 +57,7 @@ pub fn text(compared: &Comparison, look: Look) -> String {
     let table = words::table(&heads, &right(&heads, rows, &[4, 5]));
     let fits = look
         .width
-        .is_none_or(|width| table.lines().all(|line| line.chars().count() <= width));
+        .is_none_or(|width| table.lines().all(|line| line.width() <= width));
     let checks = if fits {
         let mut written = table.lines();
         let head = look.painted(HEAD, written.next().unwrap_or_default()) + "\n";

@@ -3,17 +3,17 @@
 //! Knows how a place is shown and what is said at it. Does not know how it is found in the text.
 
 use crate::terminal::Look;
-use crate::words::printable;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, renderer::DecorStyle};
-use pontoon_study::Refusal;
-use pontoon_study::document::{Spot, SpotKind, spot};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Spot, SpotKind, spot};
+use pontoon_view::labels::printable;
 use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
-/// Largest file that is read again to show a place of it [bytes].
+/// Largest file that is read again to show a place of it `[bytes]`.
 const LARGEST: u64 = 1 << 26;
-/// Longest label [characters]: what is longer is in the message above it.
+/// Longest label `[characters]`: what is longer is in the message above it.
 const LONGEST_LABEL: usize = 72;
 /// Characters of a line where the place does not say how many it has.
 const WIDTH: usize = 120;

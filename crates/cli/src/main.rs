@@ -4,11 +4,12 @@
 //! |---|---|
 //! | `args` | the words that are understood |
 //! | `axes` | the axes of a study for people |
+//! | `bar` | the progress bar that stands on the terminal |
 //! | `commands` | a file a command: what it asks of the study's rooms and how it answers |
+//! | `commit` | the sources that the program was built from |
 //! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
+//! | `ending` | how a command ended that could go on to its end |
 //! | `excerpt` | the place of a file that a refusal is about, with its line and a mark under it |
-//! | `figures` | figures for papers: SVG and PNG |
-//! | `page` | the page of a report, whole |
 //! | `signals` | interrupts and questions from outside |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
 //! | `watching` | what is told of a sweep |
@@ -21,11 +22,12 @@
 
 mod args;
 mod axes;
+mod bar;
 mod commands;
+mod commit;
 mod comparison;
+mod ending;
 mod excerpt;
-mod figures;
-mod page;
 mod progress;
 mod signals;
 mod summary;
@@ -35,31 +37,14 @@ mod words;
 
 use args::{Arguments, Command, Format};
 use clap::{CommandFactory, Parser, error::ErrorKind};
-use pontoon_study::Refusal;
-use pontoon_study::calibrate::CalibrateError;
+use ending::Ending;
+use pontoon_judge::calibrate::CalibrateError;
+use pontoon_plan::input::Refusal;
+use pontoon_results::ResultsError;
 use pontoon_study::sweep::SweepError;
-use pontoon_study::tables::ResultsError;
+use pontoon_view::drawing::DrawingError;
 use std::process::ExitCode;
 use terminal::Look;
-
-/// Commit of the sources that this program was built from, where they were a repository's.
-const COMMIT: Option<&str> = option_env!("PONTOON_COMMIT");
-
-/// How a command ended that could go on to its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Ending {
-    /// All good.
-    Good,
-    /// Something fell short.
-    Short,
-}
-
-impl Ending {
-    /// How two things ended that were asked for at once.
-    fn and(self, other: Self) -> Self {
-        if self == Self::Good { other } else { self }
-    }
-}
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -115,6 +100,9 @@ fn refusal_of(error: &anyhow::Error) -> Option<&Refusal> {
         return Some(refused);
     }
     if let Some(CalibrateError::Refused(refused)) = error.downcast_ref() {
+        return Some(refused);
+    }
+    if let Some(DrawingError::Refused(refused)) = error.downcast_ref() {
         return Some(refused);
     }
     if let Some(ResultsError::Refused(refused)) = error.downcast_ref() {

@@ -2,6 +2,7 @@
 //!
 //! Knows terminals. Does not know what runs.
 
+use crate::bar::set_bar;
 use crate::terminal::Look;
 use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -9,6 +10,7 @@ use pontoon_study::run::{Progress, Tally};
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use unicode_width::UnicodeWidthStr;
 
 /// How a run is shown.
 pub enum Shown {
@@ -35,22 +37,6 @@ const LONGEST_BAR: usize = 24;
 const SHORTEST_BAR: usize = 5;
 /// Characters of most lines beside the bar.
 const BESIDE_BAR: usize = 62;
-
-/// The bar that is on the terminal.
-static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
-
-/// Writes on standard error with the bar out of the way.
-pub fn aside(write: impl FnOnce()) {
-    let bar = BAR.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    match bar {
-        Some(bar) => bar.suspend(write),
-        None => write(),
-    }
-}
-
-fn set_bar(bar: Option<&ProgressBar>) {
-    *BAR.lock().unwrap_or_else(PoisonError::into_inner) = bar.cloned();
-}
 
 impl Shown {
     /// What fits where standard error goes.
@@ -166,7 +152,7 @@ fn line(tally: Tally, seconds: f64, width: Option<usize>) -> String {
         (format!(", {}", words::rate(rate)), format!(", {left} left"))
     };
     let said = |before: &str, rate: &str| format!("{done}/{total} jobs{before}, {failed} failed{rate}{left}");
-    let fits = |said: &String| width.is_none_or(|width| said.chars().count() < width);
+    let fits = |said: &String| width.is_none_or(|width| said.width() < width);
     let all = [said(&before, &rate), said("", &rate)];
     all.into_iter().find(fits).unwrap_or_else(|| said("", ""))
 }

@@ -3,7 +3,7 @@
 //! Knows what SIGINT, SIGTERM and SIGUSR1 ask of a run. Does not know how a run stops.
 
 use crate::words;
-use pontoon_study::journal::Writer;
+use pontoon_journal::Writer;
 use pontoon_study::run::{Stop, Tally, Why};
 use pontoon_study::sweep::ended_now;
 use std::process::exit;

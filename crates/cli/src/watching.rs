@@ -5,7 +5,7 @@
 use crate::progress::Shown;
 use crate::signals::Heard;
 use crate::words;
-use pontoon_study::journal::Writer;
+use pontoon_journal::Writer;
 use pontoon_study::run::{Progress, Tally};
 use pontoon_study::sweep::{Apart, ApartEnd, Watcher};
 use std::os::unix::process::ExitStatusExt;

@@ -2,8 +2,10 @@
 //!
 //! Knows text. Does not know what it says.
 
+pub use pontoon_view::labels::printable;
 use serde_json::Value;
 use std::io::{self, BufWriter, ErrorKind, Write};
+use unicode_width::UnicodeWidthStr;
 
 /// Writes results on standard output. A reader that has left (a closed pipe) wants no more, which is no error.
 ///
@@ -27,7 +29,7 @@ pub fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Resu
 
 /// Writes a line on standard error, where it is nobody's loss if nobody reads it.
 pub fn note(line: &str) {
-    crate::progress::aside(|| {
+    crate::bar::aside(|| {
         let _ = writeln!(io::stderr().lock(), "{line}");
     });
 }
@@ -39,8 +41,8 @@ pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
         .map(|row| columns.iter().zip(row).map(|(c, v)| cell(c, v)).collect())
         .collect();
     let width = |i: usize| {
-        let longest = cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0);
-        longest.max(columns[i].chars().count())
+        let longest = cells.iter().map(|row| row[i].width()).max().unwrap_or(0);
+        longest.max(columns[i].width())
     };
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();
     let numbers: Vec<bool> = (0..columns.len())
@@ -50,11 +52,11 @@ pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
         let mut text = String::new();
         for (i, cell) in row.iter().enumerate() {
             let gap = if i == 0 { "" } else { "  " };
-            let width = widths[i];
+            let blanks = " ".repeat(widths[i] - cell.width());
             text += &if numbers[i] {
-                format!("{gap}{cell:>width$}")
+                format!("{gap}{blanks}{cell}")
             } else {
-                format!("{gap}{cell:<width$}")
+                format!("{gap}{cell}{blanks}")
             };
         }
         text.trim_end().to_owned() + "\n"
@@ -62,41 +64,22 @@ pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
     cells.iter().fold(line(columns), |text, row| text + &line(row))
 }
 
-/// A word that keeps to its line: a blank for whatever is no character to be seen.
-pub fn printable(word: &str) -> String {
-    word.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
-}
-
 /// A text in lines of a width, broken at blanks; all but the first begin with blanks. A word that is longer stays whole.
 pub fn wrapped(text: &str, width: usize, indent: usize) -> String {
-    let mut lines = String::new();
-    let mut used = 0;
-    // blanks at the beginning are the text's own
-    let begin = text.len() - text.trim_start().len();
-    for (i, word) in text[begin..].split(' ').enumerate() {
-        let length = word.chars().count();
-        if i == 0 {
-            lines += &text[..begin];
-            used = begin;
-        } else if used + 1 + length > width {
-            lines.truncate(lines.trim_end().len());
-            lines += &format!("\n{}", " ".repeat(indent));
-            used = indent;
-        } else {
-            lines.push(' ');
-            used += 1;
-        }
-        lines += word;
-        used += length;
-    }
-    lines.truncate(lines.trim_end().len());
-    lines + "\n"
+    let indent = " ".repeat(indent);
+    let options = textwrap::Options::new(width)
+        .subsequent_indent(&indent)
+        .break_words(false)
+        .word_separator(textwrap::WordSeparator::AsciiSpace)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .wrap_algorithm(textwrap::WrapAlgorithm::FirstFit);
+    textwrap::fill(text, options) + "\n"
 }
 
 /// A list behind its beginning, in lines of a width, broken between its entries where they fit a line; empty ones left out.
 pub fn listed(begin: &str, entries: impl Iterator<Item = impl AsRef<str>>, width: usize, indent: usize) -> String {
     const KEPT: &str = "\u{a0}";
-    let fits = |entry: &str| indent + entry.chars().count() < width;
+    let fits = |entry: &str| indent + entry.width() < width;
     let kept = |entry: &str| {
         if fits(entry) {
             entry.replace(' ', KEPT)

@@ -97,7 +97,7 @@ impl SuperElement {
 
     /// Whether this condenses stiffness `k` and mass `m`, for one motion z of its dofs each: the slaves of `k T z` are in
     /// balance and its masters feel `k' z`, the modes at rest; `T^T m T z` is `m' z`. Gives the larger backward error as a
-    /// share of what [`Factor::probe`] allows. Verified by `tests/tests/probe.rs`.
+    /// share of what [`Factor::probe`] allows. Verified by `tests/solvers/probe.rs`.
     ///
     /// # Errors
     /// [`FemError::BadFactor`] where one is above: this is no super-element of `k` and `m`.

@@ -3,12 +3,12 @@
 //! Knows which bridge is meant (the whole, its single module, free or on its supports). Does not know how modes are
 //! found or named.
 
-use crate::spec::{BridgeFile, ModelSpec};
 use pontoon_core::analysis::{AnalysisError, modes};
 use pontoon_core::bridge::{Bridge, Ends, PreparedModule};
+use pontoon_plan::study_file::{BridgeFile, ModelSpec};
 
 pub use pontoon_core::bridge::BridgeError;
-use serde::{Deserialize, Serialize};
+use pontoon_results::ModeRow;
 use thiserror::Error;
 
 /// What is asked.
@@ -22,25 +22,6 @@ pub struct ModesRequest {
     pub supports: bool,
     /// Whether the single module is meant, floating alone.
     pub module: bool,
-}
-
-/// One mode; the shares are those of its kinetic energy.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ModeRow {
-    /// Its number, from 1.
-    pub number: usize,
-    /// Natural frequency [Hz].
-    pub frequency_hz: f64,
-    /// Name of its shape.
-    pub shape: String,
-    /// Vertical share.
-    pub vertical_share: f64,
-    /// Share of torsion.
-    pub torsion_share: f64,
-    /// Horizontal share.
-    pub horizontal_share: f64,
-    /// Share along the bridge.
-    pub axial_share: f64,
 }
 
 /// Why there are no modes.

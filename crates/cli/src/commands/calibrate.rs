@@ -1,15 +1,15 @@
 //! `pontoon calibrate`: a bridge's numbers identified from references.
 
-use crate::Ending;
 use crate::args::{CalibrateArguments, Common, Format};
+use crate::ending::Ending;
 use crate::words;
 use anyhow::{Context, Result};
-use pontoon_study::Refusal;
-use pontoon_study::calibrate::{Calibration, Parameters, Task};
-use pontoon_study::document::pretty;
-use pontoon_study::reference::Reference;
-use pontoon_study::spec::read_bridge;
-use pontoon_study::tables::Folder;
+use pontoon_journal::place::Folder;
+use pontoon_judge::calibrate::{Calibration, Parameters, Task};
+use pontoon_judge::reference::Reference;
+use pontoon_plan::input::Refusal;
+use pontoon_plan::input::pretty;
+use pontoon_plan::study_file::read_bridge;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,13 +1,13 @@
 //! `pontoon compare`: results held against a reference or against older results.
 
-use crate::Ending;
 use crate::args::{Common, CompareArguments};
+use crate::ending::Ending;
 use crate::{comparison, words};
 use anyhow::Result;
-use pontoon_study::Refusal;
-use pontoon_study::compare::{Tolerances, against_old, against_reference};
-use pontoon_study::reference::Reference;
-use pontoon_study::tables::Results;
+use pontoon_judge::compare::{Tolerances, against_old, against_reference};
+use pontoon_judge::reference::Reference;
+use pontoon_plan::input::Refusal;
+use pontoon_results::Results;
 
 /// Compares and writes a line a check.
 pub fn compare(arguments: &CompareArguments, common: Common) -> Result<Ending> {

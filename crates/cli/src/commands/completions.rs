@@ -1,7 +1,7 @@
 //! `pontoon completions`: what makes a shell complete the words of this program.
 
-use crate::Ending;
 use crate::args::{Arguments, CompletionsArguments};
+use crate::ending::Ending;
 use crate::words;
 use anyhow::Result;
 use clap::{Arg, Command, CommandFactory};

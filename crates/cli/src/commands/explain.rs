@@ -1,7 +1,7 @@
 //! `pontoon explain`: why a job ran or will run.
 
-use crate::Ending;
 use crate::args::{Common, ExplainArguments, Format};
+use crate::ending::Ending;
 use crate::words;
 use anyhow::Result;
 use pontoon_study::sweep::{Explanation, explain as explain_job};

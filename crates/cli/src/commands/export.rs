@@ -1,12 +1,12 @@
 //! `pontoon export`: mode shapes, static cases and crossings as VTK files.
 
-use crate::Ending;
 use crate::args::{Common, ConnectionArgument, ExportArguments, Format};
+use crate::ending::Ending;
 use crate::words;
 use anyhow::Result;
-use pontoon_study::Refusal;
-use pontoon_study::export::{ExportError, Exported, LoadRequest, Request, export as write};
+use pontoon_plan::input::Refusal;
 use pontoon_study::modes::BridgeError;
+use pontoon_view::export::{ExportError, Exported, LoadRequest, Request, export as write};
 use serde_json::{Value, json};
 
 /// Writes what is asked for and says which files to open.

@@ -1,14 +1,14 @@
 //! `pontoon man`: manual pages, one a command.
 
-use crate::Ending;
 use crate::args::{Arguments, Common, Format, ManArguments};
+use crate::ending::Ending;
 use crate::words;
 use anyhow::{Context, Result};
 use clap::builder::Resettable;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
-use pontoon_study::Refusal;
-use pontoon_study::tables::Folder;
+use pontoon_journal::place::Folder;
+use pontoon_plan::input::Refusal;
 use serde_json::json;
 
 /// Writes the pages of the definitions that words are understood by.

@@ -1,8 +1,8 @@
 //! `pontoon merge`: shards to the results of the whole study.
 
 use super::run::answer;
-use crate::Ending;
 use crate::args::{Common, MergeArguments};
+use crate::ending::Ending;
 use crate::progress::Shown;
 use crate::signals::Heard;
 use crate::watching::Watching;
@@ -16,7 +16,7 @@ pub fn merge(arguments: &MergeArguments, common: Common) -> Result<Ending> {
     let setting = SweepSetting {
         out: arguments.out.clone(),
         any_instructions: arguments.any_instructions,
-        commit: crate::COMMIT.map(str::to_owned),
+        commit: crate::commit::COMMIT.map(str::to_owned),
         ..SweepSetting::default()
     };
     let watching = Watching::new(Shown::fitting(common.quiet), &heard, None);

@@ -1,14 +1,15 @@
 //! `pontoon modes`: natural frequencies with the name of each shape.
 
-use crate::Ending;
 use crate::args::{Common, Format, ModesArguments};
+use crate::ending::Ending;
 use crate::terminal::Look;
 use crate::words;
 use anyhow::Result;
-use pontoon_study::Refusal;
+use pontoon_plan::input::Refusal;
+use pontoon_plan::study_file::read_bridge;
 use pontoon_study::modes::{ModesError, ModesRequest, modes as find};
-use pontoon_study::spec::read_bridge;
 use serde_json::{Value, json};
+use unicode_width::UnicodeWidthStr;
 
 /// Finds the lowest modes of a bridge file.
 pub fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
@@ -50,7 +51,7 @@ fn fitting(columns: &[String], rows: &[Vec<Value>]) -> String {
     let table = |columns: &[String]| words::table(columns, rows);
     let fits = |table: &String| {
         let width = Look::of_results().width;
-        width.is_none_or(|width| table.lines().all(|line| line.chars().count() <= width))
+        width.is_none_or(|width| table.lines().all(|line| line.width() <= width))
     };
     let fewer = (3..=columns.len()).rev().map(|count| table(&columns[..count]));
     fewer.into_iter().find(fits).unwrap_or_else(|| table(&columns[..3]))

@@ -1,15 +1,16 @@
 //! `pontoon plan`: what would run.
 
-use crate::Ending;
 use crate::args::{Common, Format, PlanArguments};
+use crate::ending::Ending;
 use crate::terminal::{BAD, Look};
 use crate::{axes, words};
 use anyhow::Result;
-use pontoon_study::Study;
+use pontoon_plan::study_file::Study;
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{Forecast, forecast};
 use serde_json::json;
 use std::path::PathBuf;
+use unicode_width::UnicodeWidthStr;
 
 /// Checks every job and says what would run, how long it takes, and what of it is done.
 pub fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
@@ -36,7 +37,7 @@ fn text(study: &Study, forecast: &Forecast, out: &str, look: Look) -> String {
         .into_iter()
         .map(|(name, told)| (format!("  {name}"), told))
         .collect();
-    let names = axes.iter().map(|(name, _)| name.chars().count()).chain([LONGEST.len()]);
+    let names = axes.iter().map(|(name, _)| name.width()).chain([LONGEST.len()]);
     let names = names.max().unwrap_or(0) + 2;
     let line = |name: &str, told: &str| {
         // beside each other where there is room

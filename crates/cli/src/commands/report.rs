@@ -1,15 +1,18 @@
 //! `pontoon report`: results as a page, and as figures for papers.
 
 use crate::args::{Common, Format, ReportArguments};
-use crate::{Ending, figures, page, words};
+use crate::ending::Ending;
+use crate::words;
 use anyhow::Result;
-use pontoon_study::Refusal;
-use pontoon_study::compare::{Comparison, against_reference};
-use pontoon_study::figures::{Figures, marks};
-use pontoon_study::reference::Reference;
-use pontoon_study::report::{Found, Report, ReportSetting};
+use pontoon_journal::place::{Folder, FolderError};
+use pontoon_judge::compare::{Comparison, against_reference};
+use pontoon_judge::reference::Reference;
+use pontoon_plan::input::Refusal;
+use pontoon_results::PAGE;
 use pontoon_study::run::Cache;
-use pontoon_study::tables::{Folder, FolderError, PAGE};
+use pontoon_view::figures::{Figures, marks};
+use pontoon_view::report::{Found, Report, ReportSetting};
+use pontoon_view::{drawing, page};
 use serde_json::json;
 use std::fs::{self, File};
 use std::io::{BufWriter, Read, Write};
@@ -44,7 +47,7 @@ fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<En
         .map(|reference| against_reference(&results, reference))
         .transpose()?;
     let made = Figures::of(&results, reference.as_ref())?;
-    let files = figures::write(&made, folder)?;
+    let files = drawing::write(&made, folder)?;
     let paths: Vec<String> = files
         .iter()
         .map(|file| folder.join(file).display().to_string())
@@ -81,7 +84,7 @@ fn page_of(arguments: &ReportArguments, common: Common) -> Result<Ending> {
         plays: usize::from(arguments.plays),
         modes: MODES,
         cache: Cache::of_user(),
-        commit: crate::COMMIT.map(str::to_owned),
+        commit: crate::commit::COMMIT.map(str::to_owned),
     };
     let report = Report::new(found, compared.as_ref(), marks.unwrap_or_default(), &setting)?;
     let bytes = write(&report, &out)?;

@@ -1,19 +1,23 @@
 //! `pontoon run`: a study to its tables.
 
 use crate::args::{Common, Format, RunArguments};
+use crate::ending::Ending;
 use crate::progress::Shown;
 use crate::signals::Heard;
 use crate::terminal::Look;
 use crate::watching::Watching;
-use crate::{Ending, comparison, summary, words};
+use crate::{comparison, summary, words};
 use anyhow::Result;
-use pontoon_study::compare::{Comparison, against_reference};
-use pontoon_study::plan::{Job, Jobs};
-use pontoon_study::reference::Reference;
-use pontoon_study::run::{Cache, Failures, Outcome};
-use pontoon_study::sweep::{SweepSetting, Swept, run_apart, sweep};
-use pontoon_study::tables::{Results, SummaryTable};
-use pontoon_study::{Refusal, Study};
+use pontoon_judge::compare::{Comparison, against_reference};
+use pontoon_judge::reference::Reference;
+use pontoon_plan::input::Refusal;
+use pontoon_plan::job::{Job, Jobs};
+use pontoon_plan::study_file::Study;
+use pontoon_results::{Failures, Outcome};
+use pontoon_results::{Results, SummaryTable};
+use pontoon_study::run::Cache;
+use pontoon_study::sweep::sweep;
+use pontoon_study::sweep::{SweepSetting, Swept, run_apart};
 use serde::ser::{Serialize, Serializer};
 use serde_json::{Map, Value};
 use std::io::{self, Read, Write};
@@ -59,7 +63,7 @@ fn setting(arguments: &RunArguments, study: &Study) -> SweepSetting {
         fresh: arguments.fresh,
         any_instructions: arguments.any_instructions,
         most_failures: arguments.max_failures,
-        commit: crate::COMMIT.map(str::to_owned),
+        commit: crate::commit::COMMIT.map(str::to_owned),
         ..SweepSetting::default()
     }
 }

@@ -1,7 +1,7 @@
 //! `pontoon status`: how far runs have come.
 
-use crate::Ending;
 use crate::args::{Common, Format, StatusArguments};
+use crate::ending::Ending;
 use crate::words;
 use anyhow::Result;
 use pontoon_study::sweep::{Standings, standings};

@@ -6,6 +6,7 @@ use crate::terminal::{HEAD, Look};
 use crate::words::listed;
 use anstyle::Style;
 use std::ops::Range;
+use unicode_width::UnicodeWidthStr;
 
 /// Blanks between columns.
 const GAP: usize = 2;
@@ -60,7 +61,7 @@ fn aligned(texts: &[String]) -> Vec<String> {
 }
 
 fn longest<'a>(texts: impl Iterator<Item = &'a String>) -> usize {
-    texts.map(|text| text.chars().count()).max().unwrap_or(0)
+    texts.map(|text| text.width()).max().unwrap_or(0)
 }
 
 impl Grid {
@@ -208,7 +209,7 @@ impl Grid {
             let mut written = named(&|names| names.rows[i].clone());
             for column in columns.clone() {
                 let cell = &row[column];
-                let blanks = self.gap + self.value(column) - cell.text.chars().count();
+                let blanks = self.gap + self.value(column) - cell.text.width();
                 let bare = cell.text.trim_end();
                 written += &format!("{}{}", " ".repeat(blanks), look.painted(cell.style, bare));
                 written += &" ".repeat(cell.text.len() - bare.len());

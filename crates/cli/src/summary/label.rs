@@ -2,14 +2,14 @@
 //!
 //! Knows which part of a name tells columns apart. Does not know what is in a table.
 
-use crate::words::printable;
-use pontoon_study::report::words;
+use pontoon_view::labels;
+use pontoon_view::labels::printable;
 use serde_json::Value;
 
 /// A name in words and the unit that it ends in, if any: `gap_tension_m` is "tension gap" in "m".
 pub fn label(name: &str) -> (String, Option<&'static str>) {
-    let unit = Some(words::unit(name)).filter(|unit| !unit.is_empty());
-    (printable(&words::label(name)), unit)
+    let unit = Some(labels::unit(name)).filter(|unit| !unit.is_empty());
+    (printable(&labels::label(name)), unit)
 }
 
 /// Names of axes as heads: of a path its last part, where no other axis ends in the same.

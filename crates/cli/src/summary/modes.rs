@@ -6,8 +6,9 @@ use super::grid::{Cell, Grid, Names};
 use super::label::{axis, heads, told};
 use super::survey::Row;
 use crate::terminal::{FAINT, Look};
-use crate::words::{listed, printable, wrapped};
+use crate::words::{listed, wrapped};
 use anstyle::Style;
+use pontoon_view::labels::printable;
 use serde_json::Value;
 
 /// Jobs and shapes that are written at most.

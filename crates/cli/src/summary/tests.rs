@@ -23,7 +23,7 @@ fn narrow(width: usize) -> Look {
     }
 }
 
-/// A crossing: its axes and largest deflection [m]; the other peaks follow from it.
+/// A crossing: its axes and largest deflection `[m]`; the other peaks follow from it.
 fn row(axes: Value, deflection_m: Option<f64>) -> Vec<Value> {
     let mut row = axes.as_array().unwrap().clone();
     row.extend([1.0, 0.1, 5e6, 1e6].map(|factor| deflection_m.map_or(Value::Null, |d| (d * factor).into())));

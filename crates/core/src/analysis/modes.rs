@@ -74,7 +74,7 @@ pub type Shape = (Mode, Vec<[f64; 3]>);
 
 /// The lowest `count` modes as [`modes`] finds them, each with the motion `[along, across, up]` of the corners of its
 /// modules: module after module, of each the bottom's corners and then the deck's, in the order left end at -y, right end
-/// at -y, right end at +y, left end at +y. The largest component of a shape is 1. Verified by `tests/tests/shapes.rs`.
+/// at -y, right end at +y, left end at +y. The largest component of a shape is 1. Verified by `tests/solvers/shapes.rs`.
 ///
 /// # Errors
 /// [`AnalysisError::Factor`].

@@ -302,7 +302,7 @@ impl BridgeDesign {
     }
 
     /// Mass of one module's plates and beams `[kg]`: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
-    /// Verified by `tests/tests/superelement.rs`.
+    /// Verified by `tests/solvers/superelement.rs`.
     pub fn structural_mass_kg(&self) -> f64 {
         mesh_module(&self.module, &self.joint_lines_y_m()).mesh.mass_kg()
     }

@@ -135,7 +135,7 @@ impl MeshedBridge {
 
     /// How far each node moves where the bridge's dofs move by `u` `[m or rad]`: x, y and z `[m]`. The dofs inside a condensed
     /// module follow as they were condensed, `u2 = -k22^-1 k21 u1 + Phi q`: statically exact where no force acts on them,
-    /// else as exact as the super-element. Verified by `tests/tests/meshed.rs`.
+    /// else as exact as the super-element. Verified by `tests/solvers/meshed.rs`.
     pub fn displacement_m(&self, u: &[f64]) -> Vec<[f64; 3]> {
         self.triples(u, 0)
     }

@@ -68,8 +68,8 @@ impl PreparedModule {
     ///
     /// # Errors
     /// [`BridgeError::Design`] where the design, the grid or their fit is refused, [`BridgeError::Fem`] where an element is
-    /// degenerate or the mesh leaves a mechanism to condense. Verified by `tests/tests/given_mesh.rs` and
-    /// `tests/tests/beam_module.rs`.
+    /// degenerate or the mesh leaves a mechanism to condense. Verified by `tests/limits/given_mesh.rs` and
+    /// `tests/analytic/beam_module.rs`.
     pub fn from_mesh(design: &BridgeDesign, meshed: ModuleMesh, model: Model) -> Result<Self, BridgeError> {
         design.check()?;
         meshed.check(design.module.depth_m)?;

@@ -107,7 +107,7 @@ impl Beam {
     }
 
     /// Stiffness (Przemieniecki: Theory of Matrix Structural Analysis, 1968, eq. 5.116); end loads are met exactly.
-    /// Verified by `crates/core/tests/fem_shells.rs`.
+    /// Verified by `tests/convergence/fem_shells.rs`.
     pub fn stiffness(&self) -> BeamMatrix {
         let (s, l) = (&self.section, self.length);
         let e = s.youngs_modulus_pa;
@@ -136,7 +136,7 @@ impl Beam {
 
     /// Consistent mass from the exact shape functions of the Timoshenko beam (Friedman, Kosmatka: Computers &
     /// Structures 47, 1993, 473-481), rotary inertia included. Frequencies converge with order 4 where shear is
-    /// nothing, with order 2 where it is not. Verified by `crates/core/tests/fem_vibration.rs`.
+    /// nothing, with order 2 where it is not. Verified by `tests/analytic/fem_vibration.rs`.
     pub fn mass_consistent(&self) -> BeamMatrix {
         let (s, l) = (&self.section, self.length);
         let mut m = BeamMatrix::zeros();

@@ -49,7 +49,7 @@ impl EigenPairs {
     /// may each be `100 (1e-9 + 1e-14 / mu + eps |x|^2)`: where a pair has converged, the rounding of the operator that was
     /// solved and that of the products taken here, each a hundred times. The last counts where a shape hardly strains plates
     /// that are stiff: |x|^2 is how much the energies of its parts exceed that of the whole. Found on the bridges of
-    /// `studies/bridges` is a three-hundredth of it or less. Verified by `tests/tests/probe.rs`.
+    /// `studies/bridges` is a three-hundredth of it or less. Verified by `tests/solvers/probe.rs`.
     ///
     /// # Errors
     /// [`FemError::BadPair`].
@@ -105,7 +105,7 @@ impl EigenPairs {
 ///
 /// That no mode is missed, however many lie close together, is checked by Sylvester's law of inertia: `K - sigma M`
 /// must have as many negative pivots as modes were found below sigma. Where it has more, the search goes on with fresh
-/// directions. Verified by `crates/core/tests/fem_eigen.rs`.
+/// directions. Verified by `tests/analytic/fem_eigen.rs`.
 ///
 /// # Errors
 /// [`FemError::Shift`], [`FemError::NotPositiveDefinite`] where `K + s M` is not, [`FemError::Eigen`] where not all

@@ -39,8 +39,8 @@ impl Shell {
     /// Stiffness `[N/m, N, N m]`.
     ///
     /// A warped element's corners are joined to the mean plane by rigid links: with h the height above the plane, the
-    /// projected corner moves by `u - h theta_y`, `v + h theta_x`. Verified by `crates/core/tests/fem_patch.rs`,
-    /// `crates/core/tests/fem_macneal_harder.rs` and `crates/core/tests/fem_shells.rs`.
+    /// projected corner moves by `u - h theta_y`, `v + h theta_x`. Verified by `tests/analytic/fem_patch.rs`,
+    /// `tests/analytic/fem_macneal_harder.rs` and `tests/convergence/fem_shells.rs`.
     pub fn stiffness(&self) -> ShellMatrix {
         let membrane = membrane::stiffness(&self.frame, &self.section);
         let plate = plate::stiffness(&self.frame, &self.section);
@@ -64,7 +64,7 @@ impl Shell {
     }
 
     /// Consistent mass `integral of N^T diag(rho t, rho t^3/12) N dA` `[kg, kg m^2]`; drilling carries none. Verified by
-    /// `crates/core/tests/fem_vibration.rs`.
+    /// `tests/analytic/fem_vibration.rs`.
     pub fn mass_consistent(&self) -> ShellMatrix {
         let mut local = ShellMatrix::zeros();
         for (xi, eta) in GAUSS_2X2 {

@@ -25,7 +25,7 @@ impl Grid {
     /// anything; wheels see the deck as bilinear between them, water the bottom as bilinear cells.
     ///
     /// # Errors
-    /// [`InvalidInput`] on `x`, `y`, `deck` or `bottom`. Verified by `tests/tests/given_mesh.rs`.
+    /// [`InvalidInput`] on `x`, `y`, `deck` or `bottom`. Verified by `tests/limits/given_mesh.rs`.
     pub fn new(x: Vec<f64>, y: Vec<f64>, deck: Vec<NodeId>, bottom: Vec<NodeId>) -> Result<Self, InvalidInput> {
         let grid = Self { x, y, deck, bottom };
         grid.check()?;

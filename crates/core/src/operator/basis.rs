@@ -100,7 +100,7 @@ pub struct BridgeOperator {
 
 impl BridgeOperator {
     /// Builds the operator; modes are added until the residual's dynamic part is within `tolerance` (see [`Cutoff`]), every
-    /// mode there is where it is 0. Verified by `tests/tests/operator.rs` and `tests/tests/operator_accuracy.rs`.
+    /// mode there is where it is 0. Verified by `tests/solvers/operator.rs` and `tests/solvers/operator_accuracy.rs`.
     ///
     /// # Errors
     /// [`OperatorError::Factor`].

@@ -5,12 +5,12 @@
 
 use super::bench::Bench;
 use super::crossing::{Failure, Solved};
-use super::record::JobRecord;
 use super::{crossing, guard, modes, statics, verify};
-use crate::journal::LONGEST;
-use crate::plan::{Job, Task};
-use crate::spec::Study;
 use pontoon_core::response::Record;
+use pontoon_journal::LONGEST;
+use pontoon_plan::job::{Job, Task};
+use pontoon_plan::study_file::Study;
+use pontoon_results::JobRecord;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

@@ -3,19 +3,19 @@
 //! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
 
 use super::cache::{Cache, Found};
-use super::crossing::RETRY_STEP_SHARE;
 use super::guard::guarded;
 use super::progress::Progress;
+use super::retry::RETRY_STEP_SHARE;
 use super::stop::Stop;
-use crate::plan::{Job, Task};
-use crate::spec::TimeStepSpec;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
 use pontoon_core::operator::BridgeOperator;
+use pontoon_plan::job::{Job, Task};
+use pontoon_plan::study_file::TimeStepSpec;
+use pontoon_results::{BridgeReport, OperatorCounts, Preparation};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -63,53 +63,6 @@ struct OperatorsMade {
     built: AtomicUsize,
     from_cache: AtomicUsize,
     refused: AtomicUsize,
-}
-
-/// Where the operators of a run came from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct OperatorCounts {
-    /// Built from the bridge's matrices.
-    pub built: usize,
-    /// Read from the cache.
-    pub from_cache: usize,
-    /// Of those built, the ones whose file in the cache was damaged or of another form.
-    pub replaced: usize,
-}
-
-/// What was prepared of one bridge.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BridgeReport {
-    /// Hash of the bridge's document after the axes.
-    pub blake3: String,
-    /// Its name.
-    pub name: String,
-    /// Model of its modules.
-    pub model: String,
-    /// Number of modules.
-    pub modules: usize,
-    /// Degrees of freedom of one module's finite elements.
-    pub module_full_dofs: Option<usize>,
-    /// Degrees of freedom of one module as it is assembled.
-    pub module_dofs: Option<usize>,
-    /// Structural mass of one module [kg].
-    pub structural_mass_kg: Option<f64>,
-    /// Degrees of freedom of the bridge on its supports.
-    pub dofs: Option<usize>,
-    /// Frequencies at which the damping ratio holds [Hz].
-    pub damping_frequencies_hz: Option<[f64; 2]>,
-    /// Stiffness-proportional damping [s].
-    pub damping_stiffness_s: Option<f64>,
-    /// Mass-proportional damping [1/s].
-    pub damping_mass_1_s: Option<f64>,
-    /// Operator of its crossings: modes kept.
-    pub operator_modes: Option<usize>,
-    /// Frequency of the highest [Hz].
-    pub operator_cutoff_hz: Option<f64>,
-    /// Error allowed, and what is left of it: the largest share by which the flexibility of a connector or deck node at 5 Hz
-    /// is off.
-    pub operator_tolerance: Option<f64>,
-    /// See `operator_tolerance`.
-    pub operator_error: Option<f64>,
 }
 
 impl Bench {
@@ -220,8 +173,17 @@ impl Bench {
         Ok(operator)
     }
 
+    /// What is told of all that was prepared for jobs.
+    pub(super) fn preparation(&self, jobs: &[&Job]) -> Preparation {
+        Preparation {
+            condensations: self.condensations(),
+            operators: self.operator_counts(),
+            bridges: self.reports(jobs),
+        }
+    }
+
     /// Where the operators came from.
-    pub(super) fn operator_counts(&self) -> OperatorCounts {
+    fn operator_counts(&self) -> OperatorCounts {
         let of = |count: &AtomicUsize| count.load(Ordering::Relaxed);
         OperatorCounts {
             built: of(&self.operators_made.built),
@@ -302,7 +264,7 @@ impl Bench {
         shared(&self.statics, &bridge_key(job))
     }
 
-    /// The largest static deflection of each position under the job's load over its places [m]; none where the bridge is
+    /// The largest static deflection of each position under the job's load over its places `[m]`; none where the bridge is
     /// not held.
     pub(super) fn creeping_peaks_m(&self, job: &Job) -> Result<Option<Arc<Vec<f64>>>, String> {
         if !is_held(job) {
@@ -324,7 +286,7 @@ impl Bench {
     }
 
     /// What was prepared of each bridge and model, in the order of jobs.
-    pub(super) fn reports(&self, jobs: &[&Job]) -> Vec<BridgeReport> {
+    fn reports(&self, jobs: &[&Job]) -> Vec<BridgeReport> {
         let mut reports: Vec<BridgeReport> = Vec::new();
         let mut seen = BTreeSet::new();
         for job in jobs {

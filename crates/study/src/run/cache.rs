@@ -5,6 +5,7 @@
 
 use pontoon_core::bridge::Bridge;
 use pontoon_core::operator::{BridgeOperator, OperatorParts, SOURCES};
+use pontoon_journal::place::HiddenFile;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -85,10 +86,10 @@ impl Cache {
     /// Keeps an operator. A cache that cannot be written costs time, no result: the error is for whoever wants to know.
     pub(super) fn write(&self, name: &str, operator: &BridgeOperator) -> io::Result<()> {
         fs::create_dir_all(&self.folder)?;
-        let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
-        file.write_all(&encode(name, &operator.parts()))?;
-        file.as_file().sync_all()?;
-        file.persist(self.path(name)).map_err(|e| e.error)?;
+        let hidden = HiddenFile::begin_among_others(&self.path(name))?;
+        hidden.file().write_all(&encode(name, &operator.parts()))?;
+        hidden.file().sync_all()?;
+        hidden.put()?;
         self.thin_out()
     }
 

@@ -7,7 +7,6 @@
 //! what its modes leave out, lanes on this machine's instructions, contacts that open and close, masses that ride along, and
 //! the reference solver's factors beside them.
 
-use crate::journal::fault;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::rayleigh;
@@ -17,6 +16,7 @@ use pontoon_core::input::InvalidInput;
 use pontoon_core::operator::{BridgeOperator, OperatorError};
 use pontoon_core::response::{CrossingResponse, Record};
 use pontoon_core::vehicle::{Inertia, VehicleDesign};
+use pontoon_journal::fault;
 use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
@@ -45,7 +45,7 @@ pub enum CanaryError {
         solver: Singer,
         /// Which number.
         quantity: &'static str,
-        /// What is known [m, N, 1].
+        /// What is known `[m, N, 1]`.
         expected: f64,
         /// What was found.
         found: f64,

@@ -1,24 +1,14 @@
 //! Crossing jobs to their records: by the operator side by side, or by the reference solver one by one.
 
 use super::bench::Bench;
-use super::record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
-use crate::plan::Job;
-use crate::spec::TimeStepSpec;
+use super::retry::half_step_may_help;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
-use pontoon_core::response::{CrossingResponse, Quantity, Record};
+use pontoon_core::response::{CrossingResponse, ForcePeaks, Peak, Quantity, Record};
 use pontoon_core::vehicle::Vehicle;
-
-/// The time step at which a crossing is solved once more, as a share of its own.
-pub(crate) const RETRY_STEP_SHARE: f64 = 0.5;
-
-/// Whether a crossing that failed so is solved once more at half its time step: its contacts did not settle.
-pub(crate) fn half_step_may_help(error: &AnalysisError) -> bool {
-    matches!(
-        error,
-        AnalysisError::NotConverged { .. } | AnalysisError::NotFinite { .. }
-    )
-}
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::TimeStepSpec;
+use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// Why a job failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -151,7 +141,7 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
     answers.into_iter().map(|answer| answer.unwrap_or_else(lost)).collect()
 }
 
-/// Largest force of any joint [N].
+/// Largest force of any joint `[N]`.
 fn peak_force_n(response: &CrossingResponse) -> f64 {
     let of_joint = response
         .joints
@@ -165,6 +155,20 @@ fn recorded(job: &Job, response: CrossingResponse, bench: &Bench) -> Result<JobR
     Ok(rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice)))
 }
 
+fn extreme(peak: Peak) -> Extreme {
+    Extreme::at(peak.value, peak.time_s)
+}
+
+/// The row of a force's peaks.
+fn peaks_row(joint: usize, y_m: Option<f64>, peaks: &ForcePeaks) -> ConnectorRow {
+    ConnectorRow {
+        joint,
+        y_m,
+        compression: extreme(peaks.compression),
+        tension: extreme(peaks.tension),
+    }
+}
+
 fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
     let positions: Vec<PositionRow> = response
@@ -174,20 +178,20 @@ fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) 
         .map(|(i, p)| PositionRow {
             position: p.position,
             x_m: p.x_m,
-            deflection: p.deflection.into(),
-            uplift: p.uplift.into(),
+            deflection: extreme(p.deflection),
+            uplift: extreme(p.uplift),
             static_deflection_m: None,
             static_peak_deflection_m: static_peaks_m.map(|peaks| peaks[i]),
         })
         .collect();
     let mut connectors = Vec::new();
     for joint in &response.joints {
-        connectors.push(ConnectorRow::peaks(joint.joint, None, &joint.sum));
+        connectors.push(peaks_row(joint.joint, None, &joint.sum));
         connectors.extend(
             joint
                 .connectors
                 .iter()
-                .map(|(y_m, peaks)| ConnectorRow::peaks(joint.joint, Some(*y_m), peaks)),
+                .map(|(y_m, peaks)| peaks_row(joint.joint, Some(*y_m), peaks)),
         );
     }
     let mut summary = Summary {

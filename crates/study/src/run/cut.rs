@@ -3,8 +3,8 @@
 //! Knows how many rows a job leaves. Does not know threads: the cuts depend on the study and its jobs alone, as the row
 //! groups of the tables follow them.
 
-use crate::plan::{Job, Task};
-use crate::spec::Study;
+use pontoon_plan::job::{Job, Task};
+use pontoon_plan::study_file::Study;
 
 /// What a batch holds at most; a single job is a batch of its own however many rows it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

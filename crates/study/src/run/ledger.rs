@@ -2,10 +2,10 @@
 //!
 //! Knows which jobs are recorded and how a record becomes bytes without loss. Does not know where the journal lies.
 
-use super::outcome::Preparation;
-use super::record::JobRecord;
-use crate::journal::{Book, JobKey, JournalError, NewRecord, Place, Writer};
-use crate::plan::Job;
+use pontoon_journal::{Book, JournalError, NewRecord, Place, RecordKey, Writer};
+use pontoon_plan::job::Job;
+use pontoon_results::JobRecord;
+use pontoon_results::Preparation;
 
 /// The journal as a run of some jobs sees it.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl<'a> Ledger<'a> {
     pub fn new(book: &'a Book, jobs: &[Job]) -> Self {
         let mut failed = 0;
         let known = jobs.iter().map(|job| {
-            let entry = book.find(&job.key())?;
+            let entry = book.find(&record_key(job))?;
             failed += usize::from(entry.failed);
             Some(entry.place)
         });
@@ -83,7 +83,7 @@ impl<'a> Ledger<'a> {
     /// Says that jobs are about to be solved together.
     pub(super) fn started<'j>(&self, jobs: impl Iterator<Item = &'j Job>) -> Result<(), JournalError> {
         let Some(writer) = self.writer else { return Ok(()) };
-        let keys: Vec<JobKey> = jobs.map(Job::key).collect();
+        let keys: Vec<RecordKey> = jobs.map(record_key).collect();
         writer.started(&keys)
     }
 
@@ -95,16 +95,23 @@ impl<'a> Ledger<'a> {
     /// Keeps records of jobs.
     pub(super) fn keep<'j>(&self, records: impl Iterator<Item = (&'j Job, &'j JobRecord)>) -> Result<(), JournalError> {
         let Some(writer) = self.writer else { return Ok(()) };
-        let encoded: Vec<(JobKey, bool, Vec<u8>)> = records
-            .map(|(job, record)| {
-                let bytes = postcard::to_allocvec(record).unwrap_or_default();
-                (job.key(), record.reason.is_some(), bytes)
-            })
-            .collect();
+        let encode = |(job, record): (&Job, &JobRecord)| {
+            let bytes = postcard::to_allocvec(record).map_err(|cause| JournalError::NotEncoded {
+                what: format!("the record of job {}", job.number),
+                cause: cause.to_string(),
+            });
+            Ok((record_key(job), record.reason.is_some(), bytes?))
+        };
+        let encoded: Vec<(RecordKey, bool, Vec<u8>)> = records.map(encode).collect::<Result<_, JournalError>>()?;
         writer.record(encoded.iter().map(|(key, failed, left)| NewRecord {
             key: *key,
             failed: *failed,
             left,
         }))
     }
+}
+
+/// What a job's record is found by.
+pub(crate) fn record_key(job: &Job) -> RecordKey {
+    RecordKey(job.key().0)
 }

@@ -9,36 +9,37 @@ mod cache;
 pub mod canary;
 mod crossing;
 mod cut;
+mod error;
 mod guard;
 mod ledger;
 mod modes;
-mod outcome;
+mod pool;
 mod probe;
 mod progress;
-mod record;
+mod retry;
 mod statics;
 mod stop;
 mod verify;
 mod watch;
 
-pub use bench::{BridgeReport, OperatorCounts, PreparedModules};
+pub use bench::PreparedModules;
 pub use cache::Cache;
 pub use canary::CanaryError;
-pub(crate) use crossing::{RETRY_STEP_SHARE, half_step_may_help};
 pub use cut::Batch;
+pub use error::RunError;
 pub use ledger::Ledger;
-pub(crate) use outcome::words as words_of_reason;
-pub use outcome::{Cause, Failures, Outcome, PoolError, Preparation, RunError};
+pub(crate) use ledger::record_key;
+pub use pool::{PoolError, on_threads};
 pub use probe::{Measured, measure};
 pub use progress::{Progress, Silent, Tally};
-pub use record::{ConnectorRow, HistoryRows, JobRecord, PositionRow, Summary};
+pub use retry::{RETRY_STEP_SHARE, half_step_may_help};
 pub use stop::{Stop, Why};
-pub use verify::Verification;
 
-use crate::plan::Job;
-use crate::spec::Study;
 use batch::Untold;
 use bench::Bench;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::Study;
+use pontoon_results::{Failures, JobRecord, Outcome, Verification};
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::time::Instant;
@@ -87,12 +88,8 @@ pub fn run<E: StdError + Send + 'static>(
     progress: &dyn Progress,
     mut sink: Option<&mut Sink<'_, E>>,
 ) -> Result<Outcome, RunError<E>> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(setting.threads).build();
-    let pool = pool.map_err(|cause| PoolError {
-        threads: setting.threads,
-        cause,
-    })?;
-    pool.install(|| {
+    let threads = setting.threads;
+    on_threads(threads, || {
         let start = Instant::now();
         let watch = Watch::new(jobs.len(), &setting, stop, progress);
         let missing: Vec<&Job> = (0..)
@@ -107,7 +104,7 @@ pub fn run<E: StdError + Send + 'static>(
             stop,
             progress,
         );
-        let preparation = Preparation::of(&bench, &missing);
+        let preparation = bench.preparation(&missing);
         let offline_s = start.elapsed().as_secs_f64();
         if !missing.is_empty() {
             watch.prepared(&preparation);
@@ -159,7 +156,7 @@ pub fn run<E: StdError + Send + 'static>(
             offline_s,
             jobs_s: start.elapsed().as_secs_f64() - offline_s,
         })
-    })
+    })?
 }
 
 /// Solves the jobs of a batch that are not recorded; the batch begins `from`.
@@ -179,7 +176,7 @@ fn solve_missing(study: &Study, batch: &[Job], from: usize, bench: &Bench, watch
 
 /// Solves jobs of several studies on the current pool: what any of them share is prepared once, and modules that are
 /// `known` are not prepared again. Leaves a record for each job in their order, and the modules.
-pub(crate) fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<JobRecord>, Prepared) {
+pub fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<JobRecord>, Prepared) {
     let alone: Vec<&Job> = jobs.iter().map(|(_, job)| *job).collect();
     let bench = Bench::prepare(&alone, known, None, &Stop::default(), &Silent);
     let records = batch::solve(jobs, false, &bench, &Untold);
@@ -192,7 +189,7 @@ pub(crate) fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -
 
 /// Solves crossings of a study once more with all their histories, some at a time, and hands their records on: no record is
 /// kept. What they share is taken from `cache` where it is there.
-pub(crate) fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: impl FnMut(&Job, JobRecord)) {
+pub fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: impl FnMut(&Job, JobRecord)) {
     let mut whole: BTreeMap<usize, Study> = BTreeMap::new();
     for job in jobs {
         let modules = job.bridge.design.modules;
@@ -219,7 +216,7 @@ pub(crate) fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut ta
 const REPLAYED_TOGETHER: usize = 64;
 
 /// What a run prepared.
-pub(crate) struct Prepared {
+pub struct Prepared {
     /// The modules.
     pub modules: PreparedModules,
     /// How many were condensed for it.

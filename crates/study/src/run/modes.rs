@@ -1,10 +1,10 @@
 //! A job that asks for modes to its record.
 
 use super::bench::Bench;
-use super::record::{HistoryRows, JobRecord, Summary};
 use crate::modes::rows;
-use crate::plan::Job;
 use pontoon_core::bridge::Ends;
+use pontoon_plan::job::Job;
+use pontoon_results::{HistoryRows, JobRecord, Summary};
 
 /// Finds the modes of a job.
 pub(super) fn solve(job: &Job, bench: &Bench) -> Result<JobRecord, String> {

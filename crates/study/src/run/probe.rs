@@ -8,8 +8,8 @@ use super::bench::Bench;
 use super::cache::Cache;
 use super::progress::Silent;
 use super::stop::Stop;
-use crate::plan::{Job, module_steps};
-use crate::spec::Study;
+use pontoon_plan::job::{Job, module_steps};
+use pontoon_plan::study_file::Study;
 use std::time::Instant;
 
 /// Steps beyond which a job is too long to be tried.
@@ -21,9 +21,9 @@ const TRIED: usize = 8;
 /// What was measured on a few jobs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// What a bridge costs before any job of it runs, on all threads [s].
+    /// What a bridge costs before any job of it runs, on all threads `[s]`.
     pub bridge_s: f64,
-    /// What a job costs of one thread [s].
+    /// What a job costs of one thread `[s]`.
     pub job_s: f64,
     /// Steps times modules of such a job; 0 where it has no steps.
     pub module_steps: f64,

@@ -1,9 +1,9 @@
 //! A static job to its record.
 
 use super::bench::{Bench, static_case};
-use super::record::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
-use crate::plan::{Job, Load};
 use pontoon_core::response::StaticResponse;
+use pontoon_plan::job::{Job, Load};
+use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// Solves the static case of a job.
 pub(super) fn solve(job: &Job, load: Load, bench: &Bench) -> Result<JobRecord, String> {

@@ -1,8 +1,8 @@
 //! Tests of runs: batches, sinks, failures.
 
-use super::outcome::Failures;
 use super::*;
-use crate::plan::Jobs;
+use pontoon_plan::job::Jobs;
+use pontoon_results::Failures;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Mutex;

@@ -3,27 +3,10 @@
 //! Knows which jobs are solved again and what a deviation is. Does not know tables.
 
 use super::bench::Bench;
-use super::record::{JobRecord, Summary};
 use super::{crossing, guard};
-use crate::plan::Job;
 use pontoon_core::response::Record;
-use serde::Serialize;
-
-/// What came of the jobs that were solved again.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Verification {
-    /// Jobs solved again.
-    pub jobs: usize,
-    /// Those beyond a tolerance, or without an answer of the reference solver.
-    pub beyond: usize,
-    /// Largest deviations: of deflections as a share of the reference solver's, of compression and tension as a share of the
-    /// job's largest joint force.
-    pub worst_deflection: f64,
-    /// See `worst_deflection`.
-    pub worst_compression: f64,
-    /// See `worst_deflection`.
-    pub worst_tension: f64,
-}
+use pontoon_plan::job::Job;
+use pontoon_results::{JobRecord, Summary};
 
 /// Solves a job again by the reference solver, where that is asked for, and notes how far the operator is off.
 pub(super) fn judge(job: &Job, record: &mut JobRecord, bench: &Bench) {
@@ -56,19 +39,4 @@ pub(super) fn judge(job: &Job, record: &mut JobRecord, bench: &Bench) {
     record.summary.verify_compression = finite(compression);
     record.summary.verify_tension = finite(tension);
     record.summary.verify_held = Some(held);
-}
-
-impl Verification {
-    /// Takes the next records.
-    pub(super) fn take(&mut self, records: &[JobRecord]) {
-        for summary in records.iter().map(|record| &record.summary) {
-            let Some(held) = summary.verify_held else { continue };
-            self.jobs += 1;
-            self.beyond += usize::from(!held);
-            let worst = |worst: &mut f64, found: Option<f64>| *worst = worst.max(found.unwrap_or_default().abs());
-            worst(&mut self.worst_deflection, summary.verify_deflection);
-            worst(&mut self.worst_compression, summary.verify_compression);
-            worst(&mut self.worst_tension, summary.verify_tension);
-        }
-    }
 }

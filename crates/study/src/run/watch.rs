@@ -4,13 +4,14 @@
 
 use super::Setting;
 use super::batch::Told;
+use super::error::RunError;
 use super::ledger::Ledger;
-use super::outcome::{Preparation, RunError};
 use super::progress::{Progress, Tally};
-use super::record::JobRecord;
 use super::stop::{Stop, Why};
-use crate::journal::{JournalError, fault};
-use crate::plan::Job;
+use pontoon_journal::{JournalError, fault};
+use pontoon_plan::job::Job;
+use pontoon_results::JobRecord;
+use pontoon_results::Preparation;
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::sync::atomic::{AtomicUsize, Ordering};

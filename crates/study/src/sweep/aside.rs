@@ -3,8 +3,8 @@
 //! Knows which files of a folder are results. Removes nothing: a later `mv` brings everything back.
 
 use super::SweepError;
-use crate::journal::{Book, FOLDER, JournalError};
-use crate::tables::{OwnFiles, PAGE};
+use pontoon_journal::{Book, FOLDER, JournalError};
+use pontoon_results::{OwnFiles, PAGE};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -41,7 +41,7 @@ pub(super) fn set_aside(folder: &Path, book: Option<&Book>) -> Result<Option<Pat
     }
     for path in list {
         let target = to.join(path.file_name().unwrap_or_default());
-        crate::journal::fault::at("aside.rename")
+        pontoon_journal::fault::at("aside.rename")
             .and_then(|()| fs::rename(&path, &target))
             .map_err(|cause| error(&path, cause))?;
     }

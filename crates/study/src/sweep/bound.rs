@@ -3,13 +3,13 @@
 //! Knows which of a study's numbers are no part of a job's key but of every record. Does not know files of journals.
 
 use super::SweepSetting;
-use crate::journal::{Binding, FORM, Session};
-use crate::plan::Shard;
-use crate::refusal::Refusal;
 use crate::run::instruction_path;
-use crate::spec::{Study, filled_vehicle, to_value};
-use crate::tables::Moment;
-use pontoon_core::operator::SOURCES;
+use pontoon_journal::{Binding, FORM, Session};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::input::to_value;
+use pontoon_plan::job::Shard;
+use pontoon_plan::study_file::{Study, filled_vehicle};
+use pontoon_results::Moment;
 use std::path::Path;
 
 /// What the records of a study are bound to.
@@ -20,7 +20,7 @@ pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
     Binding {
         form: FORM,
         name: spec.name.clone(),
-        numerics: format!("{} {SOURCES} {}", crate::VERSION, env!("PONTOON_RUN_SOURCES")),
+        numerics: format!("{} {}", pontoon_results::VERSION, crate::NUMERICS),
         instruction_path: instruction_path().to_owned(),
         shard: shard.map(|shard| shard.to_string()),
         bridge: to_value(&study.bridge.design),
@@ -41,15 +41,16 @@ pub(super) fn session(
 ) -> Session {
     Session {
         started: Moment::now().text(),
-        host: crate::journal::host(),
+        host: pontoon_journal::host(),
         process: std::process::id(),
-        version: crate::VERSION.to_owned(),
+        version: pontoon_results::VERSION.to_owned(),
         commit: setting.commit.clone(),
         threads,
         jobs,
         known,
         apart,
         study: study.document.clone(),
+        study_blake3: study.text_and_hash().1,
         bridge: study.bridge.document.clone(),
     }
 }

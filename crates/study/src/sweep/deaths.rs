@@ -6,15 +6,15 @@
 //! and is counted against no job.
 
 use super::bound::{binding, session};
+use super::ending::ending;
 use super::opened::Opened;
-use super::solving::ending;
 use super::{SweepError, SweepSetting, Watcher};
-use crate::journal::{Book, JobKey, Writer};
-use crate::plan::Job;
-use crate::refusal::Refusal;
-use crate::run::{Ledger, RunError, Setting, Silent, Stop, run};
-use crate::spec::Study;
-use crate::tables::FolderError;
+use crate::run::{Ledger, RunError, Setting, Silent, Stop, record_key, run};
+use pontoon_journal::place::FolderError;
+use pontoon_journal::{Book, RecordKey, Writer};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::Study;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Deaths after which a job is solved in a process of its own.
@@ -72,8 +72,8 @@ pub(super) fn settle(
         if apart.end == ApartEnd::Own {
             continue;
         }
-        let begun: Vec<JobKey> = opened.book.begun_apart(apart.process).copied().collect();
-        for job in suspects.iter().filter(|job| begun.contains(&job.key())) {
+        let begun: Vec<RecordKey> = opened.book.begun_apart(apart.process).copied().collect();
+        for job in suspects.iter().filter(|job| begun.contains(&record_key(job))) {
             // one kill may be anybody's
             if apart.end == ApartEnd::Killed && killed.insert(job.number) {
                 before.clear();
@@ -93,10 +93,10 @@ pub(super) fn hash_of(study: &Study) -> String {
 
 /// Jobs that processes died with too often.
 fn suspects<'j>(book: &Book, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
-    let mut deaths: BTreeMap<JobKey, usize> = book.deaths();
+    let mut deaths: BTreeMap<RecordKey, usize> = book.deaths();
     deaths.retain(|_, times| *times >= SUSPECT);
     let jobs = if deaths.is_empty() { &[] } else { jobs };
-    jobs.iter().filter(move |job| deaths.contains_key(&job.key()))
+    jobs.iter().filter(move |job| deaths.contains_key(&record_key(job)))
 }
 
 /// Solves jobs one by one, for a process that holds the folder and wants to know whether they end this one.

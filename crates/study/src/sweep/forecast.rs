@@ -4,10 +4,10 @@
 
 use super::bound::binding;
 use super::{SweepError, opened};
-use crate::journal::Book;
-use crate::plan::{Plan, Share};
-use crate::run::{Cache, Measured, measure};
-use crate::spec::Study;
+use crate::run::{Cache, Measured, measure, record_key};
+use pontoon_journal::Book;
+use pontoon_plan::job::{Plan, Share};
+use pontoon_plan::study_file::Study;
 use serde::Serialize;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub struct Forecast {
     pub plan: Plan,
     /// What a folder of results holds of it; null where it has no journal.
     pub found: Option<Found>,
-    /// Time that the jobs not recorded will take [s]; null where the few that were tried failed or are too long to try.
+    /// Time that the jobs not recorded will take `[s]`; null where the few that were tried failed or are too long to try.
     pub expected_seconds: Option<f64>,
     /// Jobs that were tried for it.
     pub tried: usize,
@@ -54,7 +54,7 @@ pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cac
     let (mut done, mut failed) = (0, 0);
     let known = refused.is_empty() && !book.entries().is_empty();
     let plan = Plan::new(study, |job| {
-        if let Some(entry) = known.then(|| book.find(&job.key())).flatten() {
+        if let Some(entry) = known.then(|| book.find(&record_key(job))).flatten() {
             done += 1;
             failed += usize::from(entry.failed);
         }

@@ -6,16 +6,18 @@
 
 use super::bound::{binding, session};
 use super::deaths::hash_of as hash_of_study;
+use super::ending::ending;
 use super::opened::{check_folder, instruction_paths, preparations, sessions, tell_damage};
-use super::solving::ending;
 use super::status::study_of_book;
 use super::{SweepError, SweepSetting, Swept, Watcher};
-use crate::journal::{Book, EXTENSION, FOLDER, JournalError, Lock, Writer as JournalWriter, fault};
-use crate::plan::{Job, Jobs};
-use crate::refusal::Refusal;
-use crate::run::{JobRecord, Ledger, Setting, Stop, run};
-use crate::spec::Study;
-use crate::tables::{Folder, Manifest, Moment, Provenance, Writer, hash_of};
+use crate::run::{Ledger, Setting, Stop, record_key, run};
+use pontoon_journal::place::{Folder, HiddenFile, hash_of};
+use pontoon_journal::{Book, EXTENSION, FOLDER, JournalError, Lock, Writer as JournalWriter, fault};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::job::{Job, Jobs};
+use pontoon_plan::study_file::Study;
+use pontoon_results::JobRecord;
+use pontoon_results::{Manifest, Moment, Provenance, Writer};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;
@@ -75,7 +77,7 @@ pub fn merge<'a>(
     watcher: &dyn Watcher,
 ) -> Result<Swept<'a>, SweepError> {
     let Merged { study, jobs } = merged;
-    crate::tables::check_own(&setting.out, &study.spec.name)?;
+    pontoon_results::check_own(&setting.out, &study.spec.name)?;
     let started = Moment::now();
     check_distinct(folders, &setting.out)?;
     check_folder(&setting.out)?;
@@ -194,7 +196,7 @@ fn check_complete(jobs: &[Job], books: &[Book], folders: &[PathBuf]) -> Result<(
     let mut missing = Vec::new();
     let mut count = 0;
     for job in jobs {
-        let key = job.key();
+        let key = record_key(job);
         if !books.iter().any(|book| book.find(&key).is_some()) {
             count += 1;
             if missing.len() < 5 {
@@ -256,13 +258,15 @@ fn copy_journal(from: &Path, to: &Path) -> Result<(), SweepError> {
         if same_content(&source, &target) {
             continue;
         }
-        let partial = target.with_extension("partial");
-        let copied = fault::at("merge.copy")
-            .and_then(|()| fs::copy(&source, &partial))
-            .and_then(|_| File::open(&partial)?.sync_all())
-            .and_then(|()| fault::at("merge.rename"))
-            .and_then(|()| fs::rename(&partial, &target));
-        copied.map_err(|cause| error(&target, cause))?;
+        let copy = || {
+            fault::at("merge.copy")?;
+            let hidden = HiddenFile::begin(&target)?;
+            io::copy(&mut File::open(&source)?, &mut hidden.file())?;
+            hidden.file().sync_all()?;
+            fault::at("merge.rename")?;
+            hidden.put()
+        };
+        copy().map_err(|cause| error(&target, cause))?;
     }
     File::open(&to)
         .and_then(|dir| dir.sync_all())

@@ -8,6 +8,7 @@
 //! | `aside` | old results moved out of the way, under their hash |
 //! | `bound` | what a study's records are bound to; a study from a journal alone |
 //! | `deaths` | jobs that processes died with |
+//! | `ending` | how a process says that it came to its own end |
 //! | `forecast` | what a study will take, and what of it is done |
 //! | `merge` | shards put together |
 //! | `opened` | a folder of results taken: lock, journal, whether it is this study's |
@@ -18,6 +19,7 @@
 mod aside;
 mod bound;
 mod deaths;
+mod ending;
 mod forecast;
 mod merge;
 mod opened;
@@ -26,21 +28,22 @@ mod solving;
 mod status;
 
 pub use deaths::{Apart, ApartEnd, run_apart};
+pub use ending::ended_now;
 pub use forecast::{Forecast, Found, forecast};
 pub use merge::{Merged, merge};
-pub use opened::SessionNote;
 pub use so_far::{SoFar, so_far};
-pub use solving::ended_now;
 pub use status::{Explanation, Standings, explain, standings};
 
-use crate::Refusal;
-use crate::journal::{JournalError, Writer as JournalWriter};
-use crate::plan::{Job, Shard};
 use crate::run::canary::CanaryError;
-use crate::run::{Batch, Cache, JobRecord, Ledger, Outcome, PoolError, Progress, RunError, Stop, Why};
-use crate::spec::Study;
-use crate::tables::{FolderError, Manifest, Moment, Provenance, SummaryTable, Writer};
+use crate::run::{Batch, Cache, Ledger, PoolError, Progress, RunError, Stop, Why};
 use opened::Opened;
+use pontoon_journal::place::FolderError;
+use pontoon_journal::{JournalError, Writer as JournalWriter};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::job::{Job, Shard};
+use pontoon_plan::study_file::Study;
+use pontoon_results::{JobRecord, Outcome};
+use pontoon_results::{Manifest, Moment, Provenance, SummaryTable, Writer};
 use solving::{Solved, Solving};
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -5,12 +5,12 @@
 use super::aside::set_aside;
 use super::bound::binding;
 use super::{SweepError, SweepSetting, Watcher};
-use crate::journal::{Binding, Book, Damage, Ending, FOLDER, Lock, Session};
-use crate::refusal::Refusal;
-use crate::run::Preparation;
-use crate::spec::Study;
-use crate::tables::{Folder, OwnFiles};
-use serde::Serialize;
+use pontoon_journal::place::Folder;
+use pontoon_journal::{Binding, Book, Damage, Ending, FOLDER, Lock, Session};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::study_file::Study;
+use pontoon_results::Preparation;
+use pontoon_results::{OwnFiles, SessionNote};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -23,35 +23,12 @@ pub(super) struct Opened {
     _lock: Lock,
 }
 
-/// A process that worked on a study, for the manifest.
-#[derive(Debug, Clone, Serialize)]
-pub struct SessionNote {
-    /// When it began (UTC).
-    pub started: String,
-    /// When it ended (UTC); null where it did not come to its own end.
-    pub finished: Option<String>,
-    /// Name of the machine.
-    pub host: String,
-    /// Threads.
-    pub threads: usize,
-    /// Version of the program.
-    pub version: String,
-    /// Commit of the program's sources, where it was built from one.
-    pub commit: Option<String>,
-    /// The share of the jobs; null where all were asked for.
-    pub shard: Option<String>,
-    /// Records that it left.
-    pub records: usize,
-    /// `complete`, `interrupted`, `died`, or why it could not go on.
-    pub ended: String,
-}
-
 impl Opened {
     /// Takes the folder: makes it where it is missing, locks it, reads its journal, and refuses what is another study's.
     pub(super) fn take(study: &Study, setting: &SweepSetting, watcher: &dyn Watcher) -> Result<Self, SweepError> {
         check_folder(&setting.out)?;
         if !setting.fresh {
-            crate::tables::check_own(&setting.out, &study.spec.name)?;
+            pontoon_results::check_own(&setting.out, &study.spec.name)?;
         }
         let folder = Folder::create(&setting.out)?;
         let lock = Lock::take(&setting.out)?;

@@ -5,11 +5,12 @@
 use super::SweepError;
 use super::opened::check_folder;
 use super::status::study_of_book;
-use crate::journal::{Book, Session};
-use crate::plan::{Job, Jobs};
-use crate::refusal::Refusal;
-use crate::run::{JobRecord, Ledger};
-use crate::spec::Study;
+use crate::run::Ledger;
+use pontoon_journal::{Book, Session};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::job::{Job, Jobs};
+use pontoon_plan::study_file::Study;
+use pontoon_results::JobRecord;
 use std::path::Path;
 
 /// The recorded jobs of a study.

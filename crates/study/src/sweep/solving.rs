@@ -4,13 +4,15 @@
 
 use super::bound::session;
 use super::deaths::PassedOver;
+use super::ending::ending;
 use super::opened::Opened;
 use super::{SweepError, SweepSetting, Watcher};
-use crate::journal::{Ending, Writer};
-use crate::plan::Job;
-use crate::run::{Ledger, Outcome, Setting, Sink, Stop, canary, run};
-use crate::spec::Study;
-use crate::tables::{FolderError, Moment};
+use crate::run::{Ledger, Setting, Sink, Stop, canary, run};
+use pontoon_journal::Writer;
+use pontoon_journal::place::FolderError;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::Study;
+use pontoon_results::Outcome;
 use std::sync::Arc;
 
 /// Jobs of a study on the way into its journal.
@@ -97,20 +99,5 @@ impl Solved {
             ))?;
         }
         Ok(())
-    }
-}
-
-/// A process that comes to its own end now, and how.
-pub fn ended_now(how: &str) -> Ending {
-    ending(how.to_owned(), 0.0, 0.0)
-}
-
-/// The same with what it took.
-pub(super) fn ending(how: String, offline_s: f64, jobs_s: f64) -> Ending {
-    Ending {
-        finished: Moment::now().text(),
-        how,
-        offline_s,
-        jobs_s,
     }
 }

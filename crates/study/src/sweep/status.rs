@@ -5,11 +5,11 @@
 use super::SweepError;
 use super::bound::study_of;
 use super::opened::check_folder;
-use crate::journal::{Binding, Book, Lock, Session, Standing, study_hash};
-use crate::plan::{Job, Jobs, Shard};
-use crate::refusal::Refusal;
-use crate::run::Ledger;
-use crate::spec::Study;
+use crate::run::{Ledger, record_key};
+use pontoon_journal::{Binding, Book, Lock, Session, Standing};
+use pontoon_plan::input::Refusal;
+use pontoon_plan::job::{Job, Jobs, Shard};
+use pontoon_plan::study_file::Study;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ fn counted(folder: &Path) -> Result<Standing, SweepError> {
         running: false,
         state: String::new(),
     };
-    Ok(standing.with_state(folder, &study_hash(session), ended))
+    Ok(standing.with_state(folder, &session.study_blake3, ended))
 }
 
 fn no_journal(folder: &Path) -> Refusal {
@@ -151,8 +151,8 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
         let allowed = format!("0 to {}", jobs.len().saturating_sub(1));
         return Err(Refusal::new(folder, "job", number, allowed).into());
     };
-    let key = job.key();
-    let axes = crate::tables::axis_names(&study);
+    let key = record_key(job);
+    let axes = pontoon_results::axis_names(&study);
     let axes = axes.into_iter().map(|name| (name.clone(), job.column(&name))).collect();
     let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
     let running = Lock::is_held(folder);
@@ -163,7 +163,7 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
     };
     let mut told = Explanation {
         job: number,
-        key: key.to_string(),
+        key: job.key().to_string(),
         axes,
         state: "missing",
         reason: None,
@@ -182,7 +182,7 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
             let written = book.file_of(entry.place);
             told.state = if entry.failed { "failed" } else { "ok" };
             told.reason = record.and_then(|record| record.reason);
-            told.recorded = Some(crate::tables::Moment::of_unix_ms(book.record(entry.place)?.unix_ms).text());
+            told.recorded = Some(pontoon_results::Moment::of_unix_ms(book.record(entry.place)?.unix_ms).text());
             told.by = written
                 .session
                 .as_ref()

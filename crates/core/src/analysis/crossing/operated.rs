@@ -85,7 +85,7 @@ impl OperatorSolver {
     }
 
     /// Solves crossings side by side, each as if it were alone, at the time step halved `refinement` times (at most
-    /// [`REFINEMENTS`]); answers in their order. Verified by `tests/tests/operator_lanes.rs`.
+    /// [`REFINEMENTS`]); answers in their order. Verified by `tests/solvers/operator_lanes.rs`.
     ///
     /// # Errors
     /// Of each as [`CrossingSolver::solve`](super::CrossingSolver::solve).

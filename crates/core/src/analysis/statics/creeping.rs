@@ -64,7 +64,7 @@ impl CreepingLoad {
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
     ///
-    /// Verified by `tests/tests/creeping.rs`.
+    /// Verified by `tests/limits/creeping.rs`.
     pub fn peaks_m(&self, case: &StaticCase) -> Result<Vec<f64>, AnalysisError> {
         self.peaks_within(case, NEWTON_LIMIT)
     }

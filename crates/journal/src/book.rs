@@ -1,0 +1,295 @@
+//! What a journal holds: an entry a record, and what was passed over.
+//!
+//! Knows the kinds of frames and keeps of a record its key and place alone. Does not write.
+
+use super::frame::{Damage, Frames, read_at};
+use super::{Binding, EXTENSION, Ending, FOLDER, FORM, JournalError, RecordKey, Session, kind};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Bytes of a record before what the job left: key, whether it failed, time.
+pub(super) const RECORD_HEAD: usize = 16 + 1 + 8;
+
+/// Where a record stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    file: u32,
+    length: u32,
+    at: u64,
+}
+
+/// A record by its key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry {
+    /// Key of the job.
+    pub key: RecordKey,
+    /// Whether it failed.
+    pub failed: bool,
+    /// Where the record stands.
+    pub place: Place,
+}
+
+/// A file of the journal.
+#[derive(Debug)]
+pub struct Written {
+    /// The file.
+    pub path: PathBuf,
+    /// What its records are bound to; none where its beginning is damaged, and then nothing of it is used.
+    pub binding: Option<Binding>,
+    /// Who wrote it.
+    pub session: Option<Session>,
+    /// How that came to its own end; none where the process died or is still at work.
+    pub ending: Option<Ending>,
+    /// Records in it.
+    pub records: usize,
+    /// What was passed over.
+    pub damages: Vec<Damage>,
+    /// Jobs that it had begun and not recorded.
+    pub begun: BTreeSet<RecordKey>,
+    /// What jobs share, as it was prepared.
+    pub prepared: Vec<Value>,
+}
+
+/// What a record's frame says beside what the job left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Record {
+    /// Milliseconds since 1970.
+    pub unix_ms: u64,
+    /// What the job left.
+    pub left: Vec<u8>,
+}
+
+/// What a journal holds.
+#[derive(Debug, Default)]
+pub struct Book {
+    /// Its files in the order they were begun.
+    pub files: Vec<Written>,
+    /// Its records by key, each key once.
+    entries: Vec<Entry>,
+    /// The file that was read last: a system lets a process have few open.
+    open: Mutex<Option<(u32, Arc<File>)>>,
+}
+
+impl Book {
+    /// Reads the journal of a folder of results; none is an empty one.
+    ///
+    /// # Errors
+    /// [`JournalError::Form`] of a file of another form; [`JournalError::Io`].
+    pub fn read(folder: &Path) -> Result<Self, JournalError> {
+        let folder = folder.join(FOLDER);
+        let mut paths = Vec::new();
+        match fs::read_dir(&folder) {
+            Ok(listed) => {
+                for entry in listed {
+                    let path = entry.map_err(|cause| JournalError::io(&folder, cause))?.path();
+                    if path.extension().is_some_and(|e| e == EXTENSION) {
+                        paths.push(path);
+                    }
+                }
+            }
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => {}
+            Err(cause) => return Err(JournalError::io(&folder, cause)),
+        }
+        paths.sort();
+        let mut book = Self::default();
+        for path in paths {
+            book.take(path)?;
+        }
+        // of records of one key the first counts; all say the same
+        book.entries
+            .sort_by_key(|entry| (entry.key, entry.place.file, entry.place.at));
+        book.entries.dedup_by_key(|entry| entry.key);
+        Ok(book)
+    }
+
+    fn take(&mut self, path: PathBuf) -> Result<(), JournalError> {
+        let error = |cause| JournalError::io(&path, cause);
+        let number = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
+        let mut frames = Frames::open(&path, 0).map_err(error)?;
+        let mut written = Written {
+            path: path.clone(),
+            binding: None,
+            session: None,
+            ending: None,
+            records: 0,
+            damages: Vec::new(),
+            begun: BTreeSet::new(),
+            prepared: Vec::new(),
+        };
+        let mut recorded = false;
+        while let Some(frame) = frames.next().map_err(error)? {
+            // it stands there twice, so that a file outlives damage to its beginning
+            if frame.kind == kind::BINDING && written.binding.is_none() && !recorded {
+                let document: Value = serde_json::from_slice(frame.payload).unwrap_or_default();
+                match document["form"].as_u64() {
+                    Some(found) if found != u64::from(FORM) => return Err(JournalError::Form { path, found }),
+                    _ => written.binding = serde_json::from_value(document).ok(),
+                }
+            }
+            recorded |= frame.kind == kind::RECORD;
+            if written.binding.is_none() {
+                // bound to who knows what: its jobs run again
+                continue;
+            }
+            match frame.kind {
+                kind::SESSION => {
+                    let session = serde_json::from_slice(frame.payload).ok();
+                    written.session = written.session.take().or(session);
+                }
+                kind::RECORD => {
+                    if let Some((key, failed)) = record_head(frame.payload) {
+                        written.records += 1;
+                        written.begun.remove(&key);
+                        self.entries.push(Entry {
+                            key,
+                            failed,
+                            place: Place {
+                                file: number,
+                                length: u32::try_from(frame.payload.len()).unwrap_or(u32::MAX),
+                                at: frame.at,
+                            },
+                        });
+                    }
+                }
+                kind::STARTED => written
+                    .begun
+                    .extend(frame.payload.as_chunks().0.iter().map(|key| RecordKey(*key))),
+                kind::ENDING => written.ending = serde_json::from_slice(frame.payload).ok(),
+                kind::PREPARED => written
+                    .prepared
+                    .extend(serde_json::from_slice::<Value>(frame.payload).ok()),
+                // of a later minor form, which this one need not know
+                _ => {}
+            }
+        }
+        written.damages = frames.damages;
+        self.files.push(written);
+        Ok(())
+    }
+
+    /// The records, by key.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The record of a key.
+    pub fn find(&self, key: &RecordKey) -> Option<&Entry> {
+        let at = self.entries.binary_search_by(|entry| entry.key.cmp(key)).ok()?;
+        Some(&self.entries[at])
+    }
+
+    /// A record, its checksum checked again.
+    ///
+    /// # Errors
+    /// [`JournalError::Damaged`], [`JournalError::Io`].
+    pub fn record(&self, place: Place) -> Result<Record, JournalError> {
+        let written = &self.files[place.file as usize];
+        let read = self
+            .opened(place.file)
+            .and_then(|file| read_at(&file, place.at, place.length));
+        let mut payload = read.map_err(|cause| match cause.kind() {
+            io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof => JournalError::Damaged {
+                path: written.path.clone(),
+                at: place.at,
+            },
+            _ => JournalError::io(&written.path, cause),
+        })?;
+        let mut time = [0; 8];
+        time.copy_from_slice(&payload[17..RECORD_HEAD]);
+        Ok(Record {
+            unix_ms: u64::from_le_bytes(time),
+            left: payload.split_off(RECORD_HEAD),
+        })
+    }
+
+    /// A file, open to be read.
+    fn opened(&self, number: u32) -> io::Result<Arc<File>> {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((kept, file)) = open.as_ref()
+            && *kept == number
+        {
+            return Ok(Arc::clone(file));
+        }
+        let file = Arc::new(File::open(&self.files[number as usize].path)?);
+        *open = Some((number, Arc::clone(&file)));
+        Ok(file)
+    }
+
+    /// What the last process was bound to that worked on the study, and who it was; those that solved jobs apart left out.
+    pub fn newest(&self) -> Option<(&Binding, &Session)> {
+        let known = |written: &'_ &Written| written.session.as_ref().is_some_and(|session| !session.apart);
+        let newest = self.files.iter().rev().filter(known);
+        newest
+            .filter_map(|written| written.binding.as_ref().zip(written.session.as_ref()))
+            .next()
+    }
+
+    /// The error of a record that cannot be understood.
+    pub fn damaged(&self, place: Place) -> JournalError {
+        JournalError::Damaged {
+            path: self.files[place.file as usize].path.clone(),
+            at: place.at,
+        }
+    }
+
+    /// The file that a record stands in.
+    pub fn file_of(&self, place: Place) -> &Written {
+        &self.files[place.file as usize]
+    }
+
+    /// In how many files whose process died each job had been begun and not recorded, of jobs that no file records. Processes
+    /// that solve jobs apart are not counted: they end with the one that waits for them.
+    pub fn deaths(&self) -> BTreeMap<RecordKey, usize> {
+        let mut deaths = BTreeMap::new();
+        let apart = |written: &&Written| written.session.as_ref().is_some_and(|session| session.apart);
+        for written in self
+            .files
+            .iter()
+            .filter(|written| written.ending.is_none() && !apart(written))
+        {
+            for key in written.begun.iter().filter(|key| self.find(key).is_none()) {
+                *deaths.entry(*key).or_insert(0) += 1;
+            }
+        }
+        deaths
+    }
+
+    /// The same without the last file: that of a process that is at work.
+    pub fn deaths_before(&self, key: &RecordKey) -> usize {
+        let before = &self.files[..self.files.len().saturating_sub(1)];
+        before
+            .iter()
+            .filter(|written| written.ending.is_none() && written.begun.contains(key))
+            .count()
+    }
+
+    /// Jobs that a process had begun apart and not recorded.
+    pub fn begun_apart(&self, process: u32) -> impl Iterator<Item = &RecordKey> {
+        let of = move |written: &&Written| {
+            written
+                .session
+                .as_ref()
+                .is_some_and(|s| s.apart && s.process == process)
+        };
+        let files = self.files.iter().filter(of).filter(|written| written.ending.is_none());
+        files.flat_map(|written| &written.begun)
+    }
+
+    /// What was passed over, file by file.
+    pub fn damages(&self) -> impl Iterator<Item = (&Path, &Damage)> {
+        self.files
+            .iter()
+            .flat_map(|written| written.damages.iter().map(|damage| (written.path.as_path(), damage)))
+    }
+}
+
+/// Key and state of a record.
+pub(super) fn record_head(payload: &[u8]) -> Option<(RecordKey, bool)> {
+    let key: [u8; 16] = *payload.first_chunk()?;
+    let failed = payload.get(16)?;
+    (payload.len() >= RECORD_HEAD && *failed <= 1).then_some((RecordKey(key), *failed == 1))
+}

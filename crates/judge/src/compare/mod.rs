@@ -1,0 +1,56 @@
+//! Results held against a reference, or against older results.
+//!
+//! Knows what a check asks of tables and what becomes of it. Does not know how a comparison is written down.
+
+mod asked;
+mod expected;
+mod history;
+mod judge;
+mod line;
+mod old;
+mod quantity;
+mod tolerances;
+
+pub use history::{Moments, moments_of};
+pub(crate) use judge::Judge;
+pub use line::{Case, Comparison, Line, Verdict};
+pub use old::against_old;
+pub use tolerances::Tolerances;
+
+use crate::reference::Reference;
+use pontoon_plan::input::Refusal;
+use pontoon_plan::input::canonical_text;
+use pontoon_plan::study_file::Study;
+use pontoon_results::Results;
+
+/// Makes every check of a reference on results.
+///
+/// # Errors
+/// [`Refusal`] where the reference belongs to another study, or names a column, word or job that the results do not have.
+pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
+    let study = reference.study_of(&results.name, &results.place)?;
+    let judge = Judge::new(results, reference);
+    let lines = (0..reference.spec.checks.len())
+        .map(|i| judge.line(i))
+        .collect::<Result<_, _>>()?;
+    Ok(Comparison {
+        results: results.name.clone(),
+        with: reference.spec.name.clone(),
+        source: reference.spec.source.clone(),
+        notes: study.map(|study| changes(results, &study)).unwrap_or_default(),
+        lines,
+    })
+}
+
+/// What of a study has changed since its results.
+fn changes(results: &Results, study: &Study) -> Vec<String> {
+    let now = [("study", &study.document), ("bridge", &study.bridge.document)];
+    let then = [&results.study, &results.bridge];
+    let differ = now
+        .iter()
+        .zip(then)
+        .filter(|((_, now), then)| canonical_text(now) != canonical_text(then));
+    differ
+        .map(|((what, _), _)| format!("the {what} has changed since these results: run it again"))
+        .collect()
+}

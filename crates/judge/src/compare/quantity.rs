@@ -1,0 +1,248 @@
+//! A quantity of a reference evaluated on results.
+//!
+//! Knows rows, filters and what is made of them. Does not know what a quantity should be, nor whether the results can
+//! have what it names.
+
+use super::history::{History, Moments, moments_of};
+use crate::reference::{Filter, HistoryQuantity, Quantity, Reduction, SelectQuantity};
+use pontoon_results::{Results, Table, TableName};
+use std::cell::{OnceCell, RefCell};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
+
+/// Evaluates quantities of one reference on results.
+pub(super) struct Evaluator<'a> {
+    pub(super) results: &'a Results,
+    /// Rows of each job in each table that was looked at, jobs in the order of their own table.
+    of_jobs: RefCell<BTreeMap<TableName, Rc<Vec<Vec<usize>>>>>,
+    /// Rows of each history, by job, quantity and position.
+    histories: OnceCell<HashMap<(u64, String, u64), Vec<usize>>>,
+    /// What is to be said of the quantities evaluated since the last look.
+    notes: RefCell<BTreeSet<String>>,
+}
+
+impl<'a> Evaluator<'a> {
+    pub(super) fn new(results: &'a Results) -> Self {
+        Self {
+            results,
+            of_jobs: RefCell::default(),
+            histories: OnceCell::new(),
+            notes: RefCell::default(),
+        }
+    }
+
+    /// What is to be said of the quantities evaluated since the last call.
+    pub(super) fn take_notes(&self) -> BTreeSet<String> {
+        std::mem::take(&mut *self.notes.borrow_mut())
+    }
+
+    fn note(&self, text: String) {
+        self.notes.borrow_mut().insert(text);
+    }
+
+    /// The value of a quantity; `filter` holds for all its parts unless they say otherwise.
+    pub(super) fn value(&self, quantity: &Quantity, filter: &Filter) -> Result<f64, String> {
+        let value = match quantity {
+            Quantity::Number(number) => *number,
+            Quantity::Select(select) => self.select(select, filter)?,
+            Quantity::History(history) => self.history(history, filter)?,
+            several => {
+                let parts = several.parts().into_iter().map(|(_, part)| self.value(part, filter));
+                combined(several, &parts.collect::<Result<Vec<f64>, String>>()?)
+            }
+        };
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(format!("not a finite number: {value}"))
+        }
+    }
+
+    /// A table of the results.
+    pub(super) fn table(&self, name: TableName) -> Result<&'a Table, String> {
+        self.results
+            .table(name)
+            .ok_or_else(|| format!("the results hold no table of {}", name.word()))
+    }
+
+    fn select(&self, select: &SelectQuantity, outer: &Filter) -> Result<f64, String> {
+        let table = self.table(select.table)?;
+        let (rows, failed) = self.rows(select.table, &select.filter.within(outer))?;
+        let values: Vec<f64> = rows
+            .iter()
+            .filter_map(|&row| table.number(&select.column, row))
+            .collect();
+        if select.reduce == Reduction::Count {
+            return Ok(values.len() as f64);
+        }
+        if values.is_empty() {
+            return Err(format!("{} empty in all {} rows that match", select.column, rows.len()));
+        }
+        if select.reduce == Reduction::Only {
+            return match values.as_slice() {
+                [value] if rows.len() == 1 => Ok(*value),
+                _ => Err(format!("{} rows match where one is meant", rows.len())),
+            };
+        }
+        if failed > 0 {
+            return Err(format!("{} among those that match", failed_jobs(failed)));
+        }
+        if values.len() < rows.len() {
+            let empty = rows.len() - values.len();
+            self.note(format!("{} empty in {empty} of {} rows", select.column, rows.len()));
+        }
+        Ok(match select.reduce {
+            Reduction::Max => values.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            Reduction::Min => values.into_iter().fold(f64::INFINITY, f64::min),
+            Reduction::Mean | Reduction::Only | Reduction::Count => values.iter().sum::<f64>() / values.len() as f64,
+        })
+    }
+
+    /// The rows of the table of jobs that a filter means, failed ones among them; keys that are no columns of jobs are
+    /// passed over.
+    pub(super) fn jobs(&self, filter: &Filter) -> Vec<usize> {
+        let jobs = self.results.jobs();
+        let means = |row: &usize| {
+            let mut of_jobs = filter.0.iter().filter(|(name, _)| jobs.has(name));
+            of_jobs.all(|(name, allowed)| allowed.allows(&jobs.cell(name, *row)))
+        };
+        (0..jobs.rows()).filter(means).collect()
+    }
+
+    /// The rows of a table that a filter means, those of failed jobs left out; and how many jobs failed of those that match.
+    pub(super) fn rows(&self, name: TableName, filter: &Filter) -> Result<(Vec<usize>, usize), String> {
+        let table = self.table(name)?;
+        let of_jobs = Filter(
+            filter
+                .0
+                .iter()
+                .filter(|(c, _)| name == TableName::Jobs || !table.has(c) || c == "job")
+                .cloned()
+                .collect(),
+        );
+        let (whole, failed) = self.whole_jobs(&of_jobs)?;
+        if name == TableName::Jobs {
+            return Ok((whole, failed));
+        }
+        let own: Vec<_> = filter.0.iter().filter(|(c, _)| table.has(c)).collect();
+        let means = |row: &usize| {
+            let mut cells = own
+                .iter()
+                .map(|(column, allowed)| allowed.allows(&table.cell(column, *row)));
+            cells.all(|meant| meant)
+        };
+        let of_jobs = self.rows_of_jobs(name, table);
+        let (mut rows, mut without) = (Vec::new(), 0);
+        for &job in &whole {
+            let before = rows.len();
+            rows.extend(of_jobs[job].iter().copied().filter(means));
+            without += usize::from(rows.len() == before);
+        }
+        if rows.is_empty() {
+            return Err(format!("no row of {} matches", name.word()));
+        }
+        if without > 0 {
+            self.note(format!("{without} of {} jobs have no such row", whole.len()));
+        }
+        Ok((rows, failed))
+    }
+
+    /// The rows of each job in a table.
+    fn rows_of_jobs(&self, name: TableName, table: &Table) -> Rc<Vec<Vec<usize>>> {
+        let mut indices = self.of_jobs.borrow_mut();
+        let index = indices.entry(name).or_insert_with(|| {
+            let mut rows = vec![Vec::new(); self.results.jobs().rows()];
+            for row in 0..table.rows() {
+                let job = table
+                    .number("job", row)
+                    .and_then(|job| self.results.row_of_job(job as u64));
+                if let Some(job) = job {
+                    rows[job].push(row);
+                }
+            }
+            Rc::new(rows)
+        });
+        Rc::clone(index)
+    }
+
+    /// The rows of the table of jobs that a filter means and that did not fail, at least one; and how many failed.
+    fn whole_jobs(&self, filter: &Filter) -> Result<(Vec<usize>, usize), String> {
+        let jobs = self.results.jobs();
+        let rows = self.jobs(filter);
+        let (failed, whole): (Vec<usize>, Vec<usize>) =
+            rows.iter().partition(|&&row| jobs.cell("status", row) == "failed");
+        if rows.is_empty() {
+            return Err("no job matches".to_owned());
+        }
+        if whole.is_empty() {
+            return Err(format!("only failed jobs match, {} of them", failed.len()));
+        }
+        if !failed.is_empty() {
+            self.note(format!("{} left out", failed_jobs(failed.len())));
+        }
+        Ok((whole, failed.len()))
+    }
+
+    fn history(&self, asked: &HistoryQuantity, outer: &Filter) -> Result<f64, String> {
+        let filter = asked.filter.within(outer);
+        let (whole, _) = self.whole_jobs(&filter)?;
+        let [row] = whole[..] else {
+            return Err("several jobs match where one history is meant".to_owned());
+        };
+        let job = self.results.jobs().number("job", row).unwrap_or_default() as u64;
+        let history = self.recorded(job, &asked.quantity, asked.position as u64)?;
+        if !asked.needs_moments() {
+            return history.reduced(&Moments::default(), asked.reduce);
+        }
+        let moments = moments_of(self.results, row, asked.position)?;
+        history
+            .part(&moments, asked.from, asked.to)
+            .and_then(|part| part.reduced(&moments, asked.reduce))
+    }
+
+    /// A recorded history.
+    fn recorded(&self, job: u64, quantity: &str, position: u64) -> Result<History, String> {
+        let table = self.table(TableName::Histories)?;
+        let index = self.histories.get_or_init(|| {
+            let mut index: HashMap<(u64, String, u64), Vec<usize>> = HashMap::new();
+            for row in 0..table.rows() {
+                let number = |column| table.number(column, row).unwrap_or_default() as u64;
+                let quantity = table.cell("quantity", row).as_str().unwrap_or_default().to_owned();
+                index
+                    .entry((number("job"), quantity, number("position")))
+                    .or_default()
+                    .push(row);
+            }
+            index
+        });
+        let Some(rows) = index.get(&(job, quantity.to_owned(), position)) else {
+            return Err(format!("no history of {quantity} at {position} was recorded"));
+        };
+        let point = |&row: &usize| table.number("time_s", row).zip(table.number("value", row));
+        match rows.iter().map(point).collect::<Option<Vec<(f64, f64)>>>() {
+            Some(points) => {
+                let (time_s, values) = points.into_iter().unzip();
+                Ok(History { time_s, values })
+            }
+            None => Err("a history with empty values".to_owned()),
+        }
+    }
+}
+
+fn failed_jobs(count: usize) -> String {
+    match count {
+        1 => "1 failed job".to_owned(),
+        n => format!("{n} failed jobs"),
+    }
+}
+
+/// A quantity of several parts, from their values.
+fn combined(quantity: &Quantity, values: &[f64]) -> f64 {
+    match (quantity, values) {
+        (Quantity::Ratio(_), [a, b]) => a / b,
+        (Quantity::Difference(_), [a, b]) => a - b,
+        (Quantity::Largest(_), list) => list.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        (Quantity::Smallest(_), list) => list.iter().copied().fold(f64::INFINITY, f64::min),
+        _ => f64::NAN,
+    }
+}

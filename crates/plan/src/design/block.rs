@@ -1,0 +1,287 @@
+//! The designs of a study with their axes read.
+//!
+//! Knows what makes a design one that can be expanded: names, forms and sizes. Does not know what a point means.
+
+use super::axes::{Axis, check_apart};
+use super::condition::{Conditions, Test};
+use super::forms::{AxisMap, Design, Form, SampleSpec};
+use super::points::{Drawn, Making, Point, Sample, points};
+use super::sampling::SobolPoints;
+use super::values::{MOST_POINTS, Values};
+use crate::input::Refusal;
+use crate::input::canonical;
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// Most parts of all ranges of a Latin hypercube, whose orders take four bytes a part.
+const MOST_PARTS: usize = 100_000_000;
+
+/// A design with its axes read, or one of its cases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// Where its axes stand in the study file.
+    pub key: String,
+    /// Its axes in the order of the file.
+    pub axes: Vec<Axis>,
+    making: Making,
+    tests: Vec<Test>,
+    /// Number of its points that meet the conditions.
+    count: usize,
+}
+
+impl Block {
+    /// Reads the designs of a study; `known` are the names to suggest for a name that is not known.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a design of no form or of several, an empty axis, an unknown name, a form that is none, more points
+    /// than a study may have, conditions under which no point is left.
+    pub fn read(file: &Path, designs: &[Design], known: &[String]) -> Result<Vec<Self>, Refusal> {
+        if designs.is_empty() {
+            let allowed = format!("at least one design: {}", Form::NAMES.join(", "));
+            return Err(Refusal::new(file, "design", "an empty list", allowed));
+        }
+        let reader = Reader { file, known };
+        let read = |(d, design)| reader.design(&format!("design[{d}]"), design);
+        let read = (0..).zip(designs).map(read).collect::<Result<Vec<Vec<Self>>, _>>()?;
+        // before conditions, which are tried on every point
+        check_size(file, read.iter().flatten())?;
+        let mut blocks = Vec::new();
+        for (d, (design, of_design)) in designs.iter().zip(read).enumerate() {
+            blocks.extend(reader.met(&format!("design[{d}].where"), &design.conditions, of_design)?);
+        }
+        Ok(blocks)
+    }
+
+    fn new(file: &Path, key: String, axes: Vec<Axis>, making: Making) -> Result<Self, Refusal> {
+        check_apart(file, &key, &axes)?;
+        let count = making.count().unwrap_or(usize::MAX);
+        Ok(Self {
+            key,
+            axes,
+            making,
+            tests: Vec::new(),
+            count,
+        })
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there is no point; never so for a block that was read.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The points in order: of a grid the first axis changes slowest. They are made one by one, so a long block costs
+    /// nothing but, of a Latin hypercube, four bytes a point and range while it lasts.
+    pub fn points(&self) -> impl Iterator<Item = Point<'_>> {
+        points(self, &self.making, &self.tests)
+    }
+}
+
+/// Refuses designs that together have more points than a study may have.
+fn check_size<'a>(file: &Path, blocks: impl Iterator<Item = &'a Block> + Clone) -> Result<(), Refusal> {
+    let points = blocks
+        .clone()
+        .try_fold(0_usize, |sum, block| sum.checked_add(block.making.count()?));
+    if points.is_some_and(|points| points <= MOST_POINTS) {
+        return Ok(());
+    }
+    let size: f64 = blocks.map(|block| block.making.size()).sum();
+    let found = if size < 1e15 {
+        format!("{size} points")
+    } else {
+        format!("{size:.1e} points")
+    };
+    Err(Refusal::new(
+        file,
+        "design",
+        found,
+        format!("at most {MOST_POINTS} points"),
+    ))
+}
+
+/// Reads designs of one file.
+struct Reader<'a> {
+    file: &'a Path,
+    /// Names to suggest.
+    known: &'a [String],
+}
+
+impl Reader<'_> {
+    fn refuse<T>(
+        &self,
+        key: impl Into<String>,
+        found: impl ToString,
+        allowed: impl Into<String>,
+    ) -> Result<T, Refusal> {
+        Err(Refusal::new(self.file, key, found, allowed))
+    }
+
+    /// The blocks of a design, without its conditions.
+    fn design(&self, key: &str, design: &Design) -> Result<Vec<Block>, Refusal> {
+        let form = match design.form() {
+            Ok(form) => form,
+            Err(found) => {
+                let found = match found.as_slice() {
+                    [] => "none of them".to_owned(),
+                    several => several.join(" and "),
+                };
+                return self.refuse(key, found, format!("exactly one of {}", Form::NAMES.join(", ")));
+            }
+        };
+        match form {
+            Form::Grid(map) => Ok(vec![self.listed(format!("{key}.grid"), map, Making::Grid)?]),
+            Form::Zip(map) => {
+                let block = self.listed(format!("{key}.zip"), map, Making::Zip)?;
+                self.check_even(&block)?;
+                Ok(vec![block])
+            }
+            Form::Cases([]) => self.refuse(format!("{key}.cases"), "an empty list", "at least one case"),
+            Form::Cases(cases) => {
+                let case = |(c, case)| self.case(format!("{key}.cases[{c}]"), case);
+                (0..).zip(cases).map(case).collect()
+            }
+            Form::LatinHypercube(spec) => {
+                let key = format!("{key}.latin_hypercube");
+                let (axes, sample) = self.sample(&key, spec)?;
+                let ranges = sample.drawn.iter().filter(|drawn| drawn.is_range()).count();
+                if sample.count > MOST_PARTS / ranges {
+                    let found = format!("{} points of {ranges} ranges", sample.count);
+                    let allowed = format!("at most {} points of so many ranges", MOST_PARTS / ranges);
+                    return self.refuse(format!("{key}.count"), found, allowed);
+                }
+                let key = format!("{key}.ranges");
+                Ok(vec![Block::new(self.file, key, axes, Making::LatinHypercube(sample))?])
+            }
+            Form::Sobol(spec) => {
+                let (axes, sample) = self.sample(&format!("{key}.sobol"), spec)?;
+                let key = format!("{key}.sobol.ranges");
+                let dimensions = sample.drawn.iter().filter(|drawn| drawn.is_range()).count();
+                if dimensions > SobolPoints::MOST_DIMENSIONS {
+                    let allowed = format!("at most {} ranges", SobolPoints::MOST_DIMENSIONS);
+                    return self.refuse(key, format!("{dimensions} ranges"), allowed);
+                }
+                Ok(vec![Block::new(self.file, key, axes, Making::Sobol(sample))?])
+            }
+        }
+    }
+
+    /// A block of axes with their values.
+    fn listed(&self, key: String, map: &AxisMap, making: fn(Vec<Values>) -> Making) -> Result<Block, Refusal> {
+        let axis = |(name, written): (&String, &Value)| {
+            let at = format!("{key}.{name}");
+            let axis = Axis::read(self.file, &at, name, self.known)?;
+            Ok((axis, Values::read(self.file, &at, written)?))
+        };
+        let read = map.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
+        let (axes, values) = read.into_iter().unzip();
+        Block::new(self.file, key, axes, making(values))
+    }
+
+    /// Refuses axes of a zip that have unequal numbers of values.
+    fn check_even(&self, block: &Block) -> Result<(), Refusal> {
+        let Making::Zip(values) = &block.making else {
+            return Ok(());
+        };
+        let mut several = block.axes.iter().zip(values).filter(|(_, values)| values.len() > 1);
+        let Some((first, of_first)) = several.next() else {
+            return Ok(());
+        };
+        match several.find(|(_, values)| values.len() != of_first.len()) {
+            None => Ok(()),
+            Some((axis, values)) => {
+                let found = format!("{} values", values.len());
+                let allowed = format!("{} values, as many as {} has, or one", of_first.len(), first.name);
+                self.refuse(format!("{}.{}", block.key, axis.name), found, allowed)
+            }
+        }
+    }
+
+    fn case(&self, key: String, case: &Map<String, Value>) -> Result<Block, Refusal> {
+        let axis = |(name, value): (&String, &Value)| {
+            let axis = Axis::read(self.file, &format!("{key}.{name}"), name, self.known)?;
+            Ok((axis, Values::Listed(vec![canonical(value)])))
+        };
+        let read = case.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
+        let (axes, values) = read.into_iter().unzip();
+        Block::new(self.file, key, axes, Making::Grid(values))
+    }
+
+    /// The axes of a sample and what they are drawn from; `key` is where its count stands.
+    fn sample(&self, key: &str, spec: &SampleSpec) -> Result<(Vec<Axis>, Sample), Refusal> {
+        if !(1..=MOST_POINTS).contains(&spec.count) {
+            let allowed = format!("a whole number from 1 to {MOST_POINTS}");
+            return self.refuse(format!("{key}.count"), spec.count, allowed);
+        }
+        let key = format!("{key}.ranges");
+        let axis = |(name, written): (&String, &Value)| {
+            let at = format!("{key}.{name}");
+            let axis = Axis::read(self.file, &at, name, self.known)?;
+            Ok((axis, self.drawn(&at, name, written)?))
+        };
+        let read = spec.ranges.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
+        let (axes, drawn): (_, Vec<Drawn>) = read.into_iter().unzip();
+        if !drawn.iter().any(Drawn::is_range) {
+            return self.refuse(key, "no range", "at least one axis with a range [from, to]");
+        }
+        let sample = Sample {
+            count: spec.count,
+            seed: spec.seed,
+            drawn,
+        };
+        Ok((axes, sample))
+    }
+
+    fn drawn(&self, key: &str, name: &str, written: &Value) -> Result<Drawn, Refusal> {
+        let allowed = "[from, to], two numbers with from below to, or one number or word";
+        match written {
+            Value::Number(_) | Value::String(_) | Value::Bool(_) => Ok(Drawn::Constant(canonical(written))),
+            _ if name == "connection" => self.refuse(key, written, "linear or nonlinear, the same for all points"),
+            Value::Array(ends) => match (
+                ends.as_slice(),
+                ends.iter().map(Value::as_f64).collect::<Vec<_>>().as_slice(),
+            ) {
+                ([_, _], &[Some(from), Some(to)]) if from < to && (to - from).is_finite() => Ok(Drawn::Range(from, to)),
+                ([_, _], &[Some(from), Some(to)]) if from < to => self.refuse(
+                    key,
+                    format!("from {from:e} to {to:e}"),
+                    "ends that are not so far apart",
+                ),
+                _ => self.refuse(key, written, allowed),
+            },
+            _ => self.refuse(key, written, allowed),
+        }
+    }
+
+    /// What conditions leave of the blocks of a design; `key` is where the conditions stand.
+    fn met(&self, key: &str, conditions: &Conditions, blocks: Vec<Block>) -> Result<Vec<Block>, Refusal> {
+        if conditions.is_empty() {
+            return Ok(blocks);
+        }
+        let mut axes: Vec<Axis> = Vec::new();
+        for axis in blocks.iter().flat_map(|block| &block.axes) {
+            if !axes.contains(axis) {
+                axes.push(axis.clone());
+            }
+        }
+        conditions.check(self.file, key, &axes)?;
+        let all: usize = blocks.iter().map(Block::len).sum();
+        let mut left = Vec::new();
+        for mut block in blocks {
+            block.tests = conditions.on(&block.axes);
+            block.count = block.points().count();
+            left.extend(Some(block).filter(|block| !block.is_empty()));
+        }
+        if left.is_empty() {
+            let allowed = match all {
+                1 => "conditions that the one point meets".to_owned(),
+                all => format!("conditions that at least one of the {all} points meets"),
+            };
+            return self.refuse(key, "conditions under which no point is left", allowed);
+        }
+        Ok(left)
+    }
+}

@@ -1,0 +1,270 @@
+//! The `where` of a design: what a point must meet to become a job.
+//!
+//! Knows how conditions are written and when the values of a point meet them. Does not know how points are made.
+
+use super::axes::Axis;
+use crate::input::Refusal;
+use crate::input::filter::{Allowed, entries, same};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+use std::path::Path;
+
+/// Conditions by the name of their axis, in the order of the file; a point meets all of them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Conditions(pub Vec<(String, Condition)>);
+
+/// What the value of an axis must meet: what it may be, and how it stands to the values of other axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// What it may be; anything where absent.
+    pub allowed: Option<Allowed>,
+    /// How it stands to the axes of these names.
+    pub compared: Vec<(Relation, String)>,
+}
+
+/// How a number stands to another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Relation {
+    /// Not less.
+    AtLeast,
+    /// Not more.
+    AtMost,
+    /// More.
+    Above,
+    /// Less.
+    Below,
+}
+
+impl Relation {
+    const ALL: [Self; 4] = [Self::AtLeast, Self::AtMost, Self::Above, Self::Below];
+
+    /// The key that says it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::AtLeast => "at_least",
+            Self::AtMost => "at_most",
+            Self::Above => "above",
+            Self::Below => "below",
+        }
+    }
+
+    /// Whether `a` stands to `b` so; numbers that differ in their last bits alone are equal.
+    pub fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::AtLeast => a > b || same(a, b),
+            Self::AtMost => a < b || same(a, b),
+            Self::Above => a > b && !same(a, b),
+            Self::Below => a < b && !same(a, b),
+        }
+    }
+}
+
+impl Condition {
+    fn read(written: &Value) -> Result<Self, String> {
+        let Value::Object(map) = written else {
+            let allowed = Some(Allowed::read(written)?);
+            let compared = Vec::new();
+            return Ok(Self { allowed, compared });
+        };
+        let relation = |key: &str| Relation::ALL.into_iter().find(|relation| relation.key() == key);
+        let (mut bounds, mut compared) = (Map::new(), Vec::new());
+        for (key, value) in map {
+            match (relation(key), value) {
+                (Some(relation), Value::String(axis)) => compared.push((relation, axis.clone())),
+                (Some(_), value) => {
+                    return Err(format!(
+                        "{value} as {key}, expected the name of another axis (the keys of numbers are from and to)"
+                    ));
+                }
+                (None, value) if key == "from" || key == "to" => {
+                    bounds.insert(key.clone(), value.clone());
+                }
+                (None, _) => {
+                    let keys = Relation::ALL.map(|relation| format!("`{}`", relation.key())).join(", ");
+                    return Err(format!("unknown field `{key}`, expected one of `from`, `to`, {keys}"));
+                }
+            }
+        }
+        let allowed = if bounds.is_empty() && !compared.is_empty() {
+            None
+        } else {
+            Some(Allowed::read(&bounds.into())?)
+        };
+        Ok(Self { allowed, compared })
+    }
+
+    fn written(&self) -> Value {
+        let allowed = self.allowed.as_ref().map(Allowed::written);
+        if self.compared.is_empty() {
+            return allowed.unwrap_or_default();
+        }
+        let mut map = match allowed {
+            Some(Value::Object(map)) => map,
+            _ => Map::new(),
+        };
+        map.extend(
+            self.compared
+                .iter()
+                .map(|(relation, axis)| (relation.key().to_owned(), axis.as_str().into())),
+        );
+        map.into()
+    }
+}
+
+impl Conditions {
+    /// Whether every point meets them.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Refuses a name that is none of the `axes` of the design; `key` is where the conditions stand.
+    pub(super) fn check(&self, file: &Path, key: &str, axes: &[Axis]) -> Result<(), Refusal> {
+        let check = |key: String, name: &str| {
+            if axes.iter().any(|axis| axis.sets_what(name)) {
+                return Ok(());
+            }
+            let known: Vec<String> = axes.iter().map(|axis| axis.name.clone()).collect();
+            Err(Refusal::unknown(file, key, name, &known))
+        };
+        for (name, condition) in &self.0 {
+            let key = format!("{key}.{name}");
+            check(key.clone(), name)?;
+            for (relation, other) in &condition.compared {
+                check(format!("{key}.{}", relation.key()), other)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The conditions on the points of a block with these axes.
+    pub(super) fn on(&self, axes: &[Axis]) -> Vec<Test> {
+        let place = |name: &str| axes.iter().position(|axis| axis.sets_what(name));
+        let test = |(name, condition): &(String, Condition)| Test {
+            axis: place(name),
+            allowed: condition.allowed.clone(),
+            compared: condition
+                .compared
+                .iter()
+                .map(|(relation, other)| (*relation, place(other)))
+                .collect(),
+        };
+        self.0.iter().map(test).collect()
+    }
+}
+
+/// A condition with its axes by their places in a block; an axis that the block does not have is null.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Test {
+    axis: Option<usize>,
+    allowed: Option<Allowed>,
+    compared: Vec<(Relation, Option<usize>)>,
+}
+
+impl Test {
+    /// Whether the values of a point meet the condition. What is no number stands in no relation.
+    pub(super) fn met(&self, values: &[Cow<'_, Value>]) -> bool {
+        let value = |axis: Option<usize>| axis.map_or(&Value::Null, |axis| values[axis].as_ref());
+        let own = value(self.axis);
+        let stands = |&(relation, other): &(Relation, Option<usize>)| matches!((own.as_f64(), value(other).as_f64()), (Some(a), Some(b)) if relation.holds(a, b));
+        self.allowed.as_ref().is_none_or(|allowed| allowed.allows(own)) && self.compared.iter().all(stands)
+    }
+}
+
+impl Serialize for Conditions {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let map: Map<String, Value> = self.0.iter().map(|(name, c)| (name.clone(), c.written())).collect();
+        map.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Conditions {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        entries(deserializer).map(Self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Condition {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(&Value::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
+
+impl JsonSchema for Conditions {
+    fn schema_name() -> Cow<'static, str> {
+        "Conditions".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let single = json!({ "type": ["number", "string", "boolean", "null"] });
+        let bound = |text: &str| json!({ "type": "number", "description": text });
+        let other = |text: &str| json!({ "type": "string", "description": text });
+        let keys = json!({
+            "from": bound("It is a number of at least this."),
+            "to": bound("It is a number of at most this."),
+            "at_least": other("It is not less than the axis of this name."),
+            "at_most": other("It is not more than the axis of this name."),
+            "above": other("It is more than the axis of this name."),
+            "below": other("It is less than the axis of this name."),
+        });
+        let schema = json!({
+            "type": "object",
+            "description": "For each of some axes of the design a value, a list of values, or bounds: numbers, both ends \
+                            included, and other axes. A point that does not meet all of them is left out; an axis that a \
+                            case does not have is null.",
+            "additionalProperties": { "anyOf": [
+                single,
+                { "type": "array", "minItems": 1, "items": single },
+                { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": keys },
+            ] }
+        });
+        Schema::try_from(schema).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(value: Value) -> Result<Conditions, serde_json::Error> {
+        serde_json::from_value(value)
+    }
+
+    #[test]
+    fn what_is_no_condition_is_refused_and_what_is_one_is_written_as_it_was_read() {
+        for bad in [
+            json!({"a": []}),
+            json!({"a": {}}),
+            json!({"a": {"over": "b"}}),
+            json!({"a": {"at_least": 1}}),
+            json!({"a": {"above": null}}),
+            json!({"a": {"from": "b"}}),
+            json!({"a": {"from": 2, "to": 1, "above": "b"}}),
+            json!(["a"]),
+        ] {
+            assert!(read(bad.clone()).is_err(), "{bad}");
+        }
+        let written = json!({"a": 1, "b": ["x", null], "c": {"from": 0.0, "to": 1.0}, "d": {"at_least": "a"},
+                             "e": {"to": 3.0, "above": "a", "below": "b"}});
+        assert_eq!(serde_json::to_value(read(written.clone()).unwrap()).unwrap(), written);
+    }
+
+    #[test]
+    fn relations_take_numbers_that_differ_in_their_last_bits_for_equal() {
+        let (a, b) = (0.1 + 0.2, 0.3);
+        assert_ne!(a, b);
+        for (relation, less, equal, more) in [
+            (Relation::AtLeast, false, true, true),
+            (Relation::AtMost, true, true, false),
+            (Relation::Above, false, false, true),
+            (Relation::Below, true, false, false),
+        ] {
+            assert_eq!(relation.holds(0.2, b), less, "{relation:?}");
+            assert_eq!(relation.holds(a, b), equal, "{relation:?}");
+            assert_eq!(relation.holds(b, a), equal, "{relation:?}");
+            assert_eq!(relation.holds(0.4, b), more, "{relation:?}");
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Designs of a study: axes, blocks, the points they expand to.
+//!
+//! Knows what a person may write of axes and how points are drawn. Does not know bridges, vehicles or jobs.
+
+mod axes;
+mod block;
+mod condition;
+mod forms;
+mod points;
+mod sampling;
+#[cfg(test)]
+mod tests;
+mod values;
+
+pub use axes::{Axis, AxisName, SHORT_NAMES};
+pub use block::Block;
+pub use condition::{Condition, Conditions, Relation};
+pub use forms::{AxisMap, Design, Form, RangeMap, SampleSpec};
+pub use points::Point;

@@ -1,0 +1,246 @@
+//! Which rows or points are meant: a value, a list of values or a range for each of some columns or axes.
+//!
+//! Knows the forms and when a cell is meant. Does not know which columns or axes there are.
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+/// Columns with what they may hold, in the order of the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Filter(pub Vec<(String, Allowed)>);
+
+/// What a cell may hold.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Allowed {
+    /// One of these: numbers, words, yes and no, or nothing.
+    OneOf(Vec<Value>),
+    /// A number from the first to the second, both included; no bound where absent.
+    Range(Option<f64>, Option<f64>),
+}
+
+/// Numbers closer than this share of each other are the same: decimals of a file and points of a range differ in their
+/// last bits.
+const SAME_NUMBER: f64 = 1e-9;
+
+impl Allowed {
+    /// Whether a cell is meant.
+    pub fn allows(&self, cell: &Value) -> bool {
+        match (self, cell.as_f64()) {
+            (Self::OneOf(values), Some(x)) => values.iter().filter_map(Value::as_f64).any(|v| same(v, x)),
+            (Self::OneOf(values), None) => values.contains(cell),
+            (Self::Range(from, to), Some(x)) => {
+                from.is_none_or(|from| x >= from || same(from, x)) && to.is_none_or(|to| x <= to || same(to, x))
+            }
+            (Self::Range(..), None) => false,
+        }
+    }
+
+    /// The words among the values.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        let values: &[Value] = match self {
+            Self::OneOf(values) => values,
+            Self::Range(..) => &[],
+        };
+        values.iter().filter_map(Value::as_str)
+    }
+
+    /// What a file writes; what is wrong with it as text.
+    pub fn read(written: &Value) -> Result<Self, String> {
+        let forms = "a value, a list of values or {\"from\": .., \"to\": ..}";
+        match written {
+            Value::Array(list) if list.is_empty() => Err(format!("an empty list, expected {forms}")),
+            Value::Array(list) if list.iter().any(|v| v.is_array() || v.is_object()) => {
+                Err(format!("a list in a list, expected {forms}"))
+            }
+            Value::Array(list) => Ok(Self::OneOf(list.clone())),
+            Value::Object(map) => {
+                if let Some(key) = map.keys().find(|key| *key != "from" && *key != "to") {
+                    return Err(format!("unknown field `{key}`, expected `from` or `to`"));
+                }
+                let end = |key: &str| match map.get(key) {
+                    None => Ok(None),
+                    Some(value) => value
+                        .as_f64()
+                        .map(Some)
+                        .ok_or_else(|| format!("{value} as {key}, expected a number")),
+                };
+                match (end("from")?, end("to")?) {
+                    (None, None) => Err(format!("an empty object, expected {forms}")),
+                    (Some(from), Some(to)) if from > to => {
+                        Err(format!("a range from {from} to {to}, expected from at most to"))
+                    }
+                    (from, to) => Ok(Self::Range(from, to)),
+                }
+            }
+            single => Ok(Self::OneOf(vec![single.clone()])),
+        }
+    }
+
+    /// As a file writes it.
+    pub fn written(&self) -> Value {
+        match self {
+            Self::OneOf(values) => match values.as_slice() {
+                [single] => single.clone(),
+                several => several.to_vec().into(),
+            },
+            Self::Range(from, to) => {
+                let ends = [("from", from), ("to", to)];
+                let given = ends
+                    .iter()
+                    .filter_map(|(key, end)| end.map(|end| ((*key).to_owned(), json!(end))));
+                given.collect::<Map<_, _>>().into()
+            }
+        }
+    }
+}
+
+/// Whether two numbers are the same but for their last bits.
+pub fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs())
+}
+
+impl Filter {
+    /// Whether every row is meant.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// What a column may hold, where it is named.
+    pub fn of(&self, column: &str) -> Option<&Allowed> {
+        self.0
+            .iter()
+            .find(|(name, _)| name == column)
+            .map(|(_, allowed)| allowed)
+    }
+
+    /// This filter, and of columns that it does not name what `outer` says of them.
+    #[must_use]
+    pub fn within(&self, outer: &Self) -> Self {
+        let more = outer.0.iter().filter(|(name, _)| self.of(name).is_none());
+        Self(self.0.iter().chain(more).cloned().collect())
+    }
+
+    /// The filter with a column fixed to one value.
+    #[must_use]
+    pub fn fixed(&self, column: &str, value: &Value) -> Self {
+        let others = self.0.iter().filter(|(name, _)| name != column).cloned();
+        Self(
+            others
+                .chain([(column.to_owned(), Allowed::OneOf(vec![value.clone()]))])
+                .collect(),
+        )
+    }
+}
+
+impl Serialize for Filter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let map: Map<String, Value> = self.0.iter().map(|(name, a)| (name.clone(), a.written())).collect();
+        map.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Filter {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        entries(deserializer).map(Self)
+    }
+}
+
+/// The entries of an object in the order of the file, read one by one, so that a mistake is told with the path of its
+/// entry.
+pub fn entries<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<(String, T)>, D::Error> {
+    deserializer.deserialize_map(EntriesVisitor(PhantomData))
+}
+
+struct EntriesVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for EntriesVisitor<T> {
+    type Value = Vec<(String, T)>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object of names and what is allowed for each")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut read = Vec::new();
+        while let Some(entry) = map.next_entry()? {
+            read.push(entry);
+        }
+        Ok(read)
+    }
+}
+
+impl<'de> Deserialize<'de> for Allowed {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(&Value::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
+
+impl JsonSchema for Filter {
+    fn schema_name() -> Cow<'static, str> {
+        "Filter".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let single = json!({ "type": ["number", "string", "boolean", "null"] });
+        let ends = json!({ "from": { "type": "number" }, "to": { "type": "number" } });
+        let schema = json!({
+            "type": "object",
+            "description": "For each of some columns a value, a list of values or a range, both ends included.",
+            "additionalProperties": { "anyOf": [
+                single,
+                { "type": "array", "minItems": 1, "items": single },
+                { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": ends },
+            ] }
+        });
+        Schema::try_from(schema).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filter(value: Value) -> Filter {
+        serde_json::from_value(value).unwrap()
+    }
+
+    #[test]
+    fn values_lists_ranges_and_nothing_are_told_apart() {
+        let f = filter(json!({"a": 0.1, "b": ["x", null], "c": {"from": 2}, "d": true}));
+        let allows = |column: &str, cell: Value| f.of(column).unwrap().allows(&cell);
+        assert!(allows("a", json!(0.1 + 1e-12)) && !allows("a", json!(0.1001)) && !allows("a", json!(null)));
+        assert!(allows("b", json!("x")) && allows("b", json!(null)) && !allows("b", json!("y")));
+        assert!(allows("c", json!(2)) && !allows("c", json!(1.999)) && !allows("c", json!(null)));
+        assert!(allows("d", json!(true)) && !allows("d", json!(false)));
+    }
+
+    #[test]
+    fn an_inner_filter_has_the_last_word() {
+        let (inner, outer) = (filter(json!({"a": 1})), filter(json!({"a": 2, "b": 3})));
+        assert_eq!(inner.within(&outer), filter(json!({"a": 1, "b": 3})));
+        assert_eq!(outer.fixed("a", &json!(5)), filter(json!({"b": 3, "a": 5})));
+    }
+
+    #[test]
+    fn what_is_no_filter_is_refused_and_what_is_one_is_written_as_it_was_read() {
+        for bad in [
+            json!({"a": []}),
+            json!({"a": [[1]]}),
+            json!({"a": {}}),
+            json!({"a": {"over": 1}}),
+            json!({"a": {"to": "x"}}),
+            json!({"a": {"from": 2, "to": 1}}),
+            json!([1]),
+            json!("a"),
+        ] {
+            assert!(serde_json::from_value::<Filter>(bad.clone()).is_err(), "{bad}");
+        }
+        let written = json!({"a": 1, "b": [1, 2], "c": {"from": 0.0, "to": 1.0}, "d": null});
+        assert_eq!(serde_json::to_value(filter(written.clone())).unwrap(), written);
+    }
+}

@@ -1,0 +1,283 @@
+//! The three documents of a job - bridge, vehicle, analysis - after the axes, each distinct one read once.
+//!
+//! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
+
+use crate::design::{AxisName, Point};
+use crate::input::Refusal;
+use crate::input::to_value;
+use crate::input::{canonical_text, typed};
+use crate::study_file::{AnalysisSpec, Study, filled_vehicle};
+use pontoon_core::bridge::{BridgeDesign, Supports};
+use pontoon_core::input::InvalidInput;
+use pontoon_core::vehicle::{Vehicle, VehicleDesign};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A bridge after the axes.
+#[derive(Debug)]
+pub struct BridgeEntry {
+    /// Its number, from 0, in the order of first use.
+    pub id: usize,
+    /// Its design.
+    pub design: BridgeDesign,
+    /// The design as a document, defaults filled in.
+    pub document: Value,
+    /// Hash of the document.
+    pub hash: String,
+    /// Equal for bridges that differ in nothing but gaps (data of a job) and words.
+    pub structure_key: Arc<str>,
+    /// Equal for bridges that have one operator: the connectors' stiffness is no part of it either.
+    pub operator_key: Arc<str>,
+    /// Equal for bridges whose modules are equal: neither are the connectors' stiffness, the number of modules and the
+    /// supports part of a module.
+    pub module_key: Arc<str>,
+}
+
+/// A vehicle after the axes, checked on a deck.
+#[derive(Debug)]
+pub struct VehicleEntry {
+    /// Its number, from 0, in the order of first use.
+    pub id: usize,
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// Its design as a document, defaults filled in.
+    pub document: Value,
+    /// Equal for vehicles that are equal, whatever study they are of.
+    pub key: Arc<str>,
+}
+
+/// An analysis after the axes.
+#[derive(Debug)]
+pub struct AnalysisEntry {
+    /// Its number, from 0, in the order of first use.
+    pub id: usize,
+    /// The analysis, checked, with its defaults.
+    pub spec: AnalysisSpec,
+    /// The same as a document.
+    pub document: Value,
+    /// Equal for analyses that are equal, whatever study they are of.
+    pub key: Arc<str>,
+}
+
+/// The documents read so far.
+#[derive(Debug, Default)]
+pub(super) struct Documents {
+    bridges: Interned<BridgeEntry>,
+    vehicles: Interned<VehicleEntry>,
+    analyses: Interned<AnalysisEntry>,
+}
+
+/// What was asked for: the text of the changes, nothing where there are none, and bits of what else they are read with.
+type Asked = (u64, Option<String>);
+
+/// Entries by what was asked for, then by what it came to: two ways of writing the same share one entry.
+#[derive(Debug)]
+struct Interned<T> {
+    /// What was asked for last: most points of a study ask for the same as the one before.
+    last: Option<(Asked, Arc<T>)>,
+    asked: HashMap<Asked, Arc<T>>,
+    distinct: HashMap<String, Arc<T>>,
+}
+
+impl<T> Default for Interned<T> {
+    fn default() -> Self {
+        Self {
+            last: None,
+            asked: HashMap::new(),
+            distinct: HashMap::new(),
+        }
+    }
+}
+
+impl<T> Interned<T> {
+    /// The entry for `asked`; `make` reads it and gives its text, `build` makes the entry of a text not seen before.
+    fn get<D>(
+        &mut self,
+        asked: Asked,
+        make: impl FnOnce() -> Result<(String, D), Refusal>,
+        build: impl FnOnce(usize, D) -> T,
+    ) -> Result<Arc<T>, Refusal> {
+        if let Some((_, entry)) = self.last.as_ref().filter(|(last, _)| *last == asked) {
+            return Ok(Arc::clone(entry));
+        }
+        let entry = match self.asked.get(&asked) {
+            Some(entry) => Arc::clone(entry),
+            None => {
+                let (text, made) = make()?;
+                let id = self.distinct.len();
+                let entry = self.distinct.entry(text).or_insert_with(|| Arc::new(build(id, made)));
+                self.asked.insert(asked.clone(), Arc::clone(entry));
+                Arc::clone(entry)
+            }
+        };
+        self.last = Some((asked, Arc::clone(&entry)));
+        Ok(entry)
+    }
+}
+
+impl Documents {
+    /// The bridge of a point.
+    pub(super) fn bridge(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<BridgeEntry>, Refusal> {
+        let changes = Changes::of(study, point, "bridge");
+        let read = || {
+            let design: BridgeDesign = changes.applied(&to_value(&study.bridge.design))?;
+            design.check().map_err(|e| changes.refusal(e))?;
+            let document = to_value(&design);
+            Ok((canonical_text(&document), (design, document)))
+        };
+        self.bridges.get((0, changes.text()), read, |id, (design, document)| {
+            bridge_entry(id, design, document)
+        })
+    }
+
+    /// The vehicle of a point on the deck of `bridge`.
+    pub(super) fn vehicle(
+        &mut self,
+        study: &Study,
+        point: &Point<'_>,
+        bridge: &BridgeEntry,
+    ) -> Result<Arc<VehicleEntry>, Refusal> {
+        let changes = Changes::of(study, point, "vehicle");
+        let breadth_m = bridge.design.module.breadth_m;
+        let read = || {
+            // the defaults of the single footprint can be changed in part, unless axles take its place
+            let axles = changes.list.iter().any(|(name, ..)| name.starts_with("vehicle.axles"));
+            let written = &study.spec.vehicle;
+            let base = filled_vehicle(written).ok().filter(|_| !axles);
+            let design: VehicleDesign = changes.applied(&to_value(base.as_ref().unwrap_or(written)))?;
+            let design = filled_vehicle(&design).map_err(|e| changes.refusal(e))?;
+            let vehicle = design.check(breadth_m).map_err(|e| changes.refusal(e))?;
+            let document = to_value(&design);
+            Ok((canonical_text(&document), (vehicle, document)))
+        };
+        self.vehicles.get(
+            (breadth_m.to_bits(), changes.text()),
+            read,
+            |id, (vehicle, document)| VehicleEntry {
+                id,
+                vehicle,
+                key: canonical_text(&document).into(),
+                document,
+            },
+        )
+    }
+
+    /// The analysis of a point.
+    pub(super) fn analysis(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<AnalysisEntry>, Refusal> {
+        let changes = Changes::of(study, point, "analysis");
+        let read = || {
+            let spec: AnalysisSpec = changes.applied(&to_value(&study.spec.analysis))?;
+            let spec = spec.checked().map_err(|e| changes.refusal(e))?;
+            let document = to_value(&spec);
+            Ok((canonical_text(&document), (spec, document)))
+        };
+        self.analyses
+            .get((0, changes.text()), read, |id, (spec, document)| AnalysisEntry {
+                id,
+                spec,
+                key: blake3::hash(canonical_text(&document).as_bytes())
+                    .to_hex()
+                    .as_str()
+                    .into(),
+                document,
+            })
+    }
+}
+
+fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry {
+    let hash_of = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex();
+    let hash = hash_of(&document).to_string();
+    let mut neutral = design.clone();
+    neutral.name = String::new();
+    neutral.source = None;
+    neutral.provenance = None;
+    neutral.connectors.gap_tension_m = 0.0;
+    neutral.connectors.gap_compression_m = 0.0;
+    let structure_key = hash_of(&to_value(&neutral)).as_str().into();
+    neutral.connectors.stiffness_n_m = 1.0;
+    let operator_key = hash_of(&to_value(&neutral)).as_str().into();
+    neutral.modules = 1;
+    neutral.supports = Supports::default();
+    neutral.draft_m = None;
+    neutral.freeboard_m = None;
+    let module_key = hash_of(&to_value(&neutral)).as_str().into();
+    BridgeEntry {
+        id,
+        design,
+        document,
+        hash,
+        structure_key,
+        operator_key,
+        module_key,
+    }
+}
+
+/// What the axes of a point change in one document.
+struct Changes<'a> {
+    file: &'a Path,
+    block: &'a str,
+    root: &'static str,
+    list: Vec<(&'a str, &'a crate::input::DocumentPath, &'a Value)>,
+}
+
+impl<'a> Changes<'a> {
+    fn of(study: &'a Study, point: &'a Point<'_>, root: &'static str) -> Self {
+        let list = point.values().filter_map(|(axis, value)| match &axis.varies {
+            AxisName::Path { root: r, path } if *r == root => Some((axis.name.as_str(), path, value)),
+            _ => None,
+        });
+        Self {
+            file: &study.file,
+            block: &point.block.key,
+            root,
+            list: list.collect(),
+        }
+    }
+
+    /// Equal for equal changes; nothing where there are none, as of most points of large studies.
+    fn text(&self) -> Option<String> {
+        let texts = self.list.iter().map(|(name, _, value)| format!("{name}={value};"));
+        (!self.list.is_empty()).then(|| texts.collect())
+    }
+
+    /// The document with the changes, typed.
+    fn applied<T: DeserializeOwned + Serialize>(&self, base: &Value) -> Result<T, Refusal> {
+        let mut document = base.clone();
+        for (name, path, value) in &self.list {
+            path.set(&mut document, (*value).clone()).map_err(|found| {
+                Refusal::new(
+                    self.file,
+                    format!("{}.{name}", self.block),
+                    found,
+                    format!("the path of a value in {}", self.root),
+                )
+            })?;
+        }
+        typed(self.file, "", &document).map_err(|e| self.placed(e))
+    }
+
+    /// A refusal of a number of the changed document.
+    fn refusal(&self, error: InvalidInput) -> Refusal {
+        self.placed(Refusal::of(self.file, "", error))
+    }
+
+    /// The refusal with its key as the study file has it: at the axis that changed it, or beside the block where the
+    /// axes made another number wrong.
+    fn placed(&self, refusal: Refusal) -> Refusal {
+        let key = format!("{}.{}", self.root, refusal.key);
+        let axis = self
+            .list
+            .iter()
+            .any(|(name, ..)| key.starts_with(name) || name.starts_with(&key));
+        let key = match (self.list.is_empty(), axis) {
+            (true, _) => key,
+            (false, true) => format!("{}.{key}", self.block),
+            (false, false) => format!("{} ({key})", self.block),
+        };
+        Refusal { key, ..refusal }
+    }
+}

@@ -1,0 +1,24 @@
+//! The JSON Schema of study and bridge files.
+//!
+//! Knows which type stands for which file. Does not know more than those types: cross-checks (a track on the deck, a
+//! time step within a module's passage) are not expressible there.
+
+use crate::study_file::StudySpec;
+use pontoon_core::bridge::BridgeDesign;
+use serde_json::Value;
+
+/// Of a study file.
+pub fn study() -> Value {
+    titled(schemars::schema_for!(StudySpec), "pontoon study")
+}
+
+/// Of a bridge file.
+pub fn bridge() -> Value {
+    titled(schemars::schema_for!(BridgeDesign), "pontoon bridge")
+}
+
+/// A schema with its title.
+pub fn titled(mut schema: schemars::Schema, title: &str) -> Value {
+    schema.insert("title".to_owned(), title.into());
+    schema.to_value()
+}

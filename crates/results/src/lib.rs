@@ -1,0 +1,45 @@
+//! The contract between who writes results and who reads them.
+//!
+//! | module | charter |
+//! |---|---|
+//! | `record` | all rows of one job |
+//! | `preparation`, `verification`, `outcome` | what a run leaves behind beside its records |
+//! | `columns`, `frames` | which columns each table has |
+//! | `parquet`, `writer`, `summary` | tables under way; the summary |
+//! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
+//! | `table`, `results` | tables to read |
+//!
+//! Knows columns, provenance, and how a folder proves to be whole. Does not know how a record came about. The only room that
+//! knows the table library. Tables hold nothing that changes from run to run; the manifest does.
+
+mod columns;
+mod files;
+mod frames;
+mod manifest;
+mod moment;
+mod outcome;
+mod parquet;
+mod preparation;
+mod record;
+mod results;
+mod summary;
+mod table;
+mod verification;
+mod writer;
+
+pub use files::{OwnFiles, PAGE};
+pub use frames::axis_names;
+pub use manifest::{Manifest, SessionNote, check_own};
+pub use moment::Moment;
+pub use outcome::{Cause, Failures, Outcome, words_of_reason};
+pub use parquet::Provenance;
+pub use preparation::{BridgeReport, OperatorCounts, Preparation};
+pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PositionRow, Summary};
+pub use results::{Results, ResultsError};
+pub use summary::{Cell, SummaryTable};
+pub use table::{Kind, Table, TableName};
+pub use verification::Verification;
+pub use writer::Writer;
+
+/// Version of this program, as tables and manifests carry it.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,96 @@
+//! Parquet files with their provenance, written row group by row group.
+//!
+//! Knows what a file says of where it comes from and how it grows. Does not know its columns.
+
+use polars_core::prelude::{DataFrame, PolarsResult};
+use polars_io::prelude::{BatchedWriter, KeyValueMetadata, ParquetWriter};
+use pontoon_journal::fault::Watched;
+use pontoon_journal::place::{Folder, FolderError, Partial};
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::Study;
+use std::io::{self, BufWriter};
+
+/// Most rows of a row group, the table library's own number: what a reader takes at a time.
+const ROW_GROUP: usize = 1 << 18;
+
+/// What a program's tables carry of it and of where their numbers were computed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Provenance {
+    /// Commit of the program's sources, where it was built from one.
+    pub commit: Option<String>,
+    /// Instructions that crossings by the operator ran on; more than one where shards of such were merged.
+    pub instruction_paths: Vec<String>,
+}
+
+/// What every table of a study carries: nothing of it changes from run to run.
+pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> KeyValueMetadata {
+    let (study_text, study_hash) = study.text_and_hash();
+    let (bridge_text, bridge_hash) = study.bridge_text_and_hash();
+    let mut hashes: Vec<&str> = Vec::new();
+    let mut seen = std::collections::HashSet::new();
+    for job in jobs {
+        if seen.insert(job.bridge.id) {
+            hashes.push(&job.bridge.hash);
+        }
+    }
+    let seeds: Vec<String> = study.seeds().iter().map(ToString::to_string).collect();
+    let pairs = [
+        ("pontoon.version", crate::VERSION.to_owned()),
+        ("pontoon.commit", of.commit.clone().unwrap_or_default()),
+        ("pontoon.instruction_path", of.instruction_paths.join("; ")),
+        ("pontoon.jobs", jobs.len().to_string()),
+        ("pontoon.seeds", seeds.join(" ")),
+        ("pontoon.study", study_text),
+        ("pontoon.study_blake3", study_hash),
+        ("pontoon.bridge", bridge_text),
+        ("pontoon.bridge_blake3", bridge_hash),
+        ("pontoon.bridges_after_axes_blake3", hashes.join(" ")),
+    ];
+    KeyValueMetadata::from_static(pairs.map(|(key, value)| (key.to_owned(), value)).to_vec())
+}
+
+/// A table under way: rows are appended, a part after the other, and nothing of them stays in memory.
+pub(super) struct TableFile {
+    partial: Partial,
+    writer: BatchedWriter<BufWriter<Watched>>,
+}
+
+impl TableFile {
+    /// Begins a table of the columns of `empty`.
+    pub(super) fn begin(
+        folder: &Folder,
+        name: &str,
+        empty: PolarsResult<DataFrame>,
+        metadata: &KeyValueMetadata,
+    ) -> Result<Self, FolderError> {
+        let partial = folder.begin(name)?;
+        let writer = ParquetWriter::new(BufWriter::new(partial.watched()?))
+            .set_parallel(false)
+            .with_key_value_metadata(Some(metadata.clone()));
+        let writer = empty.and_then(|empty| writer.batched(empty.schema()));
+        match writer {
+            Ok(writer) => Ok(Self { partial, writer }),
+            Err(cause) => Err(partial.error(io::Error::other(cause))),
+        }
+    }
+
+    /// Appends rows as row groups of their own; no rows make none.
+    pub(super) fn append(&mut self, rows: PolarsResult<DataFrame>) -> Result<(), FolderError> {
+        let appended = rows.and_then(|rows| {
+            let starts = (0..rows.height()).step_by(ROW_GROUP);
+            starts.into_iter().try_for_each(|start| {
+                let group = rows.slice(i64::try_from(start).unwrap_or(i64::MAX), ROW_GROUP);
+                self.writer.write_batch(&group)
+            })
+        });
+        appended.map_err(|cause| self.partial.error(io::Error::other(cause)))
+    }
+
+    /// Ends the table, still under its temporary name, and leaves it with its hash.
+    pub(super) fn end(self) -> Result<(Partial, String), FolderError> {
+        let ended = self.writer.finish();
+        ended.map_err(|cause| self.partial.error(io::Error::other(cause)))?;
+        let hash = self.partial.sync()?;
+        Ok((self.partial, hash))
+    }
+}

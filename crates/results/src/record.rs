@@ -1,0 +1,343 @@
+//! All rows of one job.
+//!
+//! Knows which numbers a job leaves and that a number is either there or null. Does not know tables. A record can be
+//! written and read back without loss, so that a journal can stand between the jobs and the tables.
+
+use pontoon_plan::job::Job;
+use serde::{Deserialize, Serialize};
+
+/// All rows of one job.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct JobRecord {
+    /// The job's number: no part of what is kept of it, as a study that grows numbers its jobs anew.
+    #[serde(skip)]
+    pub job: usize,
+    /// Why it failed; null where it did not.
+    pub reason: Option<String>,
+    /// Its row of the table of jobs; all null where it failed.
+    pub summary: Summary,
+    /// Its rows of the table of positions.
+    pub positions: Vec<PositionRow>,
+    /// Its rows of the table of connectors: of each joint the sum, then each connector.
+    pub connectors: Vec<ConnectorRow>,
+    /// Its histories.
+    pub histories: HistoryRows,
+    /// Its rows of the table of modes.
+    pub modes: Vec<ModeRow>,
+}
+
+/// A job's row of the table of jobs, names as there.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Largest deflection of any position `[m]`.
+    pub peak_deflection_m: Option<f64>,
+    /// Its position.
+    pub peak_deflection_position: Option<usize>,
+    /// Its time `[s]`.
+    pub peak_deflection_time_s: Option<f64>,
+    /// Largest uplift of any position `[m]`.
+    pub peak_uplift_m: Option<f64>,
+    /// Its position.
+    pub peak_uplift_position: Option<usize>,
+    /// Its time `[s]`.
+    pub peak_uplift_time_s: Option<f64>,
+    /// Largest compression of any joint, its connectors added `[N]`.
+    pub peak_compression_n: Option<f64>,
+    /// Its joint.
+    pub peak_compression_joint: Option<usize>,
+    /// Largest tension of any joint, its connectors added `[N]`.
+    pub peak_tension_n: Option<f64>,
+    /// Its joint.
+    pub peak_tension_joint: Option<usize>,
+    /// Largest deflection of the deck's edges `[m]`.
+    pub peak_edge_deflection_m: Option<f64>,
+    /// Largest roll of a module end `[rad]`.
+    pub peak_roll_rad: Option<f64>,
+    /// Largest deflection of the same load creeping over the bridge `[m]`; null where supports and hinges leave the bridge
+    /// free to move horizontally, so that it has no static case.
+    pub static_peak_deflection_m: Option<f64>,
+    /// `peak_deflection_m` over `static_peak_deflection_m`.
+    pub dynamic_amplification: Option<f64>,
+    /// Structural mass of a module, of a job that asks for modes `[kg]`.
+    pub structural_mass_kg: Option<f64>,
+    /// Length over which a static load presses the bridge down `[m]`.
+    pub influential_length_m: Option<f64>,
+    /// Whether a module's bottom rose above the water.
+    pub bottom_emerged: Option<bool>,
+    /// Whether a module's deck went below the water.
+    pub deck_submerged: Option<bool>,
+    /// Smallest contact force of an axle `[N]`.
+    pub min_contact_force_n: Option<f64>,
+    /// Time step that the program has found for the job, where it was to find one `[s]`.
+    pub time_step_s: Option<f64>,
+    /// Why it failed at its own time step, of a job that came to its end at half of it.
+    pub retried: Option<String>,
+    /// Time steps.
+    pub steps: Option<usize>,
+    /// Newton solutions.
+    pub newton_iterations: Option<usize>,
+    /// Trusses that opened or closed.
+    pub contact_switches: Option<usize>,
+    /// Largest gap of the energy balance over the load's work.
+    pub energy_residual: Option<f64>,
+    /// Largest numerical dissipation over the load's work.
+    pub numerical_dissipation: Option<f64>,
+    /// How far the operator's largest deflection is off, as a share of the reference solver's; of jobs solved again.
+    pub verify_deflection: Option<f64>,
+    /// The same of the largest compression, as a share of the job's largest joint force.
+    pub verify_compression: Option<f64>,
+    /// The same of the largest tension, on that scale.
+    pub verify_tension: Option<f64>,
+    /// Whether all are within their tolerances.
+    pub verify_held: Option<bool>,
+}
+
+/// A largest value with its time; the time is null where the value is zero, for nothing occurred then, and in a static
+/// case.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Extreme {
+    /// The value; null where the job failed.
+    pub value: Option<f64>,
+    /// Its time `[s]`.
+    pub time_s: Option<f64>,
+}
+
+impl Extreme {
+    /// A value with its time; none where the value is zero.
+    pub fn at(value: f64, time_s: f64) -> Self {
+        Self {
+            value: Some(value),
+            time_s: (value > 0.0).then_some(time_s),
+        }
+    }
+
+    /// A value without a time.
+    pub fn timeless(value: f64) -> Self {
+        Self {
+            value: Some(value),
+            time_s: None,
+        }
+    }
+}
+
+/// A row of the table of positions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PositionRow {
+    /// Position number.
+    pub position: usize,
+    /// Its place `[m]`.
+    pub x_m: f64,
+    /// Largest deflection `[m]`.
+    pub deflection: Extreme,
+    /// Largest uplift `[m]`.
+    pub uplift: Extreme,
+    /// Deflection of a static job, positive downward `[m]`.
+    pub static_deflection_m: Option<f64>,
+    /// Largest static deflection under the load of a crossing, creeping over the bridge `[m]`.
+    pub static_peak_deflection_m: Option<f64>,
+}
+
+/// A row of the table of connectors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConnectorRow {
+    /// Position number of the joint.
+    pub joint: usize,
+    /// Place across `[m]`; null for the joint's sum.
+    pub y_m: Option<f64>,
+    /// Largest compression `[N]`.
+    pub compression: Extreme,
+    /// Largest tension `[N]`.
+    pub tension: Extreme,
+}
+
+impl ConnectorRow {
+    /// The row of a static force, tension positive.
+    pub fn force(joint: usize, y_m: Option<f64>, force_n: f64) -> Self {
+        let (compression, tension) = (
+            Extreme::timeless((0.0 - force_n).max(0.0)),
+            Extreme::timeless(force_n.max(0.0)),
+        );
+        Self {
+            joint,
+            y_m,
+            compression,
+            tension,
+        }
+    }
+}
+
+/// One mode; the shares are those of its kinetic energy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModeRow {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Natural frequency `[Hz]`.
+    pub frequency_hz: f64,
+    /// Name of its shape.
+    pub shape: String,
+    /// Vertical share.
+    pub vertical_share: f64,
+    /// Share of torsion.
+    pub torsion_share: f64,
+    /// Horizontal share.
+    pub horizontal_share: f64,
+    /// Share along the bridge.
+    pub axial_share: f64,
+}
+
+/// A job's histories.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct HistoryRows {
+    /// The times `[s]`.
+    pub time_s: Vec<f64>,
+    /// Quantity, position and a value for each time.
+    pub series: Vec<(String, usize, Vec<f64>)>,
+}
+
+impl HistoryRows {
+    /// Bytes of its numbers.
+    pub fn bytes(&self) -> usize {
+        let values: usize = self.series.iter().map(|(.., values)| values.len()).sum();
+        8 * (values + self.time_s.len())
+    }
+}
+
+impl JobRecord {
+    /// The record of a job that failed: the rows of a job that did not, their numbers null.
+    pub fn failed(job: &Job, reason: String) -> Self {
+        let design = &job.bridge.design;
+        let none = Extreme::default();
+        let positions = (1..=design.positions()).map(|position| PositionRow {
+            position,
+            x_m: design.position_x_m(position),
+            deflection: none,
+            uplift: none,
+            static_deflection_m: None,
+            static_peak_deflection_m: None,
+        });
+        let across = || std::iter::once(None).chain(design.connectors.y_m.iter().copied().map(Some));
+        let connectors = (2..=design.modules).flat_map(|joint| {
+            across().map(move |y_m| ConnectorRow {
+                joint,
+                y_m,
+                compression: none,
+                tension: none,
+            })
+        });
+        Self {
+            job: job.number,
+            reason: Some(reason),
+            summary: Summary::default(),
+            positions: positions.collect(),
+            connectors: connectors.collect(),
+            histories: HistoryRows::default(),
+            modes: Vec::new(),
+        }
+    }
+}
+
+impl Summary {
+    /// Fills in the peaks of the whole bridge from the rows of its positions and joints (the first of equals; no place
+    /// where the peak is zero).
+    pub fn take_peaks(&mut self, positions: &[PositionRow], connectors: &[ConnectorRow]) {
+        let place = |rows: &mut dyn Iterator<Item = (usize, Extreme)>| {
+            let mut best = (
+                None,
+                Extreme {
+                    value: Some(0.0),
+                    time_s: None,
+                },
+            );
+            for (place, extreme) in rows {
+                if extreme.value > best.1.value {
+                    best = (Some(place), extreme);
+                }
+            }
+            best
+        };
+        let (at, peak) = place(&mut positions.iter().map(|p| (p.position, p.deflection)));
+        (
+            self.peak_deflection_m,
+            self.peak_deflection_position,
+            self.peak_deflection_time_s,
+        ) = (peak.value, at, peak.time_s);
+        let (at, peak) = place(&mut positions.iter().map(|p| (p.position, p.uplift)));
+        (self.peak_uplift_m, self.peak_uplift_position, self.peak_uplift_time_s) = (peak.value, at, peak.time_s);
+        let sums = || connectors.iter().filter(|c| c.y_m.is_none());
+        let (at, peak) = place(&mut sums().map(|c| (c.joint, c.compression)));
+        (self.peak_compression_n, self.peak_compression_joint) = (peak.value, at);
+        let (at, peak) = place(&mut sums().map(|c| (c.joint, c.tension)));
+        (self.peak_tension_n, self.peak_tension_joint) = (peak.value, at);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(joint: usize, y_m: Option<f64>, force_n: f64) -> ConnectorRow {
+        ConnectorRow::force(joint, y_m, force_n)
+    }
+
+    #[test]
+    fn peaks_of_the_bridge_are_those_of_sums_and_the_first_of_equals() {
+        let connectors = [
+            row(2, None, -5.0),
+            row(2, Some(1.0), -9.0),
+            row(3, None, -5.0),
+            row(4, None, 0.0),
+        ];
+        let mut summary = Summary::default();
+        summary.take_peaks(&[], &connectors);
+        assert_eq!(
+            (summary.peak_compression_n, summary.peak_compression_joint),
+            (Some(5.0), Some(2))
+        );
+        assert_eq!((summary.peak_tension_n, summary.peak_tension_joint), (Some(0.0), None));
+    }
+
+    #[test]
+    fn a_peak_of_zero_has_no_time() {
+        let none = Extreme {
+            value: Some(0.0),
+            time_s: None,
+        };
+        assert_eq!(Extreme::at(0.0, 0.0), none);
+        assert_eq!(Extreme::at(0.1, 2.0).time_s, Some(2.0));
+    }
+
+    #[test]
+    fn a_record_is_read_back_without_loss() {
+        let extreme = Extreme {
+            value: Some(0.1 + 0.2),
+            time_s: Some(1.0 / 3.0),
+        };
+        let record = JobRecord {
+            job: 0,
+            reason: None,
+            summary: Summary {
+                peak_deflection_m: Some(1e-300),
+                ..Summary::default()
+            },
+            positions: vec![PositionRow {
+                position: 1,
+                x_m: 0.0,
+                deflection: extreme,
+                uplift: extreme,
+                static_deflection_m: None,
+                static_peak_deflection_m: Some(0.1),
+            }],
+            connectors: vec![row(2, None, -5.0)],
+            histories: HistoryRows {
+                time_s: vec![0.1],
+                series: vec![("force_n".to_owned(), 7, vec![0.7])],
+            },
+            modes: Vec::new(),
+        };
+        let bytes = postcard::to_allocvec(&record).unwrap();
+        assert_eq!(postcard::from_bytes::<JobRecord>(&bytes).unwrap(), record);
+        // whatever its number was
+        let numbered = JobRecord { job: 3, ..record };
+        assert_eq!(postcard::to_allocvec(&numbered).unwrap(), bytes);
+    }
+}

@@ -1,0 +1,301 @@
+//! Results to read: the tables of a run, from its folder or from its records.
+//!
+//! Knows how a folder proves that it holds one whole run: its manifest names each table's hash. Does not know what is
+//! read of it.
+
+use super::files::MANIFEST;
+use super::frames::{FIRST_OUTCOMES, Layout};
+use super::table::{Table, TableName};
+use crate::JobRecord;
+use polars_core::prelude::{DataFrame, PolarsResult};
+use polars_io::prelude::{ParquetReader, SerReader};
+use pontoon_journal::place::hash_of;
+use pontoon_plan::input::Refusal;
+use pontoon_plan::input::text_and_hash;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::{Kind, Study};
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why results could not be read.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// There are none in that folder.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// They are not what their manifest says, or cannot be read.
+    #[error("{}: damaged results: {found}; run the study again", file.display())]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with it.
+        found: String,
+    },
+}
+
+/// The tables of one run.
+#[derive(Debug, Clone)]
+pub struct Results {
+    /// Name of the study.
+    pub name: String,
+    /// Where they stand, for messages.
+    pub place: PathBuf,
+    /// The study's document.
+    pub study: Value,
+    /// The bridge's document, before the axes.
+    pub bridge: Value,
+    /// What its manifest says; null of a run that has just ended, or has not.
+    pub manifest: Value,
+    tables: BTreeMap<TableName, Table>,
+    on_disk: BTreeMap<TableName, PathBuf>,
+    jobs: Table,
+    /// The number of the job in each row of the table of jobs.
+    numbers: Vec<u64>,
+    row_of_job: HashMap<u64, usize>,
+}
+
+/// Rows of a table that a scan has in memory at a time.
+const SCANNED: usize = 1 << 18;
+
+impl Results {
+    /// Reads a folder of results.
+    ///
+    /// # Errors
+    /// [`ResultsError::Refused`] where the folder holds no results, [`ResultsError::Damaged`] where they are not whole.
+    pub fn read(folder: &Path) -> Result<Self, ResultsError> {
+        Self::read_some(folder, &TableName::ALL)
+    }
+
+    /// The same with some tables alone in memory, that of jobs always; the others are there to be scanned.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn read_some(folder: &Path, wanted: &[TableName]) -> Result<Self, ResultsError> {
+        let file = folder.join(MANIFEST);
+        let damaged = |file: &Path, found: &str| ResultsError::Damaged {
+            file: file.to_owned(),
+            found: found.to_owned(),
+        };
+        if !file.is_file() {
+            let found = if folder.is_dir() {
+                "no results: manifest.json is missing"
+            } else {
+                "no such folder"
+            };
+            return Err(Refusal::new(folder, "", found, "a folder of results, as pontoon run leaves it").into());
+        }
+        let text = std::fs::read_to_string(&file).map_err(|e| damaged(&file, &e.to_string()))?;
+        let manifest: Value = serde_json::from_str(&text).map_err(|e| damaged(&file, &format!("no JSON ({e})")))?;
+        let name = manifest["name"]
+            .as_str()
+            .ok_or_else(|| damaged(&file, "no name of a study"))?;
+        let hashes = manifest["tables"]
+            .as_object()
+            .ok_or_else(|| damaged(&file, "no hashes of its tables, as an earlier version left none"))?;
+        for document in ["study", "bridge"] {
+            let (_, hash) = text_and_hash(&manifest[document]);
+            if manifest[format!("{document}_blake3")].as_str() != Some(&hash) {
+                return Err(damaged(&file, &format!("a {document} that is not the one of its hash")));
+            }
+        }
+        if manifest["study"]["name"].as_str() != Some(name) {
+            return Err(damaged(&file, &format!("'{name}', which is not the study's name")));
+        }
+        let (mut tables, mut on_disk) = (BTreeMap::new(), BTreeMap::new());
+        for table in TableName::ALL {
+            let path = folder.join(table.file());
+            match hashes.get(&table.file()).and_then(Value::as_str) {
+                None if path.exists() => {
+                    return Err(damaged(&path, "a table of another run: the manifest does not name it"));
+                }
+                None => {}
+                Some(hash) => {
+                    if hash_of(&path).map_err(|e| damaged(&path, &e.to_string()))? != hash {
+                        return Err(damaged(&path, "not the bytes that the manifest names"));
+                    }
+                    if table == TableName::Jobs || wanted.contains(&table) {
+                        tables.insert(table, read_table(&path).map_err(|found| damaged(&path, &found))?);
+                    } else {
+                        on_disk.insert(table, path);
+                    }
+                }
+            }
+        }
+        let jobs = tables
+            .remove(&TableName::Jobs)
+            .ok_or_else(|| damaged(&file, "no table of jobs"))?;
+        let jobs_file = folder.join(TableName::Jobs.file());
+        if let Some(column) = ["job", "status", "reason"].into_iter().find(|column| !jobs.has(column)) {
+            return Err(damaged(&jobs_file, &format!("no column {column}")));
+        }
+        let count = manifest["jobs"].as_u64();
+        if count != Some(jobs.rows() as u64) {
+            return Err(damaged(
+                &file,
+                &format!("{} rows of jobs where {count:?} ran", jobs.rows()),
+            ));
+        }
+        let documents = (manifest["study"].clone(), manifest["bridge"].clone());
+        let results = Self::new(name, folder, documents, jobs, tables);
+        let mut results = results.map_err(|found| damaged(&jobs_file, &found))?;
+        (results.manifest, results.on_disk) = (manifest, on_disk);
+        Ok(results)
+    }
+
+    /// The tables of a run that has just ended.
+    ///
+    /// # Errors
+    /// The table library's words.
+    pub fn of_run(study: &Study, jobs: &[Job], records: &[JobRecord], place: &Path) -> Result<Self, String> {
+        let layout = Layout::new(study, jobs);
+        let mut tables = BTreeMap::new();
+        for name in layout.tables() {
+            let frame = layout.frame(name, jobs, records);
+            let table = frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string())?;
+            tables.insert(name, table);
+        }
+        let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
+        let documents = (study.document.clone(), study.bridge.document.clone());
+        Self::new(&study.spec.name, place, documents, job_table, tables)
+    }
+
+    fn new(
+        name: &str,
+        place: &Path,
+        (study, bridge): (Value, Value),
+        jobs: Table,
+        tables: BTreeMap<TableName, Table>,
+    ) -> Result<Self, String> {
+        let whole = |row| {
+            let number = jobs.number("job", row).filter(|n| *n >= 0.0 && n.fract() == 0.0);
+            number.map(|n| n as u64)
+        };
+        let numbers: Option<Vec<u64>> = (0..jobs.rows()).map(whole).collect();
+        let row_of = |numbers: &Vec<u64>| numbers.iter().enumerate().map(|(row, n)| (*n, row)).collect();
+        let row_of_job: HashMap<u64, usize> = numbers.as_ref().map(row_of).unwrap_or_default();
+        let Some(numbers) = numbers.filter(|numbers| numbers.len() == row_of_job.len()) else {
+            return Err("job numbers that are not whole or not unique".to_owned());
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            place: place.to_owned(),
+            study,
+            bridge,
+            manifest: Value::Null,
+            on_disk: BTreeMap::new(),
+            tables,
+            jobs,
+            numbers,
+            row_of_job,
+        })
+    }
+
+    /// The table of jobs.
+    pub fn jobs(&self) -> &Table {
+        &self.jobs
+    }
+
+    /// Hands on a table part by part in the order of its rows, of one on disk with some columns alone; nothing where the run
+    /// left none.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`].
+    pub fn scan(&self, name: TableName, columns: &[&str], mut take: impl FnMut(&Table)) -> Result<(), ResultsError> {
+        if let Some(table) = self.table(name) {
+            take(table);
+            return Ok(());
+        }
+        let Some(path) = self.on_disk.get(&name) else {
+            return Ok(());
+        };
+        let mut start = 0;
+        loop {
+            let part = read_part(path, columns, start).map_err(|found| ResultsError::Damaged {
+                file: path.clone(),
+                found,
+            })?;
+            if part.rows() == 0 {
+                return Ok(());
+            }
+            take(&part);
+            start += part.rows();
+        }
+    }
+
+    /// A table, where the run left it and it was read.
+    pub fn table(&self, name: TableName) -> Option<&Table> {
+        match name {
+            TableName::Jobs => Some(&self.jobs),
+            other => self.tables.get(&other),
+        }
+    }
+
+    /// The row of a job in the table of jobs.
+    pub fn row_of_job(&self, job: u64) -> Option<usize> {
+        self.row_of_job.get(&job).copied()
+    }
+
+    /// The number of the job in a row of the table of jobs, which each row has.
+    pub fn job_of_row(&self, row: usize) -> u64 {
+        self.numbers[row]
+    }
+
+    /// Whether the job in a row of the table of jobs has no results.
+    pub fn is_failed(&self, row: usize) -> bool {
+        let status = self
+            .jobs
+            .word_cells("status")
+            .and_then(|words| words.get(row)?.as_deref());
+        status != Some("ok")
+    }
+
+    /// What the study asks of the bridge.
+    pub fn kind(&self) -> Kind {
+        match self.study["analysis"]["kind"].as_str() {
+            Some("static") => Kind::Static,
+            Some("modes") => Kind::Modes,
+            _ => Kind::Crossing,
+        }
+    }
+
+    /// The columns of the table of jobs that are axes.
+    pub fn axes(&self) -> Vec<String> {
+        let names = self.jobs.names().skip_while(|name| *name != "reason").skip(1);
+        names
+            .take_while(|name| !FIRST_OUTCOMES.contains(name))
+            .map(str::to_owned)
+            .collect()
+    }
+}
+
+/// Reads a Parquet file; that the library panics over it is an error like any other.
+fn read_table(path: &Path) -> Result<Table, String> {
+    guarded(path, |file| ParquetReader::new(file).finish())
+}
+
+/// Reads some rows of some columns, of those that the file has.
+fn read_part(path: &Path, columns: &[&str], start: usize) -> Result<Table, String> {
+    guarded(path, |file| {
+        let mut reader = ParquetReader::new(file);
+        let there = reader.schema()?;
+        let there = columns
+            .iter()
+            .filter(|name| there.contains(name))
+            .map(|name| (*name).to_owned());
+        let reader = reader.with_columns(Some(there.collect()));
+        reader.with_slice(Some((start, SCANNED))).finish()
+    })
+}
+
+fn guarded(path: &Path, read: impl Fn(File) -> PolarsResult<DataFrame>) -> Result<Table, String> {
+    let read = || {
+        let file = File::open(path).map_err(|e| e.to_string())?;
+        let frame = read(file).map_err(|e| e.to_string())?;
+        Table::from_frame(&frame).map_err(|e| e.to_string())
+    };
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err("no readable Parquet file".to_owned()))
+}

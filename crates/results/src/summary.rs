@@ -1,0 +1,217 @@
+//! The summary: peaks against speed, a row a speed for each combination of the other axes; of a study of modes a row a mode.
+//!
+//! Knows the order of rows and how a cell is written. Keeps of a job what its row holds beside the axes, which the job has.
+//! Does not know terminals.
+
+use super::frames::axis_names;
+use crate::JobRecord;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::{Kind, Study};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+/// A cell: a number, a word, or nothing.
+pub type Cell = Value;
+
+/// The summary of a study. Its rows are made as they are asked for: a million of them are no matter.
+#[derive(Debug, Clone)]
+pub struct SummaryTable<'a> {
+    columns: Vec<String>,
+    axes: Vec<String>,
+    jobs: &'a [Job],
+    outcomes: Outcomes,
+    /// Places in `outcomes`, in the order of rows.
+    order: Vec<usize>,
+}
+
+/// What the rows hold beside the axes, in the order of jobs.
+#[derive(Debug, Clone)]
+enum Outcomes {
+    /// The peaks of each job; not a number where there is none.
+    Peaks(Vec<[f64; 4]>),
+    /// Of each mode its job, number, frequency `[Hz]` and shape.
+    Modes(Vec<(usize, usize, f64, String)>),
+}
+
+const PEAKS: [&str; 4] = [
+    "peak_deflection_m",
+    "peak_uplift_m",
+    "peak_compression_n",
+    "peak_tension_n",
+];
+const MODES: [&str; 3] = ["number", "frequency_hz", "shape"];
+/// The axis that rows follow within a combination of the others.
+const AGAINST: &str = "speed_m_s";
+
+/// The summary under way.
+#[derive(Debug)]
+pub(super) struct Lines<'a> {
+    axes: Vec<String>,
+    jobs: &'a [Job],
+    outcomes: Outcomes,
+    taken: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// Nothing yet of a study with all its jobs.
+    pub(super) fn new(study: &Study, jobs: &'a [Job]) -> Self {
+        Self {
+            axes: axis_names(study),
+            jobs,
+            outcomes: match study.spec.analysis.kind {
+                Kind::Modes => Outcomes::Modes(Vec::new()),
+                Kind::Crossing | Kind::Static => Outcomes::Peaks(Vec::with_capacity(jobs.len())),
+            },
+            taken: 0,
+        }
+    }
+
+    /// Takes what it needs of the records of the next jobs.
+    pub(super) fn append(&mut self, records: &[JobRecord]) {
+        match &mut self.outcomes {
+            Outcomes::Peaks(peaks) => peaks.extend(records.iter().map(|record| {
+                let s = &record.summary;
+                let peaks = [
+                    s.peak_deflection_m,
+                    s.peak_uplift_m,
+                    s.peak_compression_n,
+                    s.peak_tension_n,
+                ];
+                peaks.map(|peak| peak.unwrap_or(f64::NAN))
+            })),
+            Outcomes::Modes(modes) => {
+                for (job, record) in (self.taken..).zip(records) {
+                    let of_job = record.modes.iter();
+                    modes.extend(of_job.map(|m| (job, m.number, m.frequency_hz, m.shape.clone())));
+                }
+            }
+        }
+        self.taken += records.len();
+    }
+
+    /// The summary of a run: combinations of the other axes in the order of their first job, speeds increasing; modes as
+    /// they are. A job that failed has empty peaks.
+    pub(super) fn summary(self) -> SummaryTable<'a> {
+        let (axes, order, more) = match &self.outcomes {
+            Outcomes::Peaks(peaks) => {
+                let (against, others): (Vec<String>, Vec<String>) =
+                    self.axes.into_iter().partition(|name| name == AGAINST);
+                let order = against_speed(&self.jobs[..peaks.len()], &others, &against);
+                ([others, against].concat(), order, &PEAKS[..])
+            }
+            Outcomes::Modes(modes) => (self.axes, (0..modes.len()).collect(), &MODES[..]),
+        };
+        let more = more.iter().map(|name| (*name).to_owned());
+        SummaryTable {
+            columns: axes.iter().cloned().chain(more).collect(),
+            axes,
+            jobs: self.jobs,
+            outcomes: self.outcomes,
+            order,
+        }
+    }
+}
+
+/// Places of jobs: combinations of `others` in the order of their first job, `against` increasing.
+fn against_speed(jobs: &[Job], others: &[String], against: &[String]) -> Vec<usize> {
+    // half a hash stands for the combination, which may be long and of which there may be as many as jobs
+    let mut groups: HashMap<[u8; 16], u32> = HashMap::new();
+    let mut keys: Vec<(u32, f64)> = Vec::with_capacity(jobs.len());
+    for job in jobs {
+        let of_group: Vec<Cell> = others.iter().map(|name| job.column(name)).collect();
+        let next = u32::try_from(groups.len()).unwrap_or(u32::MAX);
+        let mut hash = [0; 16];
+        hash.copy_from_slice(&blake3::hash(Value::from(of_group).to_string().as_bytes()).as_bytes()[..16]);
+        let group = *groups.entry(hash).or_insert(next);
+        let speed = against.first().and_then(|name| job.column(name).as_f64());
+        keys.push((group, speed.unwrap_or_default()));
+    }
+    drop(groups);
+    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (keys[a], keys[b]);
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    order
+}
+
+impl SummaryTable<'_> {
+    /// Names of the columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<Cell>> {
+        self.order.iter().map(|&place| self.row(place))
+    }
+
+    fn row(&self, place: usize) -> Vec<Cell> {
+        let (job, outcomes) = match &self.outcomes {
+            Outcomes::Peaks(peaks) => (place, peaks[place].map(Value::from).to_vec()),
+            Outcomes::Modes(modes) => {
+                let (job, number, frequency_hz, shape) = &modes[place];
+                (
+                    *job,
+                    vec![(*number).into(), (*frequency_hz).into(), shape.as_str().into()],
+                )
+            }
+        };
+        let axes = self.axes.iter().map(|name| self.jobs[job].column(name));
+        axes.chain(outcomes).collect()
+    }
+
+    /// Writes the table as CSV.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_csv(&self, to: impl Write) -> io::Result<()> {
+        let mut to = csv::Writer::from_writer(to);
+        to.write_record(&self.columns)?;
+        for row in self.rows() {
+            to.write_record(row.iter().map(cell))?;
+        }
+        to.flush()
+    }
+}
+
+/// A cell as text: nothing of a null, a word as it is, JSON of any other value.
+fn cell(value: &Cell) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(word) => word.clone(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn csv_leaves_nulls_empty_and_quotes_lists() {
+        let mut lines = csv::Writer::from_writer(Vec::new());
+        for row in [
+            [json!("linear"), json!([-1.4, 1.4]), json!(0.25)],
+            [json!("linear"), json!([1]), json!(null)],
+        ] {
+            lines.write_record(row.iter().map(cell)).unwrap();
+        }
+        assert_eq!(
+            String::from_utf8(lines.into_inner().unwrap()).unwrap(),
+            "linear,\"[-1.4,1.4]\",0.25\nlinear,[1],\n"
+        );
+    }
+}

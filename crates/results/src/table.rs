@@ -1,0 +1,230 @@
+//! A table in memory: columns of numbers, words, or yes and no, any of which may be empty.
+//!
+//! Knows cells by column and row. Does not know files or what a column means.
+
+use polars_core::prelude::{DataFrame, DataType, PolarsError, PolarsResult};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// A table of the results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TableName {
+    /// One row a job.
+    Jobs,
+    /// One row a position of a job.
+    Positions,
+    /// One row a joint or connector of a job.
+    Connectors,
+    /// One row a time of a history.
+    Histories,
+    /// One row a mode of a job.
+    Modes,
+}
+
+impl TableName {
+    /// All tables.
+    pub const ALL: [Self; 5] = [
+        Self::Jobs,
+        Self::Positions,
+        Self::Connectors,
+        Self::Histories,
+        Self::Modes,
+    ];
+
+    /// Its name as files and references have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Jobs => "jobs",
+            Self::Positions => "positions",
+            Self::Connectors => "connectors",
+            Self::Histories => "histories",
+            Self::Modes => "modes",
+        }
+    }
+
+    /// The name of its file.
+    pub fn file(self) -> String {
+        format!("{}.parquet", self.word())
+    }
+}
+
+/// A table in memory.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Table {
+    rows: usize,
+    columns: Vec<(String, Cells)>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Cells {
+    Numbers(Vec<Option<f64>>),
+    Words(Vec<Option<String>>),
+    Flags(Vec<Option<bool>>),
+}
+
+/// What the cells of a column are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Numbers.
+    Numbers,
+    /// Words.
+    Words,
+    /// Yes and no.
+    Flags,
+}
+
+impl Kind {
+    /// What a file writes in such a column's place.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Numbers => "numbers",
+            Self::Words => "words",
+            Self::Flags => "true and false",
+        }
+    }
+}
+
+impl Table {
+    /// The table of a data frame.
+    ///
+    /// # Errors
+    /// The table library's, where a column is of none of the types that tables have or a number is not finite.
+    pub(super) fn from_frame(frame: &DataFrame) -> PolarsResult<Self> {
+        let columns = frame.columns().iter().map(|column| {
+            let series = column.as_materialized_series();
+            let cells = match series.dtype() {
+                DataType::Float64 => {
+                    let numbers: Vec<Option<f64>> = series.f64()?.iter().collect();
+                    if numbers.iter().flatten().any(|x| !x.is_finite()) {
+                        let text = format!("column {} holds what is no finite number", column.name());
+                        return Err(PolarsError::ComputeError(text.into()));
+                    }
+                    Cells::Numbers(numbers)
+                }
+                DataType::Int64 => Cells::Numbers(series.i64()?.iter().map(|v| v.map(|v| v as f64)).collect()),
+                DataType::String => Cells::Words(series.str()?.iter().map(|v| v.map(str::to_owned)).collect()),
+                DataType::Boolean => Cells::Flags(series.bool()?.iter().collect()),
+                other => {
+                    let text = format!("column {} of type {other}", column.name());
+                    return Err(PolarsError::SchemaMismatch(text.into()));
+                }
+            };
+            Ok((column.name().to_string(), cells))
+        });
+        Ok(Self {
+            rows: frame.height(),
+            columns: columns.collect::<PolarsResult<_>>()?,
+        })
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Names of the columns in their order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Whether there is a column of a name.
+    pub fn has(&self, column: &str) -> bool {
+        self.names().any(|name| name == column)
+    }
+
+    /// What a column holds; none where it is empty in all rows, as its type then says nothing, or not there.
+    pub fn kind(&self, column: &str) -> Option<Kind> {
+        let (any, kind) = match self.cells(column)? {
+            Cells::Numbers(list) => (list.iter().any(Option::is_some), Kind::Numbers),
+            Cells::Words(list) => (list.iter().any(Option::is_some), Kind::Words),
+            Cells::Flags(list) => (list.iter().any(Option::is_some), Kind::Flags),
+        };
+        any.then_some(kind)
+    }
+
+    /// Whether a column's cells can be had as numbers.
+    pub fn is_number(&self, column: &str) -> bool {
+        matches!(self.cells(column), Some(Cells::Numbers(_) | Cells::Flags(_)))
+    }
+
+    fn cells(&self, column: &str) -> Option<&Cells> {
+        self.columns
+            .iter()
+            .find(|(name, _)| name == column)
+            .map(|(_, cells)| cells)
+    }
+
+    /// A cell as a number; none where it is empty or no number. Yes is 1, no is 0.
+    pub fn number(&self, column: &str, row: usize) -> Option<f64> {
+        match self.cells(column)? {
+            Cells::Numbers(list) => *list.get(row)?,
+            Cells::Flags(list) => (*list.get(row)?).map(|yes| if yes { 1.0 } else { 0.0 }),
+            Cells::Words(_) => None,
+        }
+    }
+
+    /// The numbers of a column; none where it holds others or is not there.
+    pub fn numbers(&self, column: &str) -> Option<&[Option<f64>]> {
+        match self.cells(column)? {
+            Cells::Numbers(list) => Some(list),
+            _ => None,
+        }
+    }
+
+    /// The words of a column; none where it holds others or is not there.
+    pub fn word_cells(&self, column: &str) -> Option<&[Option<String>]> {
+        match self.cells(column)? {
+            Cells::Words(list) => Some(list),
+            _ => None,
+        }
+    }
+
+    /// A cell; null where it is empty or not there.
+    pub fn cell(&self, column: &str, row: usize) -> Value {
+        let cell = self.cells(column).and_then(|cells| match cells {
+            Cells::Numbers(list) => list.get(row)?.map(Value::from),
+            Cells::Words(list) => list.get(row)?.clone().map(Value::from),
+            Cells::Flags(list) => list.get(row)?.map(Value::from),
+        });
+        cell.unwrap_or_default()
+    }
+
+    /// Which of a column's distinct cells each row has, by their numbers from 0 in the order of their first row; none where
+    /// the cell is empty or the column not there.
+    pub fn codes(&self, column: &str) -> Vec<Option<u32>> {
+        match self.cells(column) {
+            // 0 and -0 are one number
+            Some(Cells::Numbers(list)) => numbered(list.iter().map(|cell| cell.map(|x| (x + 0.0).to_bits()))),
+            Some(Cells::Words(list)) => numbered(list.iter().map(Option::as_deref)),
+            Some(Cells::Flags(list)) => numbered(list.iter().copied()),
+            None => vec![None; self.rows],
+        }
+    }
+
+    /// The distinct words of a column in the order of their first row; none where it holds no words.
+    pub fn words(&self, column: &str) -> Vec<&str> {
+        let mut words: Vec<&str> = Vec::new();
+        if let Some(Cells::Words(list)) = self.cells(column) {
+            for word in list.iter().flatten() {
+                if !words.contains(&word.as_str()) {
+                    words.push(word);
+                }
+            }
+        }
+        words
+    }
+}
+
+/// Numbers distinct keys in the order in which they come.
+fn numbered<K: Eq + Hash>(keys: impl Iterator<Item = Option<K>>) -> Vec<Option<u32>> {
+    let mut known: HashMap<K, u32> = HashMap::new();
+    let mut number = |key: K| {
+        let next = known.len() as u32;
+        *known.entry(key).or_insert(next)
+    };
+    keys.map(|key| key.map(&mut number)).collect()
+}

@@ -1,0 +1,21 @@
+//! How a process says in the journal that it came to its own end.
+//!
+//! Knows the clock. Does not know what was solved.
+
+use pontoon_journal::Ending;
+use pontoon_results::Moment;
+
+/// A process that comes to its own end now, and how.
+pub fn ended_now(how: &str) -> Ending {
+    ending(how.to_owned(), 0.0, 0.0)
+}
+
+/// The same with what it took.
+pub(super) fn ending(how: String, offline_s: f64, jobs_s: f64) -> Ending {
+    Ending {
+        finished: Moment::now().text(),
+        how,
+        offline_s,
+        jobs_s,
+    }
+}

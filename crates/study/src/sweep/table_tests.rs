@@ -1,0 +1,340 @@
+//! Tests of tables that are written as their rows come.
+
+use super::frames::Layout;
+use super::*;
+use pontoon_results::ModeRow;
+use pontoon_plan::job::{Job, Jobs};
+use crate::run::{Batch, Setting, Silent, Stop, run};
+use pontoon_results::{JobRecord, Outcome};
+use pontoon_plan::study_file::{Kind, Study};
+use polars_core::prelude::{DataFrame, DataType};
+use polars_io::prelude::{ParquetReader, SerReader};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+/// A study on the smoke study's bridge with its jobs.
+fn study(kind: &str, design: Value) -> (Study, Vec<Job>) {
+    let dir = tempfile::tempdir().unwrap();
+    let smoke = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/bridges/smoke.json");
+    let mut bridge: Value = serde_json::from_str(&fs::read_to_string(smoke).unwrap()).unwrap();
+    bridge.as_object_mut().unwrap().remove("source");
+    fs::write(dir.path().join("b.json"), bridge.to_string()).unwrap();
+    let histories = json!({ "histories": { "positions": [2], "joints": [3] } });
+    let (analysis, record) = match kind {
+        "modes" => (json!({ "kind": kind, "count": 8 }), json!({})),
+        "static" => (json!({ "kind": kind }), json!({})),
+        _ => (json!({ "kind": kind, "time_step_s": 0.05, "tail_s": 1.0 }), histories),
+    };
+    let study = json!({ "name": "s", "bridge": "b.json", "analysis": analysis, "design": design, "record": record });
+    fs::write(dir.path().join("study.json"), study.to_string()).unwrap();
+    let study = Study::open(dir.path()).unwrap();
+    let jobs = Jobs::new(&study).collect::<Result<_, _>>().unwrap();
+    (study, jobs)
+}
+
+/// Crossings whose first ones leave an axis of words empty, and whose speeds come back to a combination later.
+fn crossings() -> (Study, Vec<Job>) {
+    let plain = json!({ "connection": "linear", "speed_m_s": [20, 15], "load_n": [1e5, 2e5] });
+    let more = json!({ "gap_tension_m": [0.0, 0.028], "speed_m_s": [12, 10], "load_n": 1e5, "bridge.source": "a, b",
+                       "vehicle.track_y_m": [[-1.0, 1.0]] });
+    let again = json!({ "connection": "linear", "speed_m_s": 10, "load_n": 2e5 });
+    study(
+        "crossing",
+        json!([{ "grid": plain }, { "grid": more }, { "cases": [again] }]),
+    )
+}
+
+/// The records of a study, the last but one made to fail.
+fn records(study: &Study, jobs: &[Job]) -> (Vec<JobRecord>, Outcome) {
+    let mut all = Vec::new();
+    let mut sink = |records| {
+        all.extend(records);
+        Ok::<(), std::io::Error>(())
+    };
+    let outcome = run(
+        study,
+        jobs,
+        Setting::default(),
+        &Stop::default(),
+        &Silent,
+        Some(&mut sink),
+    )
+    .unwrap();
+    let place = all.len() - 2;
+    all[place] = JobRecord::failed(&jobs[place], "why".to_owned());
+    (all, outcome)
+}
+
+fn begun<'a>(of: &'a (Study, Vec<Job>), folder: &'a Folder) -> Writer<'a> {
+    Writer::begin(&of.0, &of.1, folder, &Provenance::default()).unwrap()
+}
+
+fn manifest((study, jobs): &(Study, Vec<Job>), outcome: &Outcome) -> Manifest {
+    Manifest::new(
+        study,
+        jobs,
+        outcome,
+        Moment::now(),
+        Moment::now(),
+        &Provenance::default(),
+    )
+}
+
+fn read(folder: &Folder, name: TableName) -> DataFrame {
+    let file = fs::File::open(folder.path().join(name.file())).unwrap();
+    ParquetReader::new(file).finish().unwrap()
+}
+
+/// The summary as it is defined, all records at hand.
+fn summary_csv(study: &Study, jobs: &[Job], records: &[JobRecord]) -> String {
+    let quoted = |text: String| {
+        if text.contains(',') {
+            format!("\"{}\"", text.replace('"', "\"\""))
+        } else {
+            text
+        }
+    };
+    let cell = |value: Value| match value {
+        Value::Null => String::new(),
+        Value::String(word) => quoted(word),
+        other => quoted(other.to_string()),
+    };
+    let others: Vec<String> = frames::axis_names(study)
+        .into_iter()
+        .filter(|a| a != "speed_m_s")
+        .collect();
+    type Rows = Vec<(f64, Vec<String>)>;
+    let mut groups: Vec<(Vec<String>, Rows)> = Vec::new();
+    for (job, record) in jobs.iter().zip(records) {
+        let group: Vec<String> = others.iter().map(|name| cell(job.column(name))).collect();
+        let s = &record.summary;
+        let peaks = [
+            s.peak_deflection_m,
+            s.peak_uplift_m,
+            s.peak_compression_n,
+            s.peak_tension_n,
+        ];
+        let speed = (study.spec.analysis.kind == Kind::Crossing).then(|| job.column("speed_m_s"));
+        let at = speed.as_ref().and_then(Value::as_f64).unwrap_or_default();
+        let row = speed.into_iter().chain(peaks.map(Value::from)).map(cell).collect();
+        match groups.iter_mut().find(|(known, _)| *known == group) {
+            Some((_, rows)) => rows.push((at, row)),
+            None => groups.push((group, vec![(at, row)])),
+        }
+    }
+    let mut text = String::new();
+    for (group, mut rows) in groups {
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, row) in rows {
+            text += &([group.clone(), row].concat().join(",") + "\n");
+        }
+    }
+    text
+}
+
+#[test]
+fn tables_are_the_same_however_their_rows_come() {
+    let places = json!([{ "grid": { "load_position": [1, 2, 3], "load_n": [1e5, 2e5] } }]);
+    for of in [crossings(), study("static", places)] {
+        let (study, jobs) = (&of.0, &of.1);
+        let (records, outcome) = records(study, jobs);
+        let layout = Layout::new(study, jobs);
+        let mut hashes = Vec::new();
+        for (size, several) in [(1, true), (2, true), (records.len(), false)] {
+            let dir = tempfile::tempdir().unwrap();
+            let folder = Folder::create(dir.path()).unwrap();
+            let mut writer = begun(&of, &folder);
+            records.chunks(size).for_each(|batch| writer.append(batch).unwrap());
+            let summary = writer.finish(manifest(&of, &outcome)).unwrap();
+            for name in layout.tables() {
+                let whole = layout.frame(name, jobs, &records).unwrap();
+                let found = read(&folder, name);
+                assert_eq!(found.schema(), whole.schema());
+                assert!(found.equals_missing(&whole), "{name:?} in batches of {size}");
+            }
+            let csv = fs::read_to_string(dir.path().join("summary.csv")).unwrap();
+            let (head, rows) = csv.split_once('\n').unwrap();
+            assert_eq!(head, summary.columns().join(","));
+            assert_eq!(rows, summary_csv(study, jobs, &records));
+            assert_eq!(summary.len(), jobs.len());
+            Results::read(dir.path()).unwrap();
+            assert!(!fs::read_dir(dir.path()).unwrap().any(|entry| {
+                let name = entry.unwrap().file_name();
+                name.to_string_lossy().contains("partial")
+            }));
+            if several {
+                let positions = fs::read(dir.path().join("positions.parquet")).unwrap();
+                hashes.push((size, blake3::hash(&positions)));
+            }
+        }
+        assert_ne!(hashes[0].1, hashes[1].1, "row groups follow batches");
+    }
+}
+
+#[test]
+fn batches_on_one_and_three_threads_write_the_same_bytes() {
+    let of = crossings();
+    let bytes = [1, 3].map(|threads| {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = Folder::create(dir.path()).unwrap();
+        let mut writer = begun(&of, &folder);
+        let batch = Batch {
+            most_jobs: 2,
+            ..Batch::default()
+        };
+        let mut sink = |records: Vec<JobRecord>| writer.append(&records);
+        let outcome = run(
+            &of.0,
+            &of.1,
+            Setting {
+                threads,
+                batch,
+                ..Setting::default()
+            },
+            &Stop::default(),
+            &Silent,
+            Some(&mut sink),
+        )
+        .unwrap();
+        let manifest = manifest(&of, &outcome);
+        writer.finish(manifest).unwrap();
+        let files =
+            ["jobs", "positions", "connectors", "histories"].map(|name| dir.path().join(format!("{name}.parquet")));
+        let csv = dir.path().join("summary.csv");
+        files
+            .into_iter()
+            .chain([csv])
+            .map(|file| fs::read(file).unwrap())
+            .collect::<Vec<_>>()
+    });
+    assert!(bytes[0] == bytes[1]);
+}
+
+#[test]
+fn an_axis_keeps_its_type_where_a_batch_does_not_show_it() {
+    let (study, jobs) = crossings();
+    let layout = Layout::new(&study, &jobs);
+    assert!(jobs[..4].iter().all(|job| job.column("bridge.source").is_null()));
+    let records: Vec<JobRecord> = jobs[..4].iter().map(|j| JobRecord::failed(j, String::new())).collect();
+    let frame = layout.frame(TableName::Jobs, &jobs[..4], &records).unwrap();
+    assert_eq!(frame.column("bridge.source").unwrap().dtype(), &DataType::String);
+}
+
+#[test]
+fn a_table_without_rows_is_a_table() {
+    let of = crossings();
+    let (_, outcome) = records(&of.0, &of.1);
+    let dir = tempfile::tempdir().unwrap();
+    let folder = Folder::create(dir.path()).unwrap();
+    let mut writer = begun(&of, &folder);
+    for job in &of.1 {
+        // a job that failed has no histories
+        writer.append(&[JobRecord::failed(job, "why".to_owned())]).unwrap();
+    }
+    writer.append(&[]).unwrap();
+    writer.finish(manifest(&of, &outcome)).unwrap();
+    let histories = read(&folder, TableName::Histories);
+    assert_eq!((histories.height(), histories.width()), (0, 5));
+    assert_eq!(histories.column("value").unwrap().dtype(), &DataType::Float64);
+    let results = Results::read(dir.path()).unwrap();
+    assert_eq!(results.table(TableName::Histories).map(Table::rows), Some(0));
+    assert_eq!(results.jobs().rows(), of.1.len());
+}
+
+/// Equal cells have one number, in the order of their first row; empty ones none.
+#[test]
+fn the_distinct_cells_of_a_column_are_numbered() {
+    let of = crossings();
+    let (records, _) = records(&of.0, &of.1);
+    let results = Results::of_run(&of.0, &of.1, &records, Path::new("r")).unwrap();
+    let jobs = results.jobs();
+    for axis in results.axes() {
+        let codes = jobs.codes(&axis);
+        let cells: Vec<Value> = (0..jobs.rows()).map(|row| jobs.cell(&axis, row)).collect();
+        let mut known: Vec<&Value> = Vec::new();
+        for (cell, code) in cells.iter().zip(&codes) {
+            if !cell.is_null() && !known.contains(&cell) {
+                known.push(cell);
+            }
+            assert_eq!(*code, known.iter().position(|k| *k == cell).map(|k| k as u32), "{axis}");
+        }
+    }
+    assert_eq!(
+        jobs.codes("connection")[..5],
+        [Some(0), Some(0), Some(0), Some(0), Some(1)]
+    );
+    assert_eq!(jobs.codes("gap_tension_m")[..5], [None, None, None, None, Some(0)]);
+    assert_eq!(jobs.codes("nothing"), vec![None; jobs.rows()]);
+}
+
+/// A row's job is its number and not its row, and a job that failed is known as such.
+#[test]
+fn rows_have_the_numbers_of_their_jobs_and_say_who_failed() {
+    let of = crossings();
+    let (mut records, _) = records(&of.0, &of.1);
+    records.remove(0);
+    let jobs = &of.1[1..];
+    let results = Results::of_run(&of.0, jobs, &records, Path::new("r")).unwrap();
+    assert_eq!(results.kind(), Kind::Crossing);
+    let failed = records.len() - 2;
+    for row in 0..jobs.len() {
+        assert_eq!(results.job_of_row(row), row as u64 + 1);
+        assert_eq!(results.row_of_job(row as u64 + 1), Some(row));
+        assert_eq!(results.is_failed(row), row == failed);
+    }
+    records[0].job = records[1].job;
+    let twice = Results::of_run(&of.0, jobs, &records, Path::new("r")).unwrap_err();
+    assert!(twice.contains("not unique"), "{twice}");
+}
+
+#[test]
+fn modes_have_a_row_each_in_the_table_and_in_the_summary() {
+    let of = study("modes", json!([{ "grid": { "bridge.modules": [2, 3] } }]));
+    let (mut records, outcome) = records(&of.0, &of.1);
+    assert!(records[0].modes.is_empty());
+    records[0].modes = records[1].modes[..3].to_vec();
+    let dir = tempfile::tempdir().unwrap();
+    let folder = Folder::create(dir.path()).unwrap();
+    let mut writer = begun(&of, &folder);
+    records.chunks(1).for_each(|batch| writer.append(batch).unwrap());
+    let summary = writer.finish(manifest(&of, &outcome)).unwrap();
+    assert_eq!(summary.columns(), ["bridge.modules", "number", "frequency_hz", "shape"]);
+    let found: Vec<Vec<Cell>> = summary.rows().collect();
+    let row = |modules: i64, mode: &ModeRow| -> Vec<Cell> {
+        vec![
+            modules.into(),
+            mode.number.into(),
+            mode.frequency_hz.into(),
+            mode.shape.clone().into(),
+        ]
+    };
+    let expected = records[0].modes.iter().map(|m| row(2, m));
+    let expected: Vec<_> = expected.chain(records[1].modes.iter().map(|m| row(3, m))).collect();
+    assert_eq!(found, expected);
+    assert_eq!(read(&folder, TableName::Modes).height(), 3 + 8);
+}
+
+#[test]
+fn tables_that_are_not_finished_leave_the_old_results() {
+    let of = crossings();
+    let (records, outcome) = records(&of.0, &of.1);
+    let dir = tempfile::tempdir().unwrap();
+    let folder = Folder::create(dir.path()).unwrap();
+    let mut writer = begun(&of, &folder);
+    writer.append(&records).unwrap();
+    writer.finish(manifest(&of, &outcome)).unwrap();
+    let names = || {
+        let entries = fs::read_dir(dir.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let whole = names();
+    let mut writer = begun(&of, &folder);
+    writer.append(&records[..2]).unwrap();
+    assert_eq!(names().len(), whole.len() + 4);
+    drop(writer);
+    assert_eq!(names(), whole);
+    Results::read(dir.path()).unwrap();
+}

@@ -1,0 +1,183 @@
+//! A state of the bridge as grids: its mesh, its joints, the vehicle.
+//!
+//! Knows which array says what. Does not know files or how the state was found.
+
+use super::ready::Ready;
+use super::vtk::{Array, CellType, Grid, Values};
+use pontoon_core::analysis::snapshot::Snapshot;
+use pontoon_core::bridge::Link;
+use pontoon_core::connector::State;
+use pontoon_core::module::Plate;
+
+/// What a number in `link` says.
+pub(super) const LINKS: [&str; 2] = ["connector", "hinge"];
+
+/// What a number in `state` says.
+pub(super) const STATES: [&str; 3] = ["open", "compression", "tension"];
+
+/// What a number in `plate` says; the last is a beam.
+pub(super) fn plates() -> Vec<&'static str> {
+    let plates = Plate::ALL.iter().map(|plate| plate.word());
+    plates.chain(["stiffener beam"]).collect()
+}
+
+/// How far to either side of its joint a link is drawn, as a share of a module: at rest its ends are at one place.
+const DRAWN: f64 = 0.05;
+
+/// The name of every grid's vectors of motion.
+const MOTION: &str = "displacement";
+
+/// The grids of one bridge, with what does not change filled in.
+#[derive(Debug)]
+pub(super) struct Pictures {
+    mesh: Grid,
+    joints: Grid,
+    depth_m: f64,
+}
+
+impl Pictures {
+    /// The grids of a bridge.
+    pub(super) fn of(ready: &Ready) -> Self {
+        let design = ready.bridge.design();
+        Self {
+            mesh: mesh(ready),
+            joints: joints(ready, DRAWN * design.module.length_m),
+            depth_m: design.module.depth_m,
+        }
+    }
+
+    /// The mesh with its nodes moved.
+    pub(super) fn mesh(&self, displacement_m: &[[f64; 3]], fields: Vec<Array>) -> Grid {
+        let mut grid = self.mesh.clone();
+        grid.point_data.push(Array::vectors(MOTION, displacement_m));
+        grid.field_data.extend(fields);
+        grid
+    }
+
+    /// Connectors and hinges: each end moves as the node that it stands for.
+    pub(super) fn joints(
+        &self,
+        ready: &Ready,
+        state: &Snapshot,
+        displacement_m: &[[f64; 3]],
+        fields: Vec<Array>,
+    ) -> Grid {
+        let meshed = &ready.meshed;
+        let hinges = meshed.hinge_forces_n(&state.elastic, state.inertial.as_deref());
+        let sense = |force_n: f64| i32::from(force_n < 0.0) + 2 * i32::from(force_n > 0.0);
+        let now = &state.connectors;
+        let of_connectors = now.iter().map(|connector| match connector.state {
+            State::Open => 0,
+            State::Compression => 1,
+            State::Tension => 2,
+            State::Both => sense(connector.force_n),
+        });
+        let states = of_connectors.chain(hinges.iter().map(|&force_n| sense(force_n)));
+        let forces = now.iter().map(|c| c.force_n).chain(hinges.iter().copied());
+        let elongations = now.iter().map(|c| c.elongation_m).chain(hinges.iter().map(|_| 0.0));
+        let moved: Vec<[f64; 3]> = links(ready)
+            .flat_map(|link| link.nodes)
+            .map(|n| displacement_m[n])
+            .collect();
+        let mut grid = self.joints.clone();
+        grid.point_data.push(Array::vectors(MOTION, &moved));
+        grid.cell_data.extend([
+            Array::new("state", Values::I32(states.collect())),
+            Array::new("force_n", Values::F64(forces.collect())),
+            Array::new("elongation_m", Values::F64(elongations.collect())),
+        ]);
+        grid.field_data.extend(fields);
+        grid
+    }
+
+    /// The vehicle's points on the deck, moved with it; off the bridge they stand at its height.
+    pub(super) fn vehicle(
+        &self,
+        ready: &Ready,
+        state: &Snapshot,
+        displacement_m: &[[f64; 3]],
+        fields: Vec<Array>,
+    ) -> Grid {
+        let wheels = &state.wheels;
+        let places: Vec<[f64; 3]> = wheels.iter().map(|w| [w.x_m, w.y_m, self.depth_m]).collect();
+        let moved = wheels.iter().map(|wheel| {
+            let row = wheel.row.as_ref();
+            row.map_or([0.0; 3], |row| ready.meshed.of_deck_m(row, displacement_m))
+        });
+        let numbers = |of: &dyn Fn(usize) -> usize| Values::I32((0..wheels.len()).map(|i| of(i) as i32).collect());
+        let mut grid = Grid::new(&places);
+        (0..wheels.len()).for_each(|i| grid.cell(CellType::Vertex, &[i]));
+        grid.point_data = vec![
+            Array::vectors(MOTION, &moved.collect::<Vec<_>>()),
+            Array::new(
+                "contact_force_n",
+                Values::F64(wheels.iter().map(|w| w.contact_force_n).collect()),
+            ),
+            Array::new("axle", numbers(&|i| wheels[i].axle + 1)),
+            Array::new("patch", numbers(&|i| wheels[i].patch + 1)),
+            Array::new("on_bridge", numbers(&|i| usize::from(wheels[i].row.is_some()))),
+        ];
+        grid.field_data = vec![version()];
+        grid.field_data.extend(fields);
+        grid
+    }
+}
+
+/// The program's version as a field.
+fn version() -> Array {
+    Array::text("program_version", pontoon_results::VERSION)
+}
+
+fn mesh(ready: &Ready) -> Grid {
+    let meshed = &ready.meshed;
+    let mut grid = Grid::new(&meshed.nodes_m);
+    let number = |plate: Plate| Plate::ALL.iter().position(|p| *p == plate).unwrap_or(Plate::ALL.len()) as i32;
+    let (mut plates, mut thicknesses, mut modules) = (Vec::new(), Vec::new(), Vec::new());
+    for shell in &meshed.shells {
+        grid.cell(CellType::Quad, &shell.nodes);
+        plates.push(number(shell.plate));
+        thicknesses.push(shell.thickness_m);
+        modules.push(shell.module as i32);
+    }
+    for beam in &meshed.beams {
+        grid.cell(CellType::Line, &beam.nodes);
+        plates.push(Plate::ALL.len() as i32);
+        thicknesses.push(0.0);
+        modules.push(beam.module as i32);
+    }
+    grid.cell_data = vec![
+        Array::new("plate", Values::I32(plates)),
+        Array::new("thickness_m", Values::F64(thicknesses)),
+        Array::new("module", Values::I32(modules)),
+    ];
+    grid.field_data = vec![version()];
+    grid
+}
+
+/// Connectors, then hinges.
+fn links(ready: &Ready) -> impl Iterator<Item = &Link> {
+    ready.meshed.connectors.iter().chain(&ready.meshed.hinges)
+}
+
+fn joints(ready: &Ready, drawn_m: f64) -> Grid {
+    let places = links(ready).flat_map(|link| {
+        [(0, -drawn_m), (1, drawn_m)].map(|(end, aside)| {
+            let [x, y, z] = ready.meshed.nodes_m[link.nodes[end]];
+            [x + aside, y, z]
+        })
+    });
+    let mut grid = Grid::new(&places.collect::<Vec<_>>());
+    (0..links(ready).count()).for_each(|i| grid.cell(CellType::Line, &[2 * i, 2 * i + 1]));
+    let connectors = ready.meshed.connectors.len();
+    let kinds = (0..links(ready).count()).map(|i| i32::from(i >= connectors));
+    grid.cell_data = vec![
+        Array::new("link", Values::I32(kinds.collect())),
+        Array::new(
+            "joint",
+            Values::I32(links(ready).map(|link| link.joint as i32).collect()),
+        ),
+        Array::new("y_m", Values::F64(links(ready).map(|link| link.y_m).collect())),
+    ];
+    grid.field_data = vec![version()];
+    grid
+}

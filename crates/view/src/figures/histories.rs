@@ -1,0 +1,157 @@
+//! Against time: what the recorded positions and joints did.
+//!
+//! Knows the table of histories. Does not know which jobs belong together.
+
+use super::family::families;
+use super::figure::{Figure, Line, Measure, Moment, Panel};
+use super::marks::Chart;
+use super::panels::{Split, by_speed, caption};
+use super::sheet::{Asked, Sheet};
+use crate::thinning::thinned;
+use pontoon_judge::compare::moments_of;
+use pontoon_results::{Table, TableName};
+use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
+
+/// What was recorded: a quantity of a position or joint.
+type Channel = (String, u32);
+
+/// Rows of the table of histories by job and channel.
+type Recorded = HashMap<(u64, Channel), Range<usize>>;
+
+/// Arrivals closer than this are one `[s]`: a hundredth of a time step.
+const SAME_ARRIVAL_S: f64 = 1e-4;
+
+/// Figures of recorded histories: each channel by each family.
+pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
+    let Some(table) = sheet.results.table(TableName::Histories) else {
+        return Vec::new();
+    };
+    let (channels, recorded) = recorded(sheet, table);
+    let families = families(sheet, Some("speed_m_s"));
+    let mut figures = Vec::new();
+    for (quantity, position) in channels {
+        let (stem, what, y) = match quantity.as_str() {
+            "deflection_m" => ("deflection", "Deflection of position", Measure::DEFLECTION),
+            "force_n" => ("force", "Force of the joint at position", Measure::FORCE),
+            _ => continue,
+        };
+        for family in &families {
+            let name = family.name(&format!("{stem}-{position}"));
+            let (split, left_out) = by_speed(sheet, family, &name);
+            let channel = (quantity.clone(), position);
+            let of = |split: &Split| panel(sheet, table, split, &channel, y, &recorded);
+            let panels: Vec<Panel> = split.iter().map(of).filter(|panel| !panel.lines.is_empty()).collect();
+            if panels.is_empty() {
+                continue;
+            }
+            figures.push(Figure {
+                caption: caption(sheet, family, &format!("{what} {position} against time"), &panels),
+                name,
+                legend: family.legend(),
+                panels,
+                left_out: family.left_out.clone().into_iter().chain(left_out).collect(),
+            });
+        }
+    }
+    figures
+}
+
+/// What was recorded, in the order of the table.
+fn recorded(sheet: &Sheet<'_>, table: &Table) -> (Vec<Channel>, Recorded) {
+    let columns = (
+        table.numbers("job"),
+        table.word_cells("quantity"),
+        table.numbers("position"),
+    );
+    let (mut channels, mut found) = (Vec::new(), Recorded::new());
+    let (Some(job), Some(quantity), Some(position)) = columns else {
+        return (channels, found);
+    };
+    let jobs: BTreeSet<u64> = sheet.rows.iter().map(|row| sheet.job(*row)).collect();
+    let mut start = 0;
+    while start < table.rows() {
+        let same = |row: &usize| {
+            job[*row] == job[start] && quantity[*row] == quantity[start] && position[*row] == position[start]
+        };
+        let end = (start..table.rows()).take_while(same).count() + start;
+        if let (Some(job), Some(quantity), Some(position)) = (job[start], &quantity[start], position[start]) {
+            let channel = (quantity.clone(), position as u32);
+            if jobs.contains(&(job as u64)) {
+                if !channels.contains(&channel) {
+                    channels.push(channel.clone());
+                }
+                found.insert((job as u64, channel), start..end);
+            }
+        }
+        start = end;
+    }
+    (channels, found)
+}
+
+fn panel(sheet: &Sheet<'_>, table: &Table, split: &Split, channel: &Channel, y: Measure, recorded: &Recorded) -> Panel {
+    let mut lines = Vec::new();
+    for line in &split.lines {
+        let job = sheet.job(line.row);
+        if let Some(rows) = recorded.get(&(job, channel.clone())) {
+            lines.push(Line {
+                label: line.label.clone(),
+                style: line.style,
+                joined: true,
+                jobs: vec![job],
+                points: points(table, rows, y),
+            });
+        }
+    }
+    let rows: Vec<usize> = split.lines.iter().map(|line| line.row).collect();
+    let asked = Asked {
+        chart: Chart::History,
+        table: TableName::Histories,
+        columns: &[&channel.0],
+        position: Some(channel.1),
+        x: Measure::TIME,
+        y,
+        sign: 1.0,
+    };
+    Panel {
+        title: split.title.clone(),
+        x: Measure::TIME.axis(),
+        y: y.axis(),
+        marks: sheet.marks_of(&rows, &asked),
+        moments: arrival(sheet, &rows, channel.1),
+        lines,
+    }
+}
+
+/// A history with its peaks, thinned.
+fn points(table: &Table, rows: &Range<usize>, y: Measure) -> Vec<[f64; 2]> {
+    let (Some(time), Some(value)) = (table.numbers("time_s"), table.numbers("value")) else {
+        return Vec::new();
+    };
+    let values: Vec<f64> = value[rows.clone()]
+        .iter()
+        .map(|value| value.unwrap_or_default())
+        .collect();
+    let kept = thinned(&values).into_iter().map(|i| rows.start + i);
+    kept.filter_map(|row| Some([time[row]?, value[row]? * y.factor]))
+        .collect()
+}
+
+/// When the vehicle's centre is at a position, where it is so for all jobs at once.
+fn arrival(sheet: &Sheet<'_>, rows: &[usize], position: u32) -> Vec<Moment> {
+    let at = |row: &usize| {
+        moments_of(sheet.results, *row, position as usize)
+            .ok()
+            .map(|moments| moments.arrival_s)
+    };
+    let Some(times) = rows.iter().map(at).collect::<Option<Vec<f64>>>() else {
+        return Vec::new();
+    };
+    match times.split_first() {
+        Some((first, others)) if others.iter().all(|time| (time - first).abs() < SAME_ARRIVAL_S) => vec![Moment {
+            label: format!("vehicle at {position}"),
+            x: *first,
+        }],
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,122 @@
+//! Against the speed: peaks of deflection and of the joints' forces.
+//!
+//! Knows the table of jobs. Does not know which jobs belong together.
+
+use super::family::{Family, FamilyLine, families};
+use super::figure::{Figure, Line, Measure, Panel};
+use super::marks::Chart;
+use super::panels::caption;
+use super::sheet::{Asked, Sheet};
+use crate::thinning::spread;
+use pontoon_results::TableName;
+
+/// Jobs that are points of a figure without lines.
+const MOST_POINTS: usize = 2000;
+
+/// A panel: its column and what that is.
+type Peak = (&'static str, Measure);
+
+/// The figures: name, what is drawn, panels.
+const FIGURES: [(&str, &str, [Peak; 2]); 2] = [
+    (
+        "peak-deflection",
+        "Largest deflection and largest uplift of the bridge against speed",
+        [
+            ("peak_deflection_m", Measure::PEAK_DEFLECTION),
+            ("peak_uplift_m", Measure::PEAK_UPLIFT),
+        ],
+    ),
+    (
+        "peak-force",
+        "Largest compression and largest tension of a joint against speed",
+        [
+            ("peak_compression_n", Measure::PEAK_COMPRESSION),
+            ("peak_tension_n", Measure::PEAK_TENSION),
+        ],
+    ),
+];
+
+/// Peaks against speed, a line each value of an axis; of jobs that have nothing alike a point each.
+pub(super) fn speeds(sheet: &mut Sheet<'_>) -> Vec<Figure> {
+    if !sheet.varying.iter().any(|axis| axis == "speed_m_s") {
+        return Vec::new();
+    }
+    let mut families = families(sheet, Some("speed_m_s"));
+    families.retain(|family| family.lines.iter().any(|line| line.rows.len() > 1));
+    let joined = !families.is_empty();
+    if !joined {
+        families.push(points(sheet));
+    }
+    let mut figures = Vec::new();
+    for family in &families {
+        for (stem, what, panels) in FIGURES {
+            let panels: Vec<Panel> = panels
+                .into_iter()
+                .map(|(column, y)| panel(sheet, family, column, y, joined))
+                .collect();
+            figures.push(Figure {
+                name: family.name(stem),
+                caption: caption_of(sheet, family, what),
+                legend: family.legend(),
+                panels,
+                left_out: family.left_out.clone().into_iter().collect(),
+            });
+        }
+    }
+    figures
+}
+
+fn caption_of(sheet: &Sheet<'_>, family: &Family, what: &str) -> String {
+    caption(sheet, family, what, &[])
+}
+
+/// All jobs as points.
+fn points(sheet: &Sheet<'_>) -> Family {
+    let (all, chosen) = (sheet.rows.len(), spread(sheet.rows.len(), MOST_POINTS));
+    let left_out = (chosen.len() < all).then(|| format!("peaks against speed: {} of {all} jobs", all - chosen.len()));
+    Family {
+        by: None,
+        suffix: String::new(),
+        lines: vec![FamilyLine {
+            label: "a job".to_owned(),
+            style: 1,
+            rows: chosen.into_iter().map(|i| sheet.rows[i]).collect(),
+        }],
+        left_out,
+    }
+}
+
+fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: Measure, joined: bool) -> Panel {
+    let line = |line: &FamilyLine| {
+        let point = |row: &usize| {
+            let point = [sheet.number("speed_m_s", *row)?, sheet.number(column, *row)? * y.factor];
+            Some((point, sheet.job(*row)))
+        };
+        let mut points: Vec<([f64; 2], u64)> = line.rows.iter().filter_map(point).collect();
+        points.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]).then(a.1.cmp(&b.1)));
+        Line {
+            label: line.label.clone(),
+            style: line.style,
+            joined,
+            jobs: points.iter().map(|(_, job)| *job).collect(),
+            points: points.into_iter().map(|(point, _)| point).collect(),
+        }
+    };
+    let asked = Asked {
+        chart: Chart::Speed,
+        table: TableName::Jobs,
+        columns: &[column],
+        position: None,
+        x: Measure::SPEED,
+        y,
+        sign: 1.0,
+    };
+    Panel {
+        title: String::new(),
+        x: Measure::SPEED.axis(),
+        y: y.axis(),
+        lines: family.lines.iter().map(line).collect(),
+        marks: sheet.marks_of(&family.rows(), &asked),
+        moments: Vec::new(),
+    }
+}

@@ -1,0 +1,21 @@
+//! What people look at: reports, figures, exports.
+//!
+//! | module | charter |
+//! |---|---|
+//! | [`labels`] | what columns are called, in which unit they are, how a value is written |
+//! | `thinning` | a few places that stand for many |
+//! | [`figures`] | what a paper would draw of results, as numbers, with the points of a reference beside them |
+//! | [`drawing`] | figures as SVG and PNG, with their captions |
+//! | [`report`] | what a page tells of results |
+//! | [`page`] | the page of a report, whole |
+//! | [`export`] | mode shapes, static cases and crossings as grids for ParaView |
+//!
+//! Knows results, verdicts and how they are shown. Does not know terminals or the words of the command line.
+
+pub mod drawing;
+pub mod export;
+pub mod figures;
+pub mod labels;
+pub mod page;
+pub mod report;
+pub(crate) mod thinning;

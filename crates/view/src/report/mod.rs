@@ -1,0 +1,354 @@
+//! What a page tells of results: aggregates of all jobs, rows of some, crossings to be played, shapes, verdicts.
+//!
+//! Knows what is worth showing and how much of it fits a page. Does not know how it is drawn: the form of the data is in
+//! `crates/view/page/README.md`.
+//!
+//! | module | charter |
+//! |---|---|
+//! | `open` | what a folder holds: whole tables, or what a journal has so far |
+//! | `settings` | what a study was run with, in words |
+//! | `axes` | axes and their bins |
+//! | `cells` | all jobs in aggregate |
+//! | `cards` | the largest of each measure; why jobs failed |
+//! | `rows` | jobs that are listed, their profiles, the envelope of all |
+//! | `histories` | recorded histories, thinned |
+//! | `plays` | crossings solved once more, to be played |
+//! | `shapes` | mode shapes |
+//! | `verdicts` | a comparison |
+//! | `packed` | numbers as bytes |
+
+mod axes;
+mod cards;
+mod cells;
+mod histories;
+mod open;
+mod packed;
+mod plays;
+mod rows;
+mod settings;
+mod shapes;
+mod verdicts;
+
+pub use axes::{Axis, AxisKind};
+pub use cards::{Card, FailureNote};
+pub use cells::{Cells, Measure};
+pub use histories::HistoryLine;
+pub use open::Found;
+pub use packed::{Packed, Scaled};
+pub use plays::{AxlePatch, Play};
+pub use rows::{ColumnData, Envelope, Profile, RowColumn, Rows, WordList};
+pub use shapes::{ModeLine, ModeSet, ModeShape};
+pub use verdicts::{VerdictLine, Verdicts};
+
+use crate::figures::{Chart, Mark};
+use pontoon_judge::compare::Comparison;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::Kind;
+use pontoon_results::{Results, ResultsError, Table, TableName};
+use pontoon_study::run::Cache;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::HashSet;
+
+/// A label and what it says.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Item {
+    /// What it is of.
+    pub label: String,
+    /// What it is.
+    pub value: String,
+}
+
+impl Item {
+    /// A label with its value.
+    pub fn new(label: impl Into<String>, value: impl Into<String>) -> Self {
+        Self {
+            label: label.into(),
+            value: value.into(),
+        }
+    }
+}
+
+/// How much a report takes.
+#[derive(Debug)]
+pub struct ReportSetting {
+    /// Crossings that can be played, at most.
+    pub plays: usize,
+    /// Mode shapes.
+    pub modes: usize,
+    /// Where operators are kept from run to run.
+    pub cache: Option<Cache>,
+    /// Commit of the program's sources, where it was built from one.
+    pub commit: Option<String>,
+}
+
+/// The program that made a page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Program {
+    /// Its version.
+    pub version: &'static str,
+    /// Commit of its sources.
+    pub commit: Option<String>,
+}
+
+/// The study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StudyNote {
+    /// Its name.
+    pub name: String,
+    /// What it asks.
+    pub question: Option<String>,
+    /// What kind it is.
+    pub kind: Kind,
+    /// What it was run with.
+    pub settings: Vec<Item>,
+}
+
+/// The bridge's measures, of the first job.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BridgeNote {
+    /// Number of modules.
+    pub modules: usize,
+    /// Length of a module `[m]`.
+    pub module_length_m: f64,
+    /// Its breadth `[m]`.
+    pub breadth_m: f64,
+    /// Its depth `[m]`.
+    pub depth_m: f64,
+    /// How deep it floats `[m]`, where the bridge says so.
+    pub draft_m: Option<f64>,
+    /// Places of the positions `[m]`.
+    pub position_x_m: Vec<f64>,
+    /// Numbers of the joints.
+    pub joints: Vec<usize>,
+}
+
+impl BridgeNote {
+    fn of(job: &Job) -> Self {
+        let design = &job.bridge.design;
+        Self {
+            modules: design.modules,
+            module_length_m: design.module.length_m,
+            breadth_m: design.module.breadth_m,
+            depth_m: design.module.depth_m,
+            draft_m: design.draft_m,
+            position_x_m: (1..=design.positions())
+                .map(|position| design.position_x_m(position))
+                .collect(),
+            joints: (2..=design.modules).collect(),
+        }
+    }
+}
+
+/// A point of a reference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageMark {
+    /// The point.
+    #[serde(flatten)]
+    pub mark: Mark,
+    /// The measure whose chart it is drawn in.
+    pub measure: String,
+}
+
+impl From<Mark> for PageMark {
+    fn from(mark: Mark) -> Self {
+        let measure = mark.column.clone();
+        Self { mark, measure }
+    }
+}
+
+/// How many jobs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Of the study.
+    pub total: usize,
+    /// That did not fail.
+    pub ok: usize,
+    /// That failed.
+    pub failed: usize,
+    /// That no row is there of.
+    pub missing: usize,
+}
+
+/// All that a page carries.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Form of the data.
+    pub format: u32,
+    /// Who made it.
+    pub program: Program,
+    /// Of which study.
+    pub study: StudyNote,
+    /// The bridge; null where this program cannot read the study.
+    pub bridge: Option<BridgeNote>,
+    /// How many jobs.
+    pub jobs: Counts,
+    /// What a reader must know.
+    pub notes: Vec<String>,
+    /// The axes.
+    pub axes: Vec<Axis>,
+    /// The measures.
+    pub measures: Vec<Measure>,
+    /// All jobs in aggregate.
+    pub cells: Cells,
+    /// The largest of each measure.
+    pub cards: Vec<Card>,
+    /// Why jobs failed.
+    pub failures: Vec<FailureNote>,
+    /// Points of an experiment, and what checks expect.
+    pub marks: Vec<PageMark>,
+    /// Largest values along the bridge.
+    pub envelope: Option<Envelope>,
+    /// Jobs that are listed.
+    pub rows: Rows,
+    /// Recorded histories.
+    pub histories: Vec<HistoryLine>,
+    /// Crossings to be played.
+    pub plays: Vec<Play>,
+    /// Mode shapes.
+    pub modes: Vec<ModeSet>,
+    /// A study of modes as a table.
+    pub mode_table: Vec<ModeLine>,
+    /// The results held against a reference.
+    pub verdicts: Option<Verdicts>,
+    /// Where the numbers come from.
+    pub provenance: Vec<Item>,
+}
+
+/// The number of a row's job as a page carries it.
+fn job(results: &Results, row: usize) -> u32 {
+    u32::try_from(results.job_of_row(row)).unwrap_or(u32::MAX)
+}
+
+impl Report {
+    /// What there is to tell of results, held against a reference where there is a comparison. Solves some crossings once
+    /// more on the current pool, so that they can be played.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`] where a table cannot be scanned.
+    pub fn new(
+        mut found: Found,
+        compared: Option<&Comparison>,
+        marks: Vec<Mark>,
+        setting: &ReportSetting,
+    ) -> Result<Self, ResultsError> {
+        let all = found.jobs();
+        let Found {
+            results,
+            study,
+            missing,
+            mut notes,
+            provenance,
+        } = found;
+        let jobs = results.jobs();
+        let mut names = results.axes();
+        // a position says its place
+        if jobs
+            .numbers("load_position")
+            .is_some_and(|list| list.iter().all(Option::is_some))
+        {
+            names.retain(|name| name != "load_x_m");
+        }
+        let cells_of = |name: &String| (0..jobs.rows()).map(|row| jobs.cell(name, row)).collect::<Vec<Value>>();
+        let mut axes: Vec<Axis> = names.iter().map(|name| Axis::new(name, &cells_of(name))).collect();
+        let listed: Vec<String> = axes
+            .iter()
+            .filter(|axis| !axis.constant)
+            .map(|axis| axis.name.clone())
+            .collect();
+        let of_words = if listed.is_empty() { names.clone() } else { listed };
+        let said = |row: usize| cards::axes_in_words(jobs, &of_words, row);
+        if cells::coarsen(&mut axes, jobs.rows()) {
+            notes.push(format!(
+                "All {} jobs in aggregate: neighbouring values of some axes are put together, and of each range the largest and smallest are shown.",
+                jobs.rows()
+            ));
+        }
+        let measures = cells::measures(jobs);
+        let chosen = rows::chosen(&results, &measures);
+        let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen, &mut notes)?;
+        let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(&results, row)).collect();
+        let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
+        if histories.len() < recorded {
+            notes.push(format!(
+                "{} of {recorded} recorded histories are shown.",
+                histories.len()
+            ));
+        }
+        let played = match &study {
+            Some(study) if !all.is_empty() => plays::plays(
+                study,
+                &all,
+                &results,
+                (&measures, &chosen.0),
+                setting.plays,
+                setting.cache.as_ref(),
+            ),
+            _ => plays::Played::default(),
+        };
+        notes.extend(played.notes);
+        let (modes, without) = shapes::mode_sets(&all, &results, &said, setting.modes);
+        notes.extend(without);
+        let (failures, causes) = cards::failures(&results);
+        if failures.len() < causes {
+            notes.push(format!("{} of {causes} causes of failures are listed.", failures.len()));
+        }
+        notes.extend(undrawn(&marks, jobs));
+        let failed = (0..jobs.rows()).filter(|&row| results.is_failed(row)).count();
+        let question = study.as_ref().and_then(|study| study.spec.question.clone());
+        Ok(Self {
+            format: 1,
+            program: Program {
+                version: pontoon_results::VERSION,
+                commit: setting.commit.clone(),
+            },
+            study: StudyNote {
+                name: results.name.clone(),
+                question,
+                kind: results.kind(),
+                settings: study.as_ref().map(settings::settings).unwrap_or_default(),
+            },
+            bridge: all.first().map(BridgeNote::of),
+            jobs: Counts {
+                total: jobs.rows() + missing,
+                ok: jobs.rows() - failed,
+                failed,
+                missing,
+            },
+            cells: Cells::new(&results, &axes, &measures),
+            cards: cards::cards(&results, &measures, &said),
+            failures,
+            marks: marks.into_iter().map(PageMark::from).collect(),
+            envelope,
+            rows,
+            histories,
+            plays: played.plays,
+            modes,
+            mode_table: shapes::mode_table(&results, &said),
+            verdicts: compared.map(Verdicts::new),
+            provenance,
+            notes,
+            axes,
+            measures,
+        })
+    }
+}
+
+/// What is to be said of points that no chart shows: those of one position or joint against speed, as the charts show the
+/// largest of the bridge, and those of no job.
+fn undrawn(marks: &[Mark], jobs: &Table) -> Vec<String> {
+    let ids = |list: Vec<&Mark>| {
+        let mut ids: Vec<&str> = list.iter().map(|mark| mark.id.as_str()).collect();
+        ids.dedup();
+        ids.join(", ")
+    };
+    let alone = |mark: &&Mark| mark.chart == Chart::Speed && mark.table != TableName::Jobs;
+    let nobodys = |mark: &&Mark| !alone(mark) && !(0..jobs.rows()).any(|row| mark.belongs_to(jobs, row));
+    let said = |list: Vec<&Mark>, why: &str| (!list.is_empty()).then(|| format!("Not drawn, {why}: {}.", ids(list)));
+    let of_one = said(
+        marks.iter().filter(alone).collect(),
+        "as charts against speed show the largest of the bridge",
+    );
+    let of_none = said(marks.iter().filter(nobodys).collect(), "as no job has their axes");
+    of_one.into_iter().chain(of_none).collect()
+}

@@ -1,0 +1,373 @@
+//! Rows of jobs that a page lists, with their profiles along the bridge; the envelope of all jobs.
+//!
+//! Knows how many rows are too many and which ones tell most. Does not know cells.
+
+use super::cells::Measure;
+use super::packed::Packed;
+use crate::labels;
+use crate::thinning::spread;
+use pontoon_results::{Kind, Results, ResultsError, Table, TableName};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::{BTreeSet, HashMap};
+
+/// Most rows that a page lists.
+pub(super) const MOST_ROWS: usize = 2_000;
+
+/// Of more jobs: the ones with the largest values of each measure, and failed ones.
+const SEVEREST: usize = 150;
+const MOST_FAILED: usize = 200;
+
+/// Outcomes that a row has beyond the measures.
+const FURTHER: [&str; 12] = [
+    "peak_deflection_position",
+    "peak_deflection_time_s",
+    "peak_uplift_position",
+    "peak_compression_joint",
+    "peak_tension_joint",
+    "min_contact_force_n",
+    "time_step_s",
+    "steps",
+    "contact_switches",
+    "energy_residual",
+    "numerical_dissipation",
+    "verify_deflection",
+];
+
+/// Words by their index, 65535 where there is none.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WordList {
+    /// The distinct words.
+    pub words: Vec<String>,
+    /// For each row the word.
+    pub index: Packed,
+}
+
+impl WordList {
+    fn new(cells: impl Iterator<Item = Option<String>>) -> Self {
+        let (mut words, mut places) = (Vec::new(), HashMap::new());
+        let index = cells
+            .map(|cell| {
+                let Some(word) = cell else { return u16::MAX };
+                *places.entry(word.clone()).or_insert_with(|| {
+                    words.push(word);
+                    u16::try_from(words.len() - 1).unwrap_or(u16::MAX)
+                })
+            })
+            .collect();
+        Self {
+            words,
+            index: Packed::U16(index),
+        }
+    }
+}
+
+/// Cells of a column.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ColumnData {
+    /// Numbers.
+    Numbers(Packed),
+    /// Words.
+    Words(WordList),
+}
+
+/// A column of the rows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RowColumn {
+    /// Its name in the table of jobs.
+    pub name: String,
+    /// In words.
+    pub label: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// `number` or `word`.
+    pub kind: &'static str,
+    /// Its cells.
+    pub data: ColumnData,
+}
+
+/// What rows are along the bridge: a line of positions or joints for each row, NaN where a job failed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Profile {
+    /// Largest deflection of each position `[m]`.
+    pub deflection_m: Packed,
+    /// Largest uplift `[m]`.
+    pub uplift_m: Packed,
+    /// Largest compression of each joint `[N]`.
+    pub compression_n: Packed,
+    /// Largest tension `[N]`.
+    pub tension_n: Packed,
+    /// Deflected line of static jobs, positive downward `[m]`.
+    pub signed_m: Option<Packed>,
+}
+
+/// Rows of the table of jobs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rows {
+    /// Number of rows.
+    pub count: usize,
+    /// Which jobs they are.
+    pub note: String,
+    /// Their columns: axes, then outcomes.
+    pub columns: Vec<RowColumn>,
+    /// The job of each row.
+    pub job: Packed,
+    /// 1 where it did not fail.
+    pub ok: Packed,
+    /// Why it failed, or what else is to be said.
+    pub reason: WordList,
+    /// Along the bridge, where the study leaves the tables of positions and connectors.
+    pub profile: Option<Profile>,
+}
+
+/// Largest values along the bridge, of all jobs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Envelope {
+    /// Places of the positions `[m]`.
+    pub x_m: Vec<f64>,
+    /// Largest deflection there `[m]`.
+    pub deflection_m: Packed,
+    /// Largest uplift `[m]`.
+    pub uplift_m: Packed,
+    /// Places of the joints `[m]`.
+    pub joint_x_m: Vec<f64>,
+    /// Largest compression there `[N]`.
+    pub compression_n: Packed,
+    /// Largest tension `[N]`.
+    pub tension_n: Packed,
+}
+
+/// The rows of the table of jobs that a page lists, in their order.
+pub(super) fn chosen(results: &Results, measures: &[Measure]) -> (Vec<usize>, String) {
+    let jobs = results.jobs();
+    let all = jobs.rows();
+    if all <= MOST_ROWS {
+        let note = if all == 1 {
+            "the one job".to_owned()
+        } else {
+            format!("all {all} jobs")
+        };
+        return ((0..all).collect(), note);
+    }
+    let every: Vec<usize> = (0..all).collect();
+    let mut rows: BTreeSet<usize> = BTreeSet::new();
+    rows.extend((0..all).filter(|&row| results.is_failed(row)).take(MOST_FAILED));
+    for measure in measures.iter().take(4) {
+        rows.extend(severest(jobs, measure.name, &every).into_iter().take(SEVEREST));
+    }
+    let severe = rows.len();
+    let left: Vec<usize> = (0..all).filter(|row| !rows.contains(row)).collect();
+    rows.extend(
+        spread(left.len(), MOST_ROWS - severe)
+            .into_iter()
+            .map(|place| left[place]),
+    );
+    let note = format!(
+        "{} of {all} jobs: {severe} that failed or have the largest values, and an even sample",
+        rows.len()
+    );
+    (rows.into_iter().collect(), note)
+}
+
+/// Places among `rows` in falling order of a column's values; rows without a value are left out.
+pub(super) fn severest(jobs: &Table, column: &str, rows: &[usize]) -> Vec<usize> {
+    let Some(numbers) = jobs.numbers(column) else {
+        return Vec::new();
+    };
+    let mut places: Vec<usize> = (0..rows.len()).filter(|&at| numbers[rows[at]].is_some()).collect();
+    let value = |at: usize| numbers[rows[at]].unwrap_or_default();
+    places.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
+    places
+}
+
+impl Rows {
+    /// The rows with their profiles and the envelope of all jobs.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`].
+    pub(super) fn new(
+        results: &Results,
+        axes: &[String],
+        measures: &[Measure],
+        (rows, note): &(Vec<usize>, String),
+        notes: &mut Vec<String>,
+    ) -> Result<(Self, Option<Envelope>), ResultsError> {
+        let jobs = results.jobs();
+        let outcomes = measures.iter().map(|measure| measure.name).chain(FURTHER);
+        let there = |name: &String| jobs.kind(name).is_some();
+        let names = axes.iter().cloned().chain(outcomes.map(str::to_owned)).filter(there);
+        let lines = match along(results, rows)? {
+            Along::Lines(lines) => Some(*lines),
+            Along::Nothing => None,
+            Along::Bridges => {
+                notes
+                    .push("The jobs' bridges have positions at different places: no envelope, no profiles.".to_owned());
+                None
+            }
+        };
+        let (profile, envelope) = lines.unzip();
+        let listed = Self {
+            count: rows.len(),
+            note: note.clone(),
+            columns: names.map(|name| column(jobs, name, rows)).collect(),
+            job: Packed::U32(rows.iter().map(|&row| super::job(results, row)).collect()),
+            ok: Packed::U8(rows.iter().map(|&row| u8::from(!results.is_failed(row))).collect()),
+            reason: WordList::new(rows.iter().map(|&row| match jobs.cell("reason", row) {
+                Value::String(reason) => Some(reason),
+                _ => None,
+            })),
+            profile,
+        };
+        Ok((listed, envelope))
+    }
+}
+
+fn column(jobs: &Table, name: String, rows: &[usize]) -> RowColumn {
+    let numeric = matches!(jobs.kind(&name), Some(Kind::Numbers | Kind::Flags));
+    let text = |row: &usize| match jobs.cell(&name, *row) {
+        Value::Null => None,
+        Value::String(word) => Some(word),
+        other => Some(other.to_string()),
+    };
+    let data = if numeric {
+        ColumnData::Numbers(Packed::numbers(rows.iter().map(|&row| jobs.number(&name, row))))
+    } else {
+        ColumnData::Words(WordList::new(rows.iter().map(text)))
+    };
+    RowColumn {
+        label: labels::label(&name),
+        unit: labels::unit(&name),
+        kind: if numeric { "number" } else { "word" },
+        data,
+        name,
+    }
+}
+
+/// Values by place of the chosen rows and the largest of all jobs.
+struct Lines {
+    places: usize,
+    /// Columns that the table has.
+    found: usize,
+    rows: Vec<Vec<f32>>,
+    largest: Vec<Vec<f32>>,
+}
+
+impl Lines {
+    fn new(rows: usize, places: usize, columns: usize) -> Self {
+        Self {
+            places,
+            found: 0,
+            rows: vec![vec![f32::NAN; rows * places]; columns],
+            largest: vec![vec![f32::NAN; places]; columns],
+        }
+    }
+
+    fn take(&mut self, row: Option<usize>, place: usize, values: impl Iterator<Item = Option<f64>>) {
+        for (column, value) in values.enumerate() {
+            let Some(value) = value.map(|value| value as f32).filter(|_| place < self.places) else {
+                continue;
+            };
+            // the larger, or the one that is there
+            let largest = &mut self.largest[column][place];
+            *largest = largest.max(value);
+            if let Some(row) = row {
+                self.rows[column][row * self.places + place] = value;
+            }
+        }
+    }
+
+    fn row(&mut self, column: usize) -> Packed {
+        Packed::F32(std::mem::take(&mut self.rows[column]))
+    }
+
+    fn envelope(&mut self, column: usize) -> Packed {
+        Packed::F32(std::mem::take(&mut self.largest[column]))
+    }
+}
+
+/// Distance below which places are one `[m]`.
+const SAME_PLACE_M: f64 = 1e-6;
+
+/// What there is along the bridge.
+enum Along {
+    /// The study leaves no table of positions.
+    Nothing,
+    /// Jobs have bridges whose positions are at other places.
+    Bridges,
+    /// Profiles of the chosen rows and the envelope of all.
+    Lines(Box<(Profile, Envelope)>),
+}
+
+fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
+    let listed: HashMap<u64, usize> = rows
+        .iter()
+        .enumerate()
+        .map(|(i, &row)| (u64::from(super::job(results, row)), i))
+        .collect();
+    let (mut x_m, mut differ): (Vec<f64>, bool) = (Vec::new(), false);
+    results.scan(TableName::Positions, &["position", "x_m"], |part| {
+        for row in 0..part.rows() {
+            let place = whole(part, "position", row).saturating_sub(1);
+            if place >= x_m.len() {
+                x_m.resize(place + 1, f64::NAN);
+            }
+            let own = part.number("x_m", row).unwrap_or(f64::NAN);
+            differ |= (own - x_m[place]).abs() > SAME_PLACE_M;
+            if x_m[place].is_nan() {
+                x_m[place] = own;
+            }
+        }
+    })?;
+    if x_m.is_empty() {
+        return Ok(Along::Nothing);
+    }
+    if differ {
+        return Ok(Along::Bridges);
+    }
+    let places = x_m.len();
+    let take = |name: TableName, place: &str, first: usize, columns: &[&str]| {
+        let mut lines = Lines::new(rows.len(), (places + 2).saturating_sub(2 * first), columns.len());
+        let asked: Vec<&str> = ["job", place, "y_m"].iter().chain(columns).copied().collect();
+        results.scan(name, &asked, |part| {
+            let numbers: Vec<&[Option<f64>]> = columns.iter().filter_map(|column| part.numbers(column)).collect();
+            lines.found = lines.found.max(numbers.len());
+            let y = part.numbers("y_m");
+            // of a joint its sum alone
+            for row in (0..part.rows()).filter(|&row| y.is_none_or(|y| y[row].is_none())) {
+                let of = listed.get(&(whole(part, "job", row) as u64)).copied();
+                let at = whole(part, place, row).saturating_sub(first);
+                lines.take(of, at, numbers.iter().map(|column| column[row]));
+            }
+        })?;
+        Ok::<Lines, ResultsError>(lines)
+    };
+    let columns = ["peak_deflection_m", "peak_uplift_m", "deflection_m"];
+    let mut at_ends = take(TableName::Positions, "position", 1, &columns)?;
+    let mut at_joints = take(
+        TableName::Connectors,
+        "joint",
+        2,
+        &["peak_compression_n", "peak_tension_n"],
+    )?;
+    let profile = Profile {
+        deflection_m: at_ends.row(0),
+        uplift_m: at_ends.row(1),
+        compression_n: at_joints.row(0),
+        tension_n: at_joints.row(1),
+        signed_m: (at_ends.found == columns.len()).then(|| at_ends.row(2)),
+    };
+    let envelope = Envelope {
+        joint_x_m: x_m.get(1..places.saturating_sub(1)).unwrap_or_default().to_vec(),
+        x_m,
+        deflection_m: at_ends.envelope(0),
+        uplift_m: at_ends.envelope(1),
+        compression_n: at_joints.envelope(0),
+        tension_n: at_joints.envelope(1),
+    };
+    Ok(Along::Lines(Box::new((profile, envelope))))
+}
+
+fn whole(table: &Table, column: &str, row: usize) -> usize {
+    table.number(column, row).map_or(0, |x| x as usize)
+}

@@ -1,0 +1,13 @@
+//! Closed forms and published benchmarks, each with its card: source, sketch, parameters, expected value, tolerance.
+
+mod beam_module;
+mod critical_speed;
+mod fem_eigen;
+mod fem_macneal_harder;
+mod fem_patch;
+mod fem_vibration;
+mod foundation;
+mod gap_oscillator;
+mod moving_load;
+mod moving_mass;
+mod two_modules;

@@ -1,0 +1,401 @@
+//! The rules of the house that a compiler does not hold.
+
+mod arrows;
+mod circles;
+mod modules;
+
+use circles::Crate;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../..")
+        .canonicalize()
+        .expect("the workspace")
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// All files below `dir` whose name ends in `ending`, sorted.
+fn files(dir: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(dir).unwrap_or_else(|e| panic!("{}: {e}", dir.display())) {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            // packages of the page's tests are others' texts
+            if path.ends_with("node_modules") {
+                continue;
+            }
+            found.extend(files(&path, ending));
+        } else if path.to_string_lossy().ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn rust_files() -> Vec<PathBuf> {
+    let mut all = files(&root().join("crates"), ".rs");
+    all.extend(files(&root().join("tests"), ".rs"));
+    assert!(all.len() > 40, "only {} files found", all.len());
+    all
+}
+
+/// The libraries of a member, those of its tests left out.
+fn dependencies(member: &str) -> Vec<String> {
+    let manifest = read(&root().join("crates").join(member).join("Cargo.toml"));
+    let table = manifest
+        .split("[dependencies]\n")
+        .nth(1)
+        .expect("a table of dependencies");
+    let table = table.split("\n[").next().unwrap_or_default();
+    let name = |line: &str| line.split(['.', ' ', '=']).next().unwrap_or_default().to_owned();
+    table
+        .lines()
+        .filter(|line| !line.trim().is_empty() && !line.starts_with('#'))
+        .map(name)
+        .collect()
+}
+
+#[test]
+fn dependencies_run_from_cli_to_study_to_core() {
+    let has = |member: &str, name: &str| dependencies(member).iter().any(|d| d == name);
+    assert!(has("cli", "pontoon-study") && !has("cli", "pontoon-core"));
+    assert!(has("study", "pontoon-core") && !has("study", "pontoon"));
+    assert!(!has("core", "pontoon-study") && !has("core", "pontoon"));
+    for (library, only) in [
+        ("polars", "study"),
+        ("anyhow", "cli"),
+        ("clap", "cli"),
+        ("faer", "core"),
+        ("rayon", "study"),
+    ] {
+        for member in ["core", "study", "cli"] {
+            assert_eq!(has(member, library), member == only, "{library} in {member}");
+        }
+    }
+}
+
+#[test]
+fn core_knows_no_files_clock_threads_or_randomness() {
+    for file in files(&root().join("crates/core/src"), ".rs") {
+        let text = read(&file);
+        for word in [
+            "std::fs",
+            "std::env",
+            "std::io",
+            "std::time",
+            "std::thread",
+            "rayon",
+            "rand::",
+            "println!",
+        ] {
+            assert!(!text.contains(word), "{} has {word}", file.display());
+        }
+    }
+}
+
+#[test]
+fn study_prints_nothing() {
+    for file in files(&root().join("crates/study/src"), ".rs") {
+        let text = read(&file);
+        for word in ["println!", "eprint", "stdout()", "stderr()", "dbg!"] {
+            assert!(!text.contains(word), "{} has {word}", file.display());
+        }
+    }
+}
+
+/// A crate below `crates`, by the name of its folder.
+fn read_crate(member: &str) -> Crate {
+    let src = root().join("crates").join(member).join("src");
+    let library = src.join("lib.rs").exists();
+    Crate::read(if library { "lib.rs" } else { "main.rs" }, &|name| {
+        fs::read_to_string(src.join(name)).ok()
+    })
+}
+
+/// Floors of core from the ground up, as the table at the head of its root has them: a room knows its own floor and those
+/// below.
+fn floors() -> Vec<Vec<String>> {
+    let mut floors: Vec<Vec<String>> = Vec::new();
+    let text = read(&root().join("crates/core/src/lib.rs"));
+    for row in text.lines().filter_map(|line| line.strip_prefix("//! | ")).skip(1) {
+        let [floor, rooms, charter] = row.split('|').map(str::trim).collect::<Vec<_>>()[..3] else {
+            panic!("{row} is not floor, rooms and charter");
+        };
+        assert_eq!(floor, floors.len().to_string(), "{row}");
+        assert!(!charter.is_empty(), "{row} has no charter");
+        floors.push(rooms.split('`').skip(1).step_by(2).map(str::to_owned).collect());
+    }
+    floors
+}
+
+#[test]
+fn the_table_of_core_names_each_of_its_rooms_once() {
+    let mut named = floors().concat();
+    named.sort();
+    let core = read_crate("core");
+    let mut rooms: Vec<String> = core.modules.files[0]
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            syn::Item::Mod(room) => Some(room.ident.to_string()),
+            _ => None,
+        })
+        .collect();
+    rooms.sort();
+    assert!(rooms.len() > 10, "only {rooms:?} found");
+    assert_eq!(named, rooms);
+}
+
+#[test]
+fn rooms_of_core_know_only_their_own_floor_and_those_below() {
+    let (core, floors) = (read_crate("core"), floors());
+    let floor = |room: &str| {
+        let at = floors.iter().position(|rooms| rooms.iter().any(|r| r == room));
+        at.unwrap_or_else(|| panic!("{room} has no floor"))
+    };
+    let mut seen = 0;
+    for ((from, to), names) in core.uses.program.iter().chain(&core.uses.tests) {
+        let [file, used] = [from, to].map(|&file| &core.modules.files[file]);
+        let (Some(own), Some(other)) = (file.module.first(), used.module.first()) else {
+            panic!(
+                "{} knows {names:?} of {}: the root holds rooms alone",
+                file.name, used.name
+            );
+        };
+        seen += usize::from(own != other);
+        assert!(
+            floor(other) <= floor(own),
+            "{} of floor {} knows {names:?} of {}",
+            file.name,
+            floor(own),
+            used.name
+        );
+    }
+    assert!(seen > 20, "only {seen} uses found");
+}
+
+/// Crates without circles among their files. Those of the others are told, not refused.
+const WITHOUT_CIRCLES: [&str; 1] = ["core"];
+
+#[test]
+fn files_of_a_crate_go_in_no_circle_but_parent_and_child() {
+    let crates = fs::read_dir(root().join("crates")).expect("crates");
+    let mut members: Vec<String> = crates
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.join("src").exists())
+        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    members.sort();
+    for member in &members {
+        let read = read_crate(member);
+        let told: Vec<String> = [read.circles_of_rooms(), read.circles(), read.outside()].concat();
+        assert!(
+            !read.uses.program.is_empty() || read.modules.files.len() == 1,
+            "{member}: no arrow found"
+        );
+        if WITHOUT_CIRCLES.contains(&member.as_str()) {
+            assert!(told.is_empty(), "{member}:\n{}", told.join("\n"));
+        }
+        for told in told {
+            println!("{member}: {told}");
+        }
+    }
+    for member in WITHOUT_CIRCLES {
+        assert!(members.iter().any(|m| m == member), "{member} is no crate");
+    }
+}
+
+/// The lower floors of the studies from the ground up: whatever is not named here stands above them.
+const STUDY_FLOORS: [&[&str]; 3] = [&["refusal", "document", "filter", "journal"], &["spec"], &["plan"]];
+
+#[test]
+fn the_lower_rooms_of_the_studies_do_not_know_the_upper_ones() {
+    let src = root().join("crates/study/src");
+    let floor = |room: &str| STUDY_FLOORS.iter().position(|rooms| rooms.contains(&room));
+    let mut seen = 0;
+    for file in files(&src, ".rs") {
+        let inside = file.strip_prefix(&src).expect("below src").to_string_lossy();
+        let Some(own) = floor(inside.split(['/', '.']).next().unwrap_or_default()) else {
+            continue;
+        };
+        for line in read(&file).lines().filter(|line| !line.trim_start().starts_with("//")) {
+            for used in line.split("crate::").skip(1) {
+                let used = used
+                    .split(|c: char| !c.is_ascii_lowercase() && c != '_')
+                    .next()
+                    .unwrap_or_default();
+                seen += 1;
+                let below = used.is_empty() || floor(used).is_some_and(|floor| floor <= own);
+                assert!(below, "{inside} knows {used}");
+            }
+        }
+    }
+    assert!(seen > 10, "only {seen} uses found");
+}
+
+#[test]
+fn files_are_short_and_begin_with_what_they_are() {
+    for file in rust_files() {
+        let text = read(&file);
+        let lines = text.lines().count();
+        assert!(lines <= 600, "{} has {lines} lines", file.display());
+        assert!(text.starts_with("//!"), "{} does not say what it is", file.display());
+    }
+}
+
+#[test]
+fn nothing_is_left_undone() {
+    let words = ["todo", "unimplemented"].map(|word| format!("{word}!("));
+    for file in rust_files() {
+        let text = read(&file);
+        for word in &words {
+            assert!(!text.contains(word.as_str()), "{} has {word}", file.display());
+        }
+    }
+}
+
+#[test]
+fn no_room_is_a_lumber_room() {
+    for file in rust_files() {
+        let name = file.to_string_lossy().into_owned();
+        for word in ["utils", "common", "helpers"] {
+            assert!(
+                !name.contains(&format!("/{word}.rs")) && !name.contains(&format!("/{word}/")),
+                "{name}"
+            );
+        }
+    }
+}
+
+/// Endings that say a unit.
+const UNITS: [&str; 17] = [
+    "_m", "_m2", "_m3", "_m4", "_s", "_n", "_pa", "_hz", "_rad", "_kg", "_m_s", "_n_m", "_kg_m", "_kg_m3", "_pa_m",
+    "_1_s", "_m_s2",
+];
+/// Names of pure numbers.
+const PURE: [&str; 7] = [
+    "ratio",
+    "share",
+    "spectral_radius",
+    "section_coefficient",
+    "three_dimensional_correction",
+    "load_position",
+    "poissons_ratio",
+];
+
+/// Numbers in the unit of something else that is named beside them: a column, a quantity, a parameter whose name ends in
+/// its unit.
+const OF_WHAT_IS_NAMED: [&str; 30] = [
+    "time_step_tolerance",
+    "operator_tolerance",
+    "deflection_tolerance",
+    "compression_tolerance",
+    "tension_tolerance",
+    "above",
+    "below",
+    "weights",
+    "hold",
+    "sets",
+    "expected",
+    "relative_tolerance",
+    "absolute_tolerance",
+    "value",
+    "uncertainty",
+    "at_least",
+    "at_most",
+    "within",
+    "points",
+    "number",
+    "start",
+    "found",
+    "held",
+    "standard_error",
+    "lower",
+    "upper",
+    "sum_of_squares_start",
+    "sum_of_squares_best",
+    "difference_share",
+    "tolerance",
+];
+
+/// The names of all properties of a schema that hold numbers other than counts, or lists of them.
+fn number_names(schema: &serde_json::Value, out: &mut Vec<String>) {
+    match schema {
+        serde_json::Value::Object(map) => {
+            if let Some(serde_json::Value::Object(properties)) = map.get("properties") {
+                let number = |value: &serde_json::Value| {
+                    value.get("properties").is_none() && value.to_string().contains("\"number\"")
+                };
+                out.extend(
+                    properties
+                        .iter()
+                        .filter(|(_, value)| number(value))
+                        .map(|(name, _)| name.clone()),
+                );
+            }
+            map.values().for_each(|value| number_names(value, out));
+        }
+        serde_json::Value::Array(list) => list.iter().for_each(|value| number_names(value, out)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_number_that_a_person_types_ends_in_its_unit() {
+    for schema in [
+        pontoon_plan::schema::study(),
+        pontoon_plan::schema::bridge(),
+        pontoon_judge::schema::reference(),
+        pontoon_judge::schema::parameters(),
+    ] {
+        let mut names = Vec::new();
+        number_names(&schema, &mut names);
+        names.retain(|name| !["linspace", "geomspace", "from", "to"].contains(&name.as_str()));
+        assert!(names.len() > 4, "only {names:?} found");
+        for name in names {
+            let good = PURE.contains(&name.as_str())
+                || OF_WHAT_IS_NAMED.contains(&name.as_str())
+                || UNITS.iter().any(|unit| name.ends_with(unit));
+            assert!(good, "{name} does not say its unit");
+        }
+    }
+}
+
+/// Whether a word in backticks is the path of a file of this repository.
+fn is_path(word: &str) -> bool {
+    let known = [".rs", ".json", ".md", ".toml", ".ipynb"]
+        .iter()
+        .any(|ending| word.ends_with(ending));
+    let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "._/-".contains(c));
+    known && plain && word.contains('/') && !word.starts_with("results/") && !word.starts_with('/')
+}
+
+#[test]
+fn paths_in_docs_exist() {
+    let mut docs = rust_files();
+    docs.extend(files(&root().join("crates"), ".md"));
+    docs.extend(files(&root().join("studies"), ".md"));
+    docs.extend(Some(root().join("README.md")).filter(|readme| readme.exists()));
+    for file in docs {
+        let rust = file.extension().is_some_and(|e| e == "rs");
+        for line in read(&file)
+            .lines()
+            .filter(|line| !rust || line.trim_start().starts_with("//"))
+        {
+            for word in line.split('`').skip(1).step_by(2).filter(|word| is_path(word)) {
+                let mut near = file.ancestors().skip(1).take_while(|dir| dir.starts_with(root()));
+                assert!(
+                    near.any(|dir| dir.join(word).exists()),
+                    "{} names {word}, which does not exist",
+                    file.display()
+                );
+            }
+        }
+    }
+}

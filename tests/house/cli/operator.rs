@@ -1,0 +1,206 @@
+//! Crossings by the operator: its judge, its time step, its cache.
+
+use super::refusals::study as study_refused;
+use crate::stage::{Stage, stderr};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+const JOBS: &str = "out/jobs.parquet";
+
+/// A stage of a few crossings with keys of the analysis.
+fn stage(analysis: &Value) -> Stage {
+    let mut stage = Stage::new();
+    stage.study["design"] = json!([{ "grid": {
+        "connection": ["linear", "nonlinear"], "gap_tension_m": 0.01, "gap_compression_m": 0.002,
+        "speed_m_s": [5, 10, 15], "load_n": 1e5
+    } }]);
+    let of = stage.study["analysis"].as_object_mut().unwrap();
+    of.extend(analysis.as_object().unwrap().clone());
+    stage.write();
+    stage
+}
+
+fn run(stage: &Stage) -> Output {
+    stage.pontoon(&["run", "study.json", "--out", "out", "--quiet"])
+}
+
+#[test]
+fn the_operator_is_the_default_and_agrees_with_the_reference_solver() {
+    let peaks = |analysis: Value| {
+        let stage = stage(&analysis);
+        assert_eq!(run(&stage).status.code(), Some(0));
+        let manifest = stage.manifest("out");
+        (
+            stage.numbers(JOBS, "peak_deflection_m"),
+            manifest["bridges"][0]["operator_modes"].clone(),
+        )
+    };
+    let ((default, modes), (operator, _), (reference, none)) = (
+        peaks(json!({})),
+        peaks(json!({ "solver": "operator" })),
+        peaks(json!({ "solver": "reference" })),
+    );
+    assert_eq!(default, operator);
+    assert!(modes.as_u64().unwrap() > 10 && none.is_null(), "{modes} {none}");
+    assert_ne!(operator, reference, "two solvers give the same last bits");
+    for (found, expected) in operator.iter().zip(&reference) {
+        // 0.5 % is what the operator promises of deflections; the bridge's are within 0.1 %
+        let (found, expected) = (found.unwrap(), expected.unwrap());
+        assert!((found - expected).abs() <= 5e-3 * expected, "{found} {expected}");
+    }
+}
+
+#[test]
+fn a_share_of_the_jobs_is_solved_again_and_its_deviations_are_told() {
+    let stage = stage(&json!({ "verify": { "share": 0.5 } }));
+    assert_eq!(run(&stage).status.code(), Some(0));
+    let deviations = stage.numbers(JOBS, "verify_deflection");
+    let taken: Vec<bool> = deviations.iter().map(Option::is_some).collect();
+    assert_eq!(taken, [true, false, true, false, true, false]);
+    assert_eq!(stage.numbers(JOBS, "verify_held")[0], Some(1.0));
+    let verification = &stage.manifest("out")["verification"];
+    assert_eq!((&verification["jobs"], &verification["beyond"]), (&json!(3), &json!(0)));
+    let worst = verification["worst_deflection"].as_f64().unwrap();
+    let largest = deviations.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(worst == largest && worst > 0.0 && worst < 5e-3, "{worst} {largest}");
+}
+
+#[test]
+fn a_deviation_beyond_its_tolerance_is_status_1() {
+    let stage = stage(&json!({ "verify": { "share": 1.0, "deflection_tolerance": 1e-12 } }));
+    let output = run(&stage);
+    assert_eq!(output.status.code(), Some(1));
+    let told = stderr(&output);
+    assert!(told.contains("of 6 jobs solved again are beyond"), "{told}");
+    assert!(stage.numbers(JOBS, "verify_held").contains(&Some(0.0)));
+    assert!(stage.numbers(JOBS, "peak_deflection_m").iter().all(Option::is_some));
+}
+
+#[test]
+fn an_automatic_time_step_reaches_its_tolerance_and_is_in_the_table() {
+    let force = |analysis: Value| {
+        let stage = stage(&analysis);
+        assert_eq!(run(&stage).status.code(), Some(0));
+        let column = |name: &str| stage.numbers(JOBS, name);
+        let forces: Vec<f64> = column("peak_compression_n")
+            .iter()
+            .zip(column("peak_tension_n"))
+            .map(|(c, t)| c.unwrap().max(t.unwrap()))
+            .collect();
+        (forces, stage)
+    };
+    let (fine, _) = force(json!({ "time_step_s": 0.0003125 }));
+    let mut before = usize::MAX;
+    for tolerance in [0.001, 0.01, 0.1] {
+        let (forces, stage) = force(json!({ "time_step_s": "auto", "time_step_tolerance": tolerance }));
+        for (found, expected) in forces.iter().zip(&fine) {
+            assert!(
+                (found - expected).abs() <= tolerance * expected,
+                "{tolerance}: {found} {expected}"
+            );
+        }
+        let steps = stage.numbers(JOBS, "time_step_s");
+        assert!(steps.iter().all(|h| h.is_some_and(|h| h <= 0.005)), "{steps:?}");
+        // the looser the tolerance, the fewer the steps
+        let count: f64 = stage.numbers(JOBS, "steps").iter().flatten().sum();
+        assert!(count as usize <= before, "{tolerance}: {count}");
+        before = count as usize;
+    }
+}
+
+#[test]
+fn keys_that_have_no_meaning_beside_another_are_refused() {
+    let analysis = "/analysis";
+    study_refused(
+        analysis,
+        "time_step_s",
+        json!("fast"),
+        &["analysis.time_step_s", "\"auto\""],
+    );
+    study_refused(analysis, "time_step_s", json!(0), &["analysis.time_step_s"]);
+    study_refused(
+        analysis,
+        "time_step_tolerance",
+        json!(0.01),
+        &["analysis.time_step_tolerance"],
+    );
+    study_refused(
+        analysis,
+        "operator_tolerance",
+        json!(-1),
+        &["analysis.operator_tolerance"],
+    );
+    for share in [json!(0), json!(1.5)] {
+        study_refused(
+            analysis,
+            "verify",
+            json!({ "share": share }),
+            &["analysis.verify.share"],
+        );
+    }
+    study_refused(
+        analysis,
+        "verify",
+        json!({ "part": 0.1 }),
+        &["analysis.verify", "part", "share"],
+    );
+    for (key, value) in [
+        ("verify", json!({ "share": 0.1 })),
+        ("operator_tolerance", json!(1e-3)),
+        ("time_step_s", json!("auto")),
+    ] {
+        let mut stage = Stage::new();
+        stage.study["analysis"]["solver"] = "reference".into();
+        stage.study["analysis"][key] = value;
+        stage.write();
+        super::refusals::refused(&stage, &[&format!("analysis.{key}"), "solver: operator"]);
+    }
+}
+
+/// The one file in a folder.
+fn only_file(folder: &Path) -> PathBuf {
+    let mut files = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let file = files.next().unwrap();
+    assert_eq!(files.next(), None);
+    file
+}
+
+#[test]
+fn an_operator_is_kept_and_read_back_and_a_damaged_one_replaced() {
+    let stage = stage(&json!({}));
+    let cache = stage.path("cache");
+    let run = |out: &str| {
+        let output = stage.pontoon_with(&["run", "study.json", "--out", out, "--quiet", "--fresh"], &cache);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let tables = ["jobs", "positions", "connectors", "histories"];
+        let bytes = tables.map(|name| fs::read(stage.path(&format!("{out}/{name}.parquet"))).unwrap());
+        let operators = stage.manifest(out)["operators"].clone();
+        (bytes, operators, stderr(&output))
+    };
+    let counts = |built: usize, from_cache: usize, replaced: usize| json!({ "built": built, "from_cache": from_cache, "replaced": replaced });
+    let (first, operators, _) = run("first");
+    assert_eq!(operators, counts(1, 0, 0));
+    let (second, operators, told) = run("second");
+    assert_eq!((&second, operators, told.as_str()), (&first, counts(0, 1, 0), ""));
+    let file = only_file(&cache);
+    let whole = fs::read(&file).unwrap();
+    let mut flipped = whole.clone();
+    flipped[whole.len() / 2] ^= 16;
+    for damaged in [flipped, whole[..whole.len() / 2].to_vec(), Vec::new()] {
+        fs::write(&file, damaged).unwrap();
+        let (again, operators, told) = run("again");
+        assert_eq!((&again, operators), (&first, counts(1, 0, 1)));
+        assert!(told.contains("an operator in the cache was damaged"), "{told}");
+        assert_eq!(fs::read(only_file(&cache)).unwrap(), whole, "not replaced");
+    }
+}
+
+#[test]
+fn a_cache_that_cannot_be_written_costs_no_result() {
+    let stage = stage(&json!({}));
+    fs::write(stage.path("file"), "x").unwrap();
+    let output = stage.pontoon_with(&["run", "study.json", "--out", "out", "--quiet"], &stage.path("file"));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}

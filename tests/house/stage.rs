@@ -1,0 +1,162 @@
+//! A folder with a study and its bridge, the program run in it, and what it left.
+
+use polars_core::prelude::{DataFrame, DataType};
+use polars_io::prelude::{ParquetReader, SerReader};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The folder; gone with the value.
+pub struct Stage {
+    dir: tempfile::TempDir,
+    /// The study's document, to be changed before a run.
+    pub study: Value,
+    /// The bridge's document, to be changed before a run.
+    pub bridge: Value,
+}
+
+fn studies() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies")
+}
+
+fn document(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+impl Stage {
+    /// The smoke study with its bridge beside it.
+    pub fn new() -> Self {
+        let mut study = document(&studies().join("smoke/study.json"));
+        study["bridge"] = "bridge.json".into();
+        let bridge = document(&studies().join("bridges/smoke.json"));
+        Self {
+            dir: tempfile::tempdir().unwrap(),
+            study,
+            bridge,
+        }
+    }
+
+    /// A file in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.dir.path().join(name)
+    }
+
+    /// Writes both documents.
+    pub fn write(&self) -> &Self {
+        fs::write(self.path("study.json"), format!("{:#}", self.study)).unwrap();
+        fs::write(self.path("bridge.json"), format!("{:#}", self.bridge)).unwrap();
+        self
+    }
+
+    /// Writes a document beside them.
+    pub fn json(&self, name: &str, document: &Value) {
+        fs::write(self.path(name), format!("{document:#}")).unwrap();
+    }
+
+    /// Writes the documents and runs the study into a folder, to its good end.
+    pub fn ran(&self, out: &str) {
+        let output = self.write().pontoon(&["run", "study.json", "--out", out, "--quiet"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+
+    /// Holds results against `reference.json` made of some checks; exit status and the lines of the comparison.
+    pub fn held(&self, results: &str, checks: &Value) -> (Option<i32>, Vec<Value>) {
+        self.json("reference.json", &reference(checks));
+        self.compared(results, "reference.json")
+    }
+
+    /// Holds results against what has a name; exit status and the lines of the comparison.
+    pub fn compared(&self, results: &str, with: &str) -> (Option<i32>, Vec<Value>) {
+        let output = self.pontoon(&["compare", results, "--with", with, "--format", "json"]);
+        let text = stdout(&output);
+        let object: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}{}", stderr(&output)));
+        assert_eq!(object["good"], json!(output.status.code() == Some(0)));
+        (output.status.code(), object["lines"].as_array().unwrap().clone())
+    }
+
+    /// Runs the program in the folder.
+    pub fn pontoon(&self, words: &[&str]) -> Output {
+        // no cache but where a test says so
+        self.pontoon_with(words, Path::new(""))
+    }
+
+    /// The same with a cache in a folder.
+    pub fn pontoon_with(&self, words: &[&str], cache: &Path) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_pontoon"))
+            .args(words)
+            .env("PONTOON_CACHE_DIR", cache)
+            .current_dir(self.dir.path())
+            .output()
+            .unwrap()
+    }
+
+    /// A table in a folder of results.
+    pub fn table(&self, path: &str) -> DataFrame {
+        ParquetReader::new(fs::File::open(self.path(path)).unwrap())
+            .finish()
+            .unwrap()
+    }
+
+    /// A column of numbers of a table.
+    pub fn numbers(&self, path: &str, column: &str) -> Vec<Option<f64>> {
+        let column = self
+            .table(path)
+            .column(column)
+            .unwrap()
+            .cast(&DataType::Float64)
+            .unwrap();
+        column.f64().unwrap().iter().collect()
+    }
+
+    /// The names of everything in the folder, sorted.
+    pub fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.dir.path()).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// The manifest of the results in a folder.
+    pub fn manifest(&self, out: &str) -> Value {
+        document(&self.path(out).join("manifest.json"))
+    }
+}
+
+/// What a program wrote on standard output.
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// What a program wrote on standard error.
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A reference of some checks.
+pub fn reference(checks: &Value) -> Value {
+    json!({ "name": "expected", "source": "the tables themselves", "checks": checks })
+}
+
+/// The one message of a refusal: the first line of what was told. What follows it, if anything does, is one place of a file.
+pub fn one_message(told: &str) -> &str {
+    let (message, place) = told.split_once('\n').unwrap();
+    let begins = place.trim_start().starts_with("--> ");
+    assert!(
+        place.is_empty() || begins && place.matches("--> ").count() == 1,
+        "{told}"
+    );
+    assert!(message.starts_with("pontoon: "), "{told}");
+    message
+}
+
+/// An end with status 2 and one message that holds all parts; nothing on standard output.
+pub fn is_refused(output: &Output, parts: &[&str]) {
+    let told = stderr(output);
+    assert_eq!(output.status.code(), Some(2), "{parts:?}: {told}{}", stdout(output));
+    let message = one_message(&told);
+    for part in [&["found ", "allowed: "], parts].concat() {
+        assert!(message.contains(part), "no '{part}' in: {message}");
+    }
+    assert_eq!(stdout(output), "", "{message}");
+}

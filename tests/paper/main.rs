@@ -1,0 +1,3 @@
+//! What the paper prints.
+
+mod printed;

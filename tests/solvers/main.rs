@@ -1,0 +1,12 @@
+//! Two ways to one answer: operator and reference solver, lanes, super-element and full model; the energy balance.
+
+mod chain;
+mod energy;
+mod lanes;
+mod meshed;
+mod operator;
+mod operator_accuracy;
+mod operator_lanes;
+mod probe;
+mod shapes;
+mod superelement;
