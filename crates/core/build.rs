@@ -1,6 +1,7 @@
 //! Tells the crate what its own sources come to, so that an operator of other mechanics is not taken for its own.
 
-include!("../sources.rs");
+use pontoon_sources::{MECHANICS, key_of, watch};
+use std::path::Path;
 
 fn main() {
     let crates = Path::new("..");

@@ -1,6 +1,7 @@
 //! Tells the crate what the sources that make records come to, so that records of other rules are not taken for its own.
 
-include!("../sources.rs");
+use pontoon_sources::{RECORDS, key_of, watch};
+use std::path::Path;
 
 fn main() {
     let crates = Path::new("..");

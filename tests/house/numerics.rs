@@ -2,18 +2,9 @@
 //!
 //! That a journal of another key is refused is tried in `tests/house/faults/resume.rs`.
 
+use pontoon_sources::{RECORDS, key_of};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// The build scripts' own text.
-mod sources {
-    include!("../../crates/sources.rs");
-
-    /// The key of the sources below a folder `crates`.
-    pub fn numerics(crates: &Path) -> String {
-        key_of(crates, RECORDS)
-    }
-}
 
 fn crates() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -48,7 +39,7 @@ fn copied() -> tempfile::TempDir {
 #[test]
 fn the_key_hangs_on_all_that_decides_a_number_and_on_nothing_else() {
     let dir = copied();
-    let numerics = || sources::numerics(&dir.path().join("crates"));
+    let numerics = || key_of(&dir.path().join("crates"), RECORDS);
     let built = numerics();
     assert_eq!(built, pontoon_study::NUMERICS, "the program's key is of other sources");
     let changed = |file: &str, from: &str, to: &str| {
@@ -101,7 +92,7 @@ fn the_key_hangs_on_all_that_decides_a_number_and_on_nothing_else() {
 #[test]
 fn bytes_that_pass_from_one_file_to_the_next_change_the_key() {
     let dir = copied();
-    let numerics = || sources::numerics(&dir.path().join("crates"));
+    let numerics = || key_of(&dir.path().join("crates"), RECORDS);
     let built = numerics();
     let [first, second] = ["connector.rs", "conventions.rs"].map(|name| dir.path().join("crates/core/src").join(name));
     let moved = fs::read_to_string(&first).unwrap() + &fs::read_to_string(&second).unwrap();

@@ -1,7 +1,8 @@
 //! What the benchmarks of the finite elements share: a mesh with supports and loads, and the reading of its answer.
 //!
 //! Knows the public face of `pontoon_core::fem` alone. Does not know a single reference value.
-#![allow(dead_code, clippy::unwrap_used)]
+
+#![allow(clippy::unwrap_used)]
 
 use nalgebra::{Rotation3, Vector3};
 use pontoon_core::fem::{
@@ -12,12 +13,16 @@ use std::ops::RangeInclusive;
 
 /// A mesh, the dofs that are held and the load on the others.
 pub struct Model {
+    /// The mesh.
     pub mesh: Mesh,
+    /// Whether a dof is held, of each.
     pub held: Vec<bool>,
+    /// The load on each dof.
     pub load: Vec<f64>,
 }
 
 impl Model {
+    /// A mesh that nothing holds and nothing loads.
     pub fn new(mesh: Mesh) -> Self {
         let n = mesh.dofs();
         Self {
@@ -99,6 +104,7 @@ impl Model {
         self.displacements().iter().zip(&self.load).map(|(u, f)| u * f).sum()
     }
 
+    /// The lowest modes of the dofs that are not held.
     pub fn modes(&self, mass: MassKind, count: usize, shift: f64) -> EigenPairs {
         let (k, m, _) = self.matrices(mass);
         lowest_modes(&k, &m, count, shift).unwrap()
@@ -130,12 +136,16 @@ pub fn part(a: &SymmetricMatrix, keep: &[usize]) -> SymmetricMatrix {
 
 /// A mesh of `n` x `m` shells over the unit square, taken to its place by a map.
 pub struct Grid {
+    /// The model on it.
     pub model: Model,
+    /// Elements along the first edge.
     pub n: usize,
+    /// Elements along the second edge.
     pub m: usize,
 }
 
 impl Grid {
+    /// The mesh of `n` x `m` shells of a section, its unit square taken to its place.
     pub fn new(n: usize, m: usize, section: ShellSection, place: impl Fn(f64, f64) -> Vector3<f64>) -> Self {
         let mut mesh = Mesh::default();
         for j in 0..=m {
@@ -159,6 +169,7 @@ impl Grid {
         }
     }
 
+    /// The node at a corner of elements, from 0.
     pub fn node(&self, i: usize, j: usize) -> NodeId {
         NodeId(j * (self.n + 1) + i)
     }
@@ -175,6 +186,7 @@ impl Grid {
         }
     }
 
+    /// Holds all nodes in some directions.
     pub fn hold_all(&mut self, directions: &[usize]) {
         for i in 0..(self.n + 1) * (self.m + 1) {
             self.model.hold(NodeId(i), directions);
@@ -185,8 +197,11 @@ impl Grid {
 /// Factors on the coefficients of a benchmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Factors {
+    /// On Young's modulus.
     pub e: f64,
+    /// On the thickness.
     pub t: f64,
+    /// On the density.
     pub rho: f64,
 }
 
@@ -238,6 +253,7 @@ pub fn slopes(errors: &[f64]) -> Vec<f64> {
     errors.windows(2).map(|e| (e[0] / e[1]).abs().log2()).collect()
 }
 
+/// A shell of one material.
 pub fn shell(e: f64, nu: f64, t: f64, rho: f64) -> ShellSection {
     ShellSection {
         thickness_m: t,

@@ -6,6 +6,7 @@
 
 pub mod beams;
 pub mod chain;
+pub mod fem_model;
 pub mod operated;
 pub mod oscillator;
 pub mod scenario;

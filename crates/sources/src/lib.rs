@@ -1,18 +1,18 @@
-// What sources come to, for build scripts: each includes this file. A key made of it changes with every byte of the
-// sources that it is made of, and with the version of every library that numbers hang on.
+//! What sources come to, for build scripts: a key that changes with every byte of the sources that it is made of, and with the
+//! version of every library that numbers hang on.
+//!
+//! Knows files and the lock file. Does not know what is computed. It tells versions apart and guards against nobody.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What the mechanics are made of, below `crates/`.
-#[allow(dead_code)]
-const MECHANICS: &[&str] = &["core/Cargo.toml", "core/src"];
+pub const MECHANICS: &[&str] = &["core/Cargo.toml", "core/src"];
 
 /// What a record is made of, below `crates/`: the mechanics, how a file becomes a job, how a job becomes a record, and the
 /// form of the record.
-#[allow(dead_code)]
-const RECORDS: &[&str] = &[
+pub const RECORDS: &[&str] = &[
     "core/Cargo.toml",
     "core/src",
     "plan/Cargo.toml",
@@ -25,15 +25,23 @@ const RECORDS: &[&str] = &[
 /// Libraries that numbers hang on; those that they are built on count too.
 const LIBRARIES: &[&str] = &["faer", "nalgebra", "pulp", "rand_pcg", "sobol", "sobol_burley"];
 
-/// A number for all files of Rust below some paths, and for the libraries' versions in the lock file beside `crates`.
-fn key_of(crates: &Path, paths: &[&str]) -> String {
+/// The key of all sources and manifests below some paths of the folder `crates`, and of the libraries' versions in the lock
+/// file beside that folder: 16 hexadecimal digits.
+///
+/// # Panics
+/// Where a path has no sources: a key of nothing would never change. Verified by `tests/house/numerics.rs`.
+pub fn key_of(crates: &Path, paths: &[&str]) -> String {
     let mut hash = Fnv::new();
     for path in paths {
         let mut files = Vec::new();
         collect(&crates.join(path), &mut files);
         assert!(!files.is_empty(), "no sources at {path}");
         for file in files {
-            let name = file.strip_prefix(crates).unwrap_or(&file).to_string_lossy().replace('\\', "/");
+            let name = file
+                .strip_prefix(crates)
+                .unwrap_or(&file)
+                .to_string_lossy()
+                .replace('\\', "/");
             hash.take(name.as_bytes());
             hash.take(&fs::read(&file).unwrap_or_default());
         }
@@ -46,9 +54,8 @@ fn key_of(crates: &Path, paths: &[&str]) -> String {
 }
 
 /// Tells cargo what a key hangs on.
-#[allow(dead_code)]
-fn watch(crates: &Path, paths: &[&str]) {
-    for path in ["sources.rs", "../Cargo.lock"].iter().chain(paths) {
+pub fn watch(crates: &Path, paths: &[&str]) {
+    for path in ["sources/src", "../Cargo.lock"].iter().chain(paths) {
         println!("cargo:rerun-if-changed={}", crates.join(path).display());
     }
 }
@@ -69,10 +76,27 @@ fn locked(lock: &str) -> BTreeSet<(String, String)> {
     let quoted = |line: &str| line.split('"').nth(1).unwrap_or_default().to_owned();
     let mut versions: BTreeMap<String, Vec<(String, Vec<String>)>> = BTreeMap::new();
     for package in lock.split("[[package]]").skip(1) {
-        let field = |name: &str| package.lines().find(|line| line.starts_with(name)).map(quoted).unwrap_or_default();
-        let below = package.split("dependencies = [").nth(1).and_then(|rest| rest.split(']').next());
-        let below = below.unwrap_or_default().lines().map(quoted).filter(|name| !name.is_empty()).collect();
-        versions.entry(field("name = ")).or_default().push((field("version = "), below));
+        let field = |name: &str| {
+            package
+                .lines()
+                .find(|line| line.starts_with(name))
+                .map(quoted)
+                .unwrap_or_default()
+        };
+        let below = package
+            .split("dependencies = [")
+            .nth(1)
+            .and_then(|rest| rest.split(']').next());
+        let below = below
+            .unwrap_or_default()
+            .lines()
+            .map(quoted)
+            .filter(|name| !name.is_empty())
+            .collect();
+        versions
+            .entry(field("name = "))
+            .or_default()
+            .push((field("version = "), below));
     }
     let mut seen = BTreeSet::new();
     let mut open: Vec<String> = LIBRARIES.iter().map(|name| (*name).to_owned()).collect();
