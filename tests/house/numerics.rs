@@ -53,7 +53,7 @@ fn the_key_hangs_on_all_that_decides_a_number_and_on_nothing_else() {
     };
     for (file, from, to) in [
         // the mechanics; what a job's step rules are; what is solved again; the form of a record
-        ("crates/core/src/scheme.rs", "spectral_radius", "radius"),
+        ("crates/core/src/scheme.rs", "spectral radius", "radius"),
         ("crates/plan/src/job/mod.rs", "time_step_s", "step_s"),
         ("crates/study/src/run/retry.rs", "0.5", "0.25"),
         ("crates/results/src/record.rs", "peak_deflection_m", "deflection_m"),

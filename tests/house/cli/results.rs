@@ -254,12 +254,11 @@ fn a_full_disk_ends_the_run_and_leaves_the_results_before_it() {
     let before = fs::read(stage.path("r/manifest.json")).unwrap();
     stage.study["design"][0]["grid"]["speed_m_s"] = json!([10, 15, 20]);
     stage.write();
-    std::os::unix::fs::symlink("/dev/full", stage.path("r/.connectors.parquet.partial")).unwrap();
-    let output = stage.pontoon(&["run", "study.json", "--out", "r", "--quiet"]);
+    let output = crate::faults::sweep::run_with(&stage, "r", "tables.write:1:full");
     assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(3), ""));
     let told = stderr(&output);
     assert!(
-        told.starts_with("pontoon: results not written: r/connectors.parquet: ") && told.contains("No space left"),
+        told.starts_with("pontoon: results not written: r/jobs.parquet: ") && told.contains("no space left"),
         "{told}"
     );
     assert_eq!(fs::read(stage.path("r/manifest.json")).unwrap(), before);

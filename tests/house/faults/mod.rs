@@ -13,4 +13,4 @@ mod places;
 mod resume;
 mod shards;
 mod signals;
-mod sweep;
+pub mod sweep;

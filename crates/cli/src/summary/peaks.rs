@@ -118,7 +118,7 @@ fn against<I: Iterator<Item = Row>>(
     look: Look,
     width: usize,
 ) -> String {
-    let Some((peak_at, name)) = survey.peak_column() else {
+    let Some((peak_at, name)) = peak_column(survey) else {
         return "no job has a peak: all failed\n".to_owned();
     };
     let mut grid = Grid {
@@ -143,7 +143,7 @@ fn against<I: Iterator<Item = Row>>(
                 None => continue,
             };
             let at = values.iter().position(|value| *value == row[along]);
-            let is_largest = survey.is_largest(peak_at, &row);
+            let is_largest = is_largest(survey, peak_at, &row);
             if let Some(cell) = at.and_then(|at| cells[place].get_mut(at)) {
                 *cell = of_peak(name, &row[peak_at], is_largest);
             }
@@ -181,7 +181,7 @@ fn list<I: Iterator<Item = Row>>(
     look: Look,
     width: usize,
 ) -> String {
-    let peaks: Vec<usize> = survey.peaks(columns);
+    let peaks: Vec<usize> = peaks_among(columns);
     let Some(&first) = peaks.first() else {
         return "no rows\n".to_owned();
     };
@@ -217,7 +217,7 @@ fn list<I: Iterator<Item = Row>>(
             .map(|row| {
                 peaks
                     .iter()
-                    .map(|&i| of_peak(&columns[i], &row[i], survey.is_largest(i, row)))
+                    .map(|&i| of_peak(&columns[i], &row[i], is_largest(survey, i, row)))
                     .collect()
             })
             .collect(),
@@ -264,21 +264,19 @@ fn largest(survey: &Survey, columns: &[String], heads: &[Head], look: Look, widt
     format!("\n{}", parts.iter().map(line).collect::<String>())
 }
 
-impl Survey {
-    /// Whether the peak of a row is the largest, above nothing and not the only one.
-    fn is_largest(&self, column: usize, row: &Row) -> bool {
-        let mut largest = self.largest.iter();
-        self.rows > 1 && largest.any(|(i, most, of)| *i == column && *most > 0.0 && of == row)
-    }
+/// Whether the peak of a row is the largest, above nothing and not the only one.
+fn is_largest(survey: &Survey, column: usize, row: &Row) -> bool {
+    let mut largest = survey.largest.iter();
+    survey.rows > 1 && largest.any(|(i, most, of)| *i == column && *most > 0.0 && of == row)
+}
 
-    /// Places of the columns of peaks.
-    fn peaks(&self, columns: &[String]) -> Vec<usize> {
-        let place = |name: &&str| columns.iter().position(|column| column == name);
-        PEAKS.iter().filter_map(place).collect()
-    }
+/// Places of the columns of peaks.
+fn peaks_among(columns: &[String]) -> Vec<usize> {
+    let place = |name: &&str| columns.iter().position(|column| column == name);
+    PEAKS.iter().filter_map(place).collect()
+}
 
-    /// The column of the first peak and its name, where some job has one.
-    fn peak_column(&self) -> Option<(usize, &'static str)> {
-        self.largest.first().map(|(i, ..)| (*i, PEAKS[0]))
-    }
+/// The column of the first peak and its name, where some job has one.
+fn peak_column(survey: &Survey) -> Option<(usize, &'static str)> {
+    survey.largest.first().map(|(i, ..)| (*i, PEAKS[0]))
 }

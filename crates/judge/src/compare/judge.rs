@@ -95,7 +95,7 @@ impl<'a> Judge<'a> {
         let check = &self.reference.spec.checks[i];
         let quantity = match check.kind() {
             Some(CheckKind::Value(value)) => Some(value.of.clone()),
-            Some(CheckKind::Mode(mode)) => Some(mode.quantity()),
+            Some(CheckKind::Mode(mode)) => Some(frequency_of(mode)),
             Some(CheckKind::Measured(measured)) => Some(measured.of.clone()),
             _ => None,
         };
@@ -128,7 +128,7 @@ impl<'a> Judge<'a> {
         self.evaluator.take_notes();
         let found = match check.kind() {
             Some(CheckKind::Value(v)) => self.held(&v.of, &filter, v.expected, v.tolerance()),
-            Some(CheckKind::Mode(m)) => self.held(&m.quantity(), &filter, Some(m.expected_hz), m.tolerance()),
+            Some(CheckKind::Mode(m)) => self.held(&frequency_of(m), &filter, Some(m.expected_hz), m.tolerance()),
             Some(CheckKind::Measured(m)) => self.measured(m, &filter),
             Some(CheckKind::Bound(b)) => self.bound(b, &filter),
             Some(CheckKind::Trend(t)) => self.trend(t, &filter),
@@ -311,16 +311,15 @@ fn interpolated(run: &[(f64, f64)], x: f64) -> Option<f64> {
     Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 }
 
-impl ModeCheck {
-    fn quantity(&self) -> Quantity {
-        let shape = Allowed::OneOf(vec![Value::from(self.shape.clone())]);
-        Quantity::Select(SelectQuantity {
-            table: TableName::Modes,
-            column: "frequency_hz".to_owned(),
-            filter: Filter(vec![("shape".to_owned(), shape)]),
-            reduce: Reduction::Only,
-        })
-    }
+/// The frequency that a check of a mode looks at.
+fn frequency_of(mode: &ModeCheck) -> Quantity {
+    let shape = Allowed::OneOf(vec![Value::from(mode.shape.clone())]);
+    Quantity::Select(SelectQuantity {
+        table: TableName::Modes,
+        column: "frequency_hz".to_owned(),
+        filter: Filter(vec![("shape".to_owned(), shape)]),
+        reduce: Reduction::Only,
+    })
 }
 
 #[cfg(test)]

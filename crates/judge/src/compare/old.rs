@@ -237,7 +237,7 @@ fn words(
         .map(cells)
         .filter(|(_, old, found)| old != found)
         .collect();
-    let mut worst = Case::told((matched.len() - different.len()) as f64, String::new());
+    let mut worst = short_of((matched.len() - different.len()) as f64, String::new());
     worst.holds = different.is_empty();
     worst.reason = different
         .first()
@@ -246,17 +246,15 @@ fn words(
     line(id, format!("the same in {} rows", matched.len()), worst)
 }
 
-impl Case {
-    /// A case that falls short with a count.
-    fn told(count: f64, reason: String) -> Self {
-        Self {
-            case: Map::new(),
-            values: vec![count],
-            deviation: None,
-            margin: None,
-            holds: false,
-            reason: Some(reason),
-        }
+/// A case that falls short with a count.
+fn short_of(count: f64, reason: String) -> Case {
+    Case {
+        case: Map::new(),
+        values: vec![count],
+        deviation: None,
+        margin: None,
+        holds: false,
+        reason: Some(reason),
     }
 }
 

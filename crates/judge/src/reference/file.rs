@@ -4,8 +4,7 @@
 //! they are compared.
 
 use super::spec::{
-    BoundCheck, CheckKind, CheckSpec, CurveCheck, HistoryQuantity, HistoryReduction, ModeCheck, Quantity,
-    ReferenceSpec, Role, Tolerance, Trend, TrendCheck, ValueCheck,
+    BoundCheck, CheckKind, CheckSpec, CurveCheck, Quantity, ReferenceSpec, Role, Tolerance, Trend, TrendCheck,
 };
 use pontoon_plan::input::Refusal;
 use pontoon_plan::input::{read, typed};
@@ -110,37 +109,6 @@ impl Reference {
             group.check(&self.file, &format!("measured[{i}]"))?;
         }
         Ok(())
-    }
-}
-
-impl CheckSpec {
-    /// What is checked; none where the file says nothing or several things, which reading refuses.
-    pub fn kind(&self) -> Option<CheckKind<'_>> {
-        let mut kinds = self.kinds();
-        kinds.next().filter(|_| kinds.next().is_none())
-    }
-
-    /// What a check of one value expects and how far it may be off, in the unit of what it looks at; none of another kind.
-    pub fn expected_and_tolerance(&self) -> Option<(f64, f64)> {
-        match self.kind()? {
-            CheckKind::Value(v) => v.expected.map(|expected| (expected, v.tolerance().allowed(expected))),
-            CheckKind::Mode(m) => Some((m.expected_hz, m.tolerance().allowed(m.expected_hz))),
-            CheckKind::Measured(m) => Some((m.value, m.uncertainty)),
-            CheckKind::Bound(_) | CheckKind::Trend(_) | CheckKind::Curve(_) => None,
-        }
-    }
-
-    fn kinds(&self) -> impl Iterator<Item = CheckKind<'_>> {
-        [
-            self.value.as_ref().map(CheckKind::Value),
-            self.bound.as_ref().map(CheckKind::Bound),
-            self.trend.as_ref().map(CheckKind::Trend),
-            self.mode.as_ref().map(CheckKind::Mode),
-            self.curve.as_ref().map(CheckKind::Curve),
-            self.measured.as_ref().map(CheckKind::Measured),
-        ]
-        .into_iter()
-        .flatten()
     }
 }
 
@@ -314,89 +282,6 @@ impl Place<'_> {
                 ))
             }
             None => Ok(()),
-        }
-    }
-}
-
-impl Quantity {
-    /// Its parts with their places.
-    pub fn parts(&self) -> Vec<(String, &Self)> {
-        let (name, list): (&str, &[Self]) = match self {
-            Self::Ratio(two) => ("ratio", two.as_slice()),
-            Self::Difference(two) => ("difference", two.as_slice()),
-            Self::Largest(list) => ("largest", list),
-            Self::Smallest(list) => ("smallest", list),
-            Self::Select(_) | Self::History(_) | Self::Number(_) => ("", &[]),
-        };
-        list.iter()
-            .enumerate()
-            .map(|(i, part)| (format!("{name}[{i}]"), part))
-            .collect()
-    }
-
-    fn looks_at_results(&self) -> bool {
-        match self {
-            Self::Select(_) | Self::History(_) => true,
-            Self::Number(_) => false,
-            _ => self.parts().iter().any(|(_, part)| part.looks_at_results()),
-        }
-    }
-}
-
-impl HistoryQuantity {
-    /// Whether it matters when the vehicle is where.
-    pub fn needs_moments(&self) -> bool {
-        let whole = self.from.is_none() && self.to.is_none();
-        !whole || matches!(self.reduce, HistoryReduction::AsymmetryWithinM(_))
-    }
-}
-
-impl BoundCheck {
-    /// The lower bound, whether it is allowed itself or not.
-    pub fn lower(&self) -> Option<f64> {
-        self.at_least.or(self.above)
-    }
-
-    /// The upper bound, whether it is allowed itself or not.
-    pub fn upper(&self) -> Option<f64> {
-        self.at_most.or(self.below)
-    }
-}
-
-impl Tolerance {
-    /// How far a value may be from what is expected, in its own unit; nothing where no tolerance is given.
-    pub fn allowed(&self, expected: f64) -> f64 {
-        let relative = self.relative.map(|share| share * expected.abs());
-        relative.into_iter().chain(self.absolute).fold(0.0, f64::max)
-    }
-}
-
-impl ValueCheck {
-    /// Its tolerance.
-    pub fn tolerance(&self) -> Tolerance {
-        Tolerance {
-            relative: self.relative_tolerance,
-            absolute: self.absolute_tolerance,
-        }
-    }
-}
-
-impl ModeCheck {
-    /// Its tolerance.
-    pub fn tolerance(&self) -> Tolerance {
-        Tolerance {
-            relative: self.relative_tolerance,
-            absolute: None,
-        }
-    }
-}
-
-impl CurveCheck {
-    /// Its tolerance.
-    pub fn tolerance(&self) -> Tolerance {
-        Tolerance {
-            relative: self.relative_tolerance,
-            absolute: self.absolute_tolerance,
         }
     }
 }

@@ -5,12 +5,13 @@
 use super::axes::{Axis, check_apart};
 use super::condition::{Conditions, Test};
 use super::forms::{AxisMap, Design, Form, SampleSpec};
-use super::points::{Drawn, Making, Point, Sample, points};
+use super::points::{Drawn, Making, Sample, values};
 use super::sampling::SobolPoints;
 use super::values::{MOST_POINTS, Values};
 use crate::input::Refusal;
 use crate::input::canonical;
 use serde_json::{Map, Value};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Most parts of all ranges of a Latin hypercube, whose orders take four bytes a part.
@@ -27,6 +28,21 @@ pub struct Block {
     tests: Vec<Test>,
     /// Number of its points that meet the conditions.
     count: usize,
+}
+
+/// One point: a value for each axis of its block.
+#[derive(Debug, Clone)]
+pub struct Point<'a> {
+    /// The block it is of.
+    pub block: &'a Block,
+    values: Vec<Cow<'a, Value>>,
+}
+
+impl<'a> Point<'a> {
+    /// The axes with the point's values.
+    pub fn values(&self) -> impl Iterator<Item = (&'a Axis, &Value)> {
+        self.block.axes.iter().zip(self.values.iter().map(Cow::as_ref))
+    }
 }
 
 impl Block {
@@ -77,7 +93,8 @@ impl Block {
     /// The points in order: of a grid the first axis changes slowest. They are made one by one, so a long block costs
     /// nothing but, of a Latin hypercube, four bytes a point and range while it lasts.
     pub fn points(&self) -> impl Iterator<Item = Point<'_>> {
-        points(self, &self.making, &self.tests)
+        let values = values(&self.axes, &self.making, &self.tests);
+        values.map(move |values| Point { block: self, values })
     }
 }
 

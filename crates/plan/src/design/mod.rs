@@ -13,7 +13,6 @@ mod tests;
 mod values;
 
 pub use axes::{Axis, AxisName, SHORT_NAMES};
-pub use block::Block;
+pub use block::{Block, Point};
 pub use condition::{Condition, Conditions, Relation};
 pub use forms::{AxisMap, Design, Form, RangeMap, SampleSpec};
-pub use points::Point;

@@ -1,9 +1,8 @@
-//! The points of a block, one after the other.
+//! The points of some axes, one after the other.
 //!
 //! Knows their order. Stores none: a point is made when it is asked for. Does not know what a point means.
 
 use super::axes::Axis;
-use super::block::Block;
 use super::condition::Test;
 use super::sampling::{SobolPoints, Strata};
 use super::values::{Values, number};
@@ -64,28 +63,16 @@ impl Making {
     }
 }
 
-/// One point: a value for each axis of its block.
-#[derive(Debug, Clone)]
-pub struct Point<'a> {
-    /// The block it is of.
-    pub block: &'a Block,
-    values: Vec<Cow<'a, Value>>,
-}
-
-impl<'a> Point<'a> {
-    /// The axes with the point's values.
-    pub fn values(&self) -> impl Iterator<Item = (&'a Axis, &Value)> {
-        self.block.axes.iter().zip(self.values.iter().map(Cow::as_ref))
-    }
-}
-
-/// The points of a block in order that meet conditions: of a grid the first axis changes slowest.
-pub(super) fn points<'a>(block: &'a Block, making: &'a Making, tests: &'a [Test]) -> impl Iterator<Item = Point<'a>> {
-    let mut source = Source::of(block, making);
+/// The values of the points of some axes, in order, that meet conditions: of a grid the first axis changes slowest.
+pub(super) fn values<'a>(
+    axes: &'a [Axis],
+    making: &'a Making,
+    tests: &'a [Test],
+) -> impl Iterator<Item = Vec<Cow<'a, Value>>> {
+    let mut source = Source::of(axes, making);
     (0..making.count().unwrap_or(0))
         .map_while(move |number| source.values(number))
         .filter(|values| tests.iter().all(|test| test.met(values)))
-        .map(move |values| Point { block, values })
 }
 
 /// What the values of the next point come from.
@@ -98,12 +85,12 @@ enum Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    fn of(block: &Block, making: &'a Making) -> Self {
+    fn of(axes: &[Axis], making: &'a Making) -> Self {
         match making {
-            Making::Grid(axes) => Self::Grid(axes),
-            Making::Zip(axes) => Self::Zip(axes),
+            Making::Grid(values) => Self::Grid(values),
+            Making::Zip(values) => Self::Zip(values),
             Making::LatinHypercube(Sample { count, seed, drawn }) => {
-                let ranges = block.axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
+                let ranges = axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
                 let strata = ranges.map(|(axis, _)| Strata::new(*count, *seed, &axis.name));
                 Self::LatinHypercube(drawn, strata.collect())
             }

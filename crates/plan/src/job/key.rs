@@ -23,35 +23,33 @@ impl std::fmt::Display for JobKey {
     }
 }
 
-impl Job {
-    /// Equal for jobs that leave the same record, in whatever study and at whatever number they stand.
-    pub fn key(&self) -> JobKey {
-        let mut hasher = blake3::Hasher::new();
-        for text in [&*self.bridge.structure_key, &*self.vehicle.key, &*self.analysis.key] {
-            hasher.update(&(text.len() as u64).to_le_bytes());
-            hasher.update(text.as_bytes());
-        }
-        let mut number = |x: f64| {
-            // zero has one sign
-            hasher.update(&(x + 0.0).to_bits().to_le_bytes());
-        };
-        match self.gaps_m() {
-            None => number(-1.0),
-            Some((tension, compression)) => {
-                number(tension);
-                number(compression);
-            }
-        }
-        number(self.load_n);
-        let (kind, of_kind) = match self.task {
-            Task::Crossing { speed_m_s } => (0.0, speed_m_s),
-            Task::Static(load) => (1.0, load.x_m),
-            Task::Modes => (2.0, 0.0),
-        };
-        number(kind);
-        number(of_kind);
-        // whether a job is solved again is told by its number
-        number(if self.verify().is_some() { 1.0 } else { 0.0 });
-        JobKey::of(&hasher)
+/// Equal for jobs that leave the same record, in whatever study and at whatever number they stand.
+pub(super) fn key_of(job: &Job) -> JobKey {
+    let mut hasher = blake3::Hasher::new();
+    for text in [&*job.bridge.structure_key, &*job.vehicle.key, &*job.analysis.key] {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
     }
+    let mut number = |x: f64| {
+        // zero has one sign
+        hasher.update(&(x + 0.0).to_bits().to_le_bytes());
+    };
+    match job.gaps_m() {
+        None => number(-1.0),
+        Some((tension, compression)) => {
+            number(tension);
+            number(compression);
+        }
+    }
+    number(job.load_n);
+    let (kind, of_kind) = match job.task {
+        Task::Crossing { speed_m_s } => (0.0, speed_m_s),
+        Task::Static(load) => (1.0, load.x_m),
+        Task::Modes => (2.0, 0.0),
+    };
+    number(kind);
+    number(of_kind);
+    // whether a job is solved again is told by its number
+    number(if job.verify().is_some() { 1.0 } else { 0.0 });
+    JobKey::of(&hasher)
 }

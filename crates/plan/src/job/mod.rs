@@ -181,6 +181,12 @@ impl Job {
         DocumentPath::parse(path)?.get(document)
     }
 
+    /// What the job is known by from run to run: equal for jobs that leave the same record, in whatever study and at whatever
+    /// number they stand.
+    pub fn key(&self) -> JobKey {
+        key::key_of(self)
+    }
+
     /// Equal for jobs that are equal.
     pub(super) fn identity(&self) -> Identity {
         let bits = |x: f64| (x + 0.0).to_bits();

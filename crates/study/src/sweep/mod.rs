@@ -26,6 +26,8 @@ mod opened;
 mod so_far;
 mod solving;
 mod status;
+#[cfg(test)]
+mod table_tests;
 
 pub use deaths::{Apart, ApartEnd, run_apart};
 pub use ending::ended_now;
