@@ -258,7 +258,7 @@ fn a_full_disk_ends_the_run_and_leaves_the_results_before_it() {
     assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(3), ""));
     let told = stderr(&output);
     assert!(
-        told.starts_with("pontoon: results not written: r/jobs.parquet: ") && told.contains("no space left"),
+        told.starts_with("pontoon: results not written: r/histories.parquet: ") && told.contains("no space left"),
         "{told}"
     );
     assert_eq!(fs::read(stage.path("r/manifest.json")).unwrap(), before);

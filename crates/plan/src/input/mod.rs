@@ -16,5 +16,6 @@ pub use path::{DocumentPath, leaves};
 pub use pretty::pretty;
 pub use refusal::{Refusal, nearest};
 pub use spot::{Spot, SpotKind, spot};
-pub use strict::{canonical, canonical_text, read, text_and_hash};
+pub(crate) use strict::canonical;
+pub use strict::{canonical_text, read, text_and_hash};
 pub use typed::{to_value, typed};

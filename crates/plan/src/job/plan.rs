@@ -85,7 +85,7 @@ pub fn module_steps(job: &Job) -> f64 {
     job.steps() as f64 * job.bridge.design.modules as f64
 }
 
-/// Cost of a step of one module by the reference solver `[s]`, from a release build on one core.
+/// Cost of a step of one module by the reference solver `[s]`, optimised, on one core.
 const SECONDS_A_STEP_AND_MODULE: f64 = 2.0e-5;
 /// Cost of a step of one module by the operator with all its lanes at work `[s]`.
 const SECONDS_A_STEP_AND_MODULE_OPERATED: f64 = 3.0e-7;

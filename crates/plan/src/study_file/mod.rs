@@ -6,6 +6,5 @@ mod analysis;
 mod study;
 
 pub use analysis::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, TimeStepSpec, VerifySpec};
-pub use study::{
-    BridgeFile, HistoriesSpec, RecordSpec, Study, StudySpec, check_histories, filled_vehicle, read_bridge,
-};
+pub(crate) use study::check_histories;
+pub use study::{BridgeFile, HistoriesSpec, RecordSpec, Study, StudySpec, filled_vehicle, read_bridge};
