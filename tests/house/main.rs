@@ -11,3 +11,4 @@ mod corpus;
 mod faults;
 mod numerics;
 mod stage;
+mod tables;

@@ -1,11 +1,123 @@
 //! A folder with a study and its bridge, the program run in it, and what it left.
 
-use polars_core::prelude::{DataFrame, DataType};
-use polars_io::prelude::{ParquetReader, SerReader};
+use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
+use polars_arrow::compute::concatenate::concatenate;
+use polars_parquet::read::{BasicDecompressor, FileMetadata, PageReader, column_iter_to_arrays};
+use polars_parquet::read::{infer_schema, read_metadata};
 use serde_json::{Value, json};
 use std::fs;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+/// A table as its file has it.
+pub struct Frame {
+    /// What the file says of itself.
+    pub metadata: FileMetadata,
+    columns: Vec<(String, Box<dyn Array>)>,
+}
+
+/// A column of a table.
+pub struct Column<'a>(&'a dyn Array);
+
+impl Frame {
+    /// Reads a file.
+    pub fn read(path: &Path) -> Self {
+        let bytes = fs::read(path).unwrap();
+        let metadata = read_metadata(&mut Cursor::new(&bytes)).unwrap();
+        let schema = infer_schema(&metadata).unwrap();
+        let column = |field: &polars_arrow::datatypes::Field| {
+            let mut parts = vec![polars_arrow::array::new_empty_array(field.dtype.clone())];
+            for group in &metadata.row_groups {
+                let chunk = group.columns_under_root_iter(&field.name).unwrap().next().unwrap();
+                let range = chunk.byte_range();
+                let bytes = bytes[range.start as usize..range.end as usize].to_vec();
+                let pages = PageReader::new(Cursor::new(bytes.into()), chunk, Vec::new(), usize::MAX);
+                let pages = vec![BasicDecompressor::new(pages, Vec::new())];
+                let types = vec![&chunk.descriptor().descriptor.primitive_type];
+                parts.extend(column_iter_to_arrays(pages, types, field.clone(), None).unwrap().0);
+            }
+            let parts: Vec<&dyn Array> = parts.iter().map(|part| &**part).collect();
+            (field.name.to_string(), concatenate(&parts).unwrap())
+        };
+        let columns = schema.iter_values().map(column).collect();
+        Self { metadata, columns }
+    }
+
+    /// Whether another table has the same columns, of the same types, with the same cells.
+    pub fn same_cells(&self, other: &Self) -> bool {
+        let alike = |(a, b): (&(String, Box<dyn Array>), &(String, Box<dyn Array>))| a.0 == b.0 && a.1 == b.1;
+        self.columns.len() == other.columns.len() && self.columns.iter().zip(&other.columns).all(alike)
+    }
+
+    /// Number of rows.
+    pub fn height(&self) -> usize {
+        self.columns[0].1.len()
+    }
+
+    /// Names of the columns.
+    pub fn names(&self) -> Vec<String> {
+        self.columns.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// A column.
+    pub fn column(&self, name: &str) -> Option<Column<'_>> {
+        let found = self.columns.iter().find(|(of, _)| of == name);
+        found.map(|(_, array)| Column(&**array))
+    }
+}
+
+impl<'a> Column<'a> {
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn null_count(&self) -> usize {
+        self.0.null_count()
+    }
+
+    pub fn f64(&self) -> Option<Cells<f64>> {
+        let array: &PrimitiveArray<f64> = self.0.as_any().downcast_ref()?;
+        Some(Cells(array.iter().map(|cell| cell.copied()).collect()))
+    }
+
+    pub fn i64(&self) -> Option<Cells<i64>> {
+        let array: &PrimitiveArray<i64> = self.0.as_any().downcast_ref()?;
+        Some(Cells(array.iter().map(|cell| cell.copied()).collect()))
+    }
+
+    pub fn str(&self) -> Option<Cells<&'a str>> {
+        let array: &'a Utf8ViewArray = self.0.as_any().downcast_ref()?;
+        Some(Cells(array.iter().collect()))
+    }
+
+    /// Its numbers, whole or not; yes and no are one and nought.
+    pub fn numbers(&self) -> Vec<Option<f64>> {
+        if let Some(flags) = self.0.as_any().downcast_ref::<BooleanArray>() {
+            return flags
+                .iter()
+                .map(|cell| cell.map(|yes| f64::from(u8::from(yes))))
+                .collect();
+        }
+        let whole = self.i64().map(|Cells(cells)| cells.into_iter());
+        let whole = whole.map(|cells| cells.map(|cell| cell.map(|cell| cell as f64)).collect());
+        whole.unwrap_or_else(|| self.f64().unwrap().0)
+    }
+}
+
+/// The cells of a column.
+#[derive(Clone)]
+pub struct Cells<T>(Vec<Option<T>>);
+
+impl<T: Copy> Cells<T> {
+    pub fn get(&self, row: usize) -> Option<T> {
+        self.0[row]
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = Option<T>> + '_ {
+        self.0.iter().copied()
+    }
+}
 
 /// The folder; gone with the value.
 pub struct Stage {
@@ -92,21 +204,13 @@ impl Stage {
     }
 
     /// A table in a folder of results.
-    pub fn table(&self, path: &str) -> DataFrame {
-        ParquetReader::new(fs::File::open(self.path(path)).unwrap())
-            .finish()
-            .unwrap()
+    pub fn table(&self, path: &str) -> Frame {
+        Frame::read(&self.path(path))
     }
 
     /// A column of numbers of a table.
     pub fn numbers(&self, path: &str, column: &str) -> Vec<Option<f64>> {
-        let column = self
-            .table(path)
-            .column(column)
-            .unwrap()
-            .cast(&DataType::Float64)
-            .unwrap();
-        column.f64().unwrap().iter().collect()
+        self.table(path).column(column).unwrap().numbers()
     }
 
     /// The names of everything in the folder, sorted.

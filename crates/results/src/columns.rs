@@ -2,9 +2,11 @@
 //!
 //! Knows the few column types that tables have. Does not know what a column means.
 
-use polars_core::prelude::{Column, DataFrame, NamedFrom, Series};
+use super::frame::Frame;
+use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
 use pontoon_plan::input::canonical_text;
 use serde_json::Value;
+use std::io;
 
 /// The type of an axis's column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,33 +47,35 @@ impl AxisType {
 
 /// The columns of a table under way.
 #[derive(Debug, Default)]
-pub(super) struct Columns(Vec<Column>);
+pub(super) struct Columns(Vec<(String, Box<dyn Array>)>);
 
 impl Columns {
-    fn push(&mut self, series: Series) -> &mut Self {
-        self.0.push(series.into());
+    fn push(&mut self, name: &str, array: &dyn Array) -> &mut Self {
+        // a column that no cell is missing from says so by saying nothing of missing cells
+        let cells = array.validity().filter(|_| array.null_count() > 0).cloned();
+        self.0.push((name.to_owned(), array.with_validity(cells)));
         self
     }
 
     /// A column of numbers.
     pub(super) fn number(&mut self, name: &str, values: impl Iterator<Item = Option<f64>>) -> &mut Self {
-        self.push(Series::new(name.into(), values.collect::<Vec<_>>()))
+        self.push(name, &PrimitiveArray::<f64>::from(values.collect::<Vec<_>>()))
     }
 
     /// A column of whole numbers.
     pub(super) fn count(&mut self, name: &str, values: impl Iterator<Item = Option<usize>>) -> &mut Self {
         let values = values.map(|v| v.and_then(|v| i64::try_from(v).ok()));
-        self.push(Series::new(name.into(), values.collect::<Vec<_>>()))
+        self.push(name, &PrimitiveArray::<i64>::from(values.collect::<Vec<_>>()))
     }
 
     /// A column of words.
     pub(super) fn word<'a>(&mut self, name: &str, values: impl Iterator<Item = Option<&'a str>>) -> &mut Self {
-        self.push(Series::new(name.into(), values.collect::<Vec<_>>()))
+        self.push(name, &Utf8ViewArray::from_slice(values.collect::<Vec<_>>()))
     }
 
     /// A column of yes and no.
     pub(super) fn flag(&mut self, name: &str, values: impl Iterator<Item = Option<bool>>) -> &mut Self {
-        self.push(Series::new(name.into(), values.collect::<Vec<_>>()))
+        self.push(name, &BooleanArray::from(values.collect::<Vec<_>>()))
     }
 
     /// A column of an axis of a type that all `values` are of.
@@ -91,31 +95,31 @@ impl Columns {
     }
 
     /// The table.
-    pub(super) fn frame(&mut self) -> polars_core::prelude::PolarsResult<DataFrame> {
-        DataFrame::new_infer_height(std::mem::take(&mut self.0))
+    pub(super) fn frame(&mut self) -> io::Result<Frame> {
+        Frame::new(std::mem::take(&mut self.0))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use polars_core::prelude::DataType;
+    use polars_arrow::datatypes::ArrowDataType;
     use serde_json::json;
 
     #[test]
     fn an_axis_has_the_type_of_its_values() {
         for (values, expected) in [
-            (vec![json!(1), json!(null)], DataType::Int64),
-            (vec![json!(1.0), json!(null)], DataType::Float64),
-            (vec![json!(null)], DataType::Float64),
-            (vec![json!("a")], DataType::String),
-            (vec![json!(true)], DataType::Boolean),
-            (vec![json!([1.0, 2.5]), json!(3)], DataType::String),
+            (vec![json!(1), json!(null)], ArrowDataType::Int64),
+            (vec![json!(1.0), json!(null)], ArrowDataType::Float64),
+            (vec![json!(null)], ArrowDataType::Float64),
+            (vec![json!("a")], ArrowDataType::Utf8View),
+            (vec![json!(true)], ArrowDataType::Boolean),
+            (vec![json!([1.0, 2.5]), json!(3)], ArrowDataType::Utf8View),
         ] {
             let of = AxisType::of(values.iter().cloned());
             for part in [&values[..], &values[..1], &[]] {
                 let frame = Columns::default().axis("a", of, part).frame().unwrap();
-                assert_eq!(frame.column("a").unwrap().dtype(), &expected, "{part:?}");
+                assert_eq!(frame.types(), [("a", &expected)], "{part:?}");
             }
         }
     }

@@ -3,12 +3,13 @@
 //! Knows the names of columns. Does not know files.
 
 use super::columns::{AxisType, Columns};
+use super::frame::Frame;
 use super::table::TableName;
 use crate::{ConnectorRow, JobRecord, PositionRow};
-use polars_core::prelude::{DataFrame, PolarsResult};
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{AnalysisSpec, Kind, Study, TimeStepSpec};
 use serde_json::Value;
+use std::io;
 
 /// The first column of the table of jobs behind the axes, for each kind of study.
 pub(super) const FIRST_OUTCOMES: [&str; 2] = ["peak_deflection_m", "structural_mass_kg"];
@@ -88,7 +89,7 @@ impl Layout {
     }
 
     /// The rows of some jobs in a table, in the order of jobs; no job makes the table without rows.
-    pub(super) fn frame(&self, name: TableName, of: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
+    pub(super) fn frame(&self, name: TableName, of: &[Job], records: &[JobRecord]) -> io::Result<Frame> {
         match name {
             TableName::Jobs => jobs(self, of, records),
             TableName::Positions => positions(self.kind, records),
@@ -105,7 +106,7 @@ fn any(jobs: &[Job], is: impl Fn(&AnalysisSpec) -> bool) -> bool {
 }
 
 /// One row a job.
-fn jobs(layout: &Layout, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn jobs(layout: &Layout, jobs: &[Job], records: &[JobRecord]) -> io::Result<Frame> {
     let s = || records.iter().map(|r| &r.summary);
     let mut c = Columns::default();
     c.count("job", records.iter().map(|r| Some(r.job)));
@@ -163,7 +164,7 @@ fn jobs(layout: &Layout, jobs: &[Job], records: &[JobRecord]) -> PolarsResult<Da
 }
 
 /// One row a position of each job.
-fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn positions(kind: Kind, records: &[JobRecord]) -> io::Result<Frame> {
     let rows: Vec<(usize, &PositionRow)> = records
         .iter()
         .flat_map(|r| r.positions.iter().map(move |row| (r.job, row)))
@@ -189,7 +190,7 @@ fn positions(kind: Kind, records: &[JobRecord]) -> PolarsResult<DataFrame> {
 }
 
 /// One row a joint's sum and one a connector of each job.
-fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn connectors(records: &[JobRecord]) -> io::Result<Frame> {
     let rows: Vec<(usize, &ConnectorRow)> = records
         .iter()
         .flat_map(|r| r.connectors.iter().map(move |row| (r.job, row)))
@@ -207,7 +208,7 @@ fn connectors(records: &[JobRecord]) -> PolarsResult<DataFrame> {
 }
 
 /// One row a mode of each job.
-fn modes(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn modes(records: &[JobRecord]) -> io::Result<Frame> {
     let rows = || records.iter().flat_map(|r| r.modes.iter().map(move |row| (r.job, row)));
     Columns::default()
         .count("job", rows().map(|(job, _)| Some(job)))
@@ -222,7 +223,7 @@ fn modes(records: &[JobRecord]) -> PolarsResult<DataFrame> {
 }
 
 /// One row a time of each history of each job.
-fn histories(records: &[JobRecord]) -> PolarsResult<DataFrame> {
+fn histories(records: &[JobRecord]) -> io::Result<Frame> {
     let series = || {
         records
             .iter()

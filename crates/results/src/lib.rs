@@ -5,6 +5,7 @@
 //! | `record` | all rows of one job |
 //! | `preparation`, `verification`, `outcome` | what a run leaves behind beside its records |
 //! | `columns`, `frames` | which columns each table has |
+//! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
 //! | `table`, `results` | tables to read |
@@ -14,6 +15,7 @@
 
 mod columns;
 mod files;
+mod frame;
 mod frames;
 mod manifest;
 mod moment;

@@ -2,8 +2,7 @@
 //!
 //! Knows what a file says of where it comes from and how it grows. Does not know its columns.
 
-use polars_core::prelude::{DataFrame, PolarsResult};
-use polars_io::prelude::{BatchedWriter, KeyValueMetadata, ParquetWriter};
+use super::frame::{Frame, FrameWriter};
 use pontoon_journal::fault::Watched;
 use pontoon_journal::place::{Folder, FolderError, Partial};
 use pontoon_plan::job::Job;
@@ -23,7 +22,7 @@ pub struct Provenance {
 }
 
 /// What every table of a study carries: nothing of it changes from run to run.
-pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> KeyValueMetadata {
+pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> Vec<(String, String)> {
     let (study_text, study_hash) = study.text_and_hash();
     let (bridge_text, bridge_hash) = study.bridge_text_and_hash();
     let mut hashes: Vec<&str> = Vec::new();
@@ -46,13 +45,14 @@ pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> KeyValue
         ("pontoon.bridge_blake3", bridge_hash),
         ("pontoon.bridges_after_axes_blake3", hashes.join(" ")),
     ];
-    KeyValueMetadata::from_static(pairs.map(|(key, value)| (key.to_owned(), value)).to_vec())
+    pairs.map(|(key, value)| (key.to_owned(), value)).to_vec()
 }
 
 /// A table under way: rows are appended, a part after the other, and nothing of them stays in memory.
 pub(super) struct TableFile {
     partial: Partial,
-    writer: BatchedWriter<BufWriter<Watched>>,
+    writer: FrameWriter<BufWriter<Watched>>,
+    metadata: Vec<(String, String)>,
 }
 
 impl TableFile {
@@ -60,36 +60,37 @@ impl TableFile {
     pub(super) fn begin(
         folder: &Folder,
         name: &str,
-        empty: PolarsResult<DataFrame>,
-        metadata: &KeyValueMetadata,
+        empty: io::Result<Frame>,
+        metadata: &[(String, String)],
     ) -> Result<Self, FolderError> {
         let partial = folder.begin(name)?;
-        let writer = ParquetWriter::new(BufWriter::new(partial.watched()?))
-            .set_parallel(false)
-            .with_key_value_metadata(Some(metadata.clone()));
-        let writer = empty.and_then(|empty| writer.batched(empty.schema()));
-        match writer {
-            Ok(writer) => Ok(Self { partial, writer }),
-            Err(cause) => Err(partial.error(io::Error::other(cause))),
+        let to = BufWriter::new(partial.watched()?);
+        match empty.and_then(|empty| FrameWriter::begin(to, &empty)) {
+            Ok(writer) => Ok(Self {
+                partial,
+                writer,
+                metadata: metadata.to_vec(),
+            }),
+            Err(cause) => Err(partial.error(cause)),
         }
     }
 
     /// Appends rows as row groups of their own; no rows make none.
-    pub(super) fn append(&mut self, rows: PolarsResult<DataFrame>) -> Result<(), FolderError> {
+    pub(super) fn append(&mut self, rows: io::Result<Frame>) -> Result<(), FolderError> {
         let appended = rows.and_then(|rows| {
-            let starts = (0..rows.height()).step_by(ROW_GROUP);
-            starts.into_iter().try_for_each(|start| {
-                let group = rows.slice(i64::try_from(start).unwrap_or(i64::MAX), ROW_GROUP);
-                self.writer.write_batch(&group)
+            let mut starts = (0..rows.rows()).step_by(ROW_GROUP);
+            starts.try_for_each(|start| {
+                let group = start..rows.rows().min(start + ROW_GROUP);
+                self.writer.append(&rows, &group)
             })
         });
-        appended.map_err(|cause| self.partial.error(io::Error::other(cause)))
+        appended.map_err(|cause| self.partial.error(cause))
     }
 
     /// Ends the table, still under its temporary name, and leaves it with its hash.
     pub(super) fn end(self) -> Result<(Partial, String), FolderError> {
-        let ended = self.writer.finish();
-        ended.map_err(|cause| self.partial.error(io::Error::other(cause)))?;
+        let ended = self.writer.end(&self.metadata);
+        ended.map_err(|cause| self.partial.error(cause))?;
         let hash = self.partial.sync()?;
         Ok((self.partial, hash))
     }

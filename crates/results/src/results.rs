@@ -4,11 +4,10 @@
 //! read of it.
 
 use super::files::MANIFEST;
+use super::frame::read;
 use super::frames::{FIRST_OUTCOMES, Layout};
 use super::table::{Table, TableName};
 use crate::JobRecord;
-use polars_core::prelude::{DataFrame, PolarsResult};
-use polars_io::prelude::{ParquetReader, SerReader};
 use pontoon_journal::place::hash_of;
 use pontoon_plan::input::Refusal;
 use pontoon_plan::input::text_and_hash;
@@ -17,6 +16,7 @@ use pontoon_plan::study_file::{Kind, Study};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -155,7 +155,9 @@ impl Results {
         let mut tables = BTreeMap::new();
         for name in layout.tables() {
             let frame = layout.frame(name, jobs, records);
-            let table = frame.and_then(|f| Table::from_frame(&f)).map_err(|e| e.to_string())?;
+            let table = frame
+                .and_then(|f| Table::from_frames(&[f]))
+                .map_err(|e| e.to_string())?;
             tables.insert(name, table);
         }
         let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
@@ -274,28 +276,19 @@ impl Results {
 
 /// Reads a Parquet file; that the library panics over it is an error like any other.
 fn read_table(path: &Path) -> Result<Table, String> {
-    guarded(path, |file| ParquetReader::new(file).finish())
+    guarded(path, None, &(0..usize::MAX))
 }
 
 /// Reads some rows of some columns, of those that the file has.
 fn read_part(path: &Path, columns: &[&str], start: usize) -> Result<Table, String> {
-    guarded(path, |file| {
-        let mut reader = ParquetReader::new(file);
-        let there = reader.schema()?;
-        let there = columns
-            .iter()
-            .filter(|name| there.contains(name))
-            .map(|name| (*name).to_owned());
-        let reader = reader.with_columns(Some(there.collect()));
-        reader.with_slice(Some((start, SCANNED))).finish()
-    })
+    guarded(path, Some(columns), &(start..start.saturating_add(SCANNED)))
 }
 
-fn guarded(path: &Path, read: impl Fn(File) -> PolarsResult<DataFrame>) -> Result<Table, String> {
+fn guarded(path: &Path, columns: Option<&[&str]>, rows: &Range<usize>) -> Result<Table, String> {
     let read = || {
-        let file = File::open(path).map_err(|e| e.to_string())?;
-        let frame = read(file).map_err(|e| e.to_string())?;
-        Table::from_frame(&frame).map_err(|e| e.to_string())
+        let frames = File::open(path).and_then(|mut file| read(&mut file, columns, rows));
+        let table = frames.and_then(|frames| Table::from_frames(&frames));
+        table.map_err(|e| e.to_string())
     };
     catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err("no readable Parquet file".to_owned()))
 }

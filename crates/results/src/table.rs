@@ -2,12 +2,15 @@
 //!
 //! Knows cells by column and row. Does not know files or what a column means.
 
-use polars_core::prelude::{DataFrame, DataType, PolarsError, PolarsResult};
+use super::frame::Frame;
+use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
+use polars_arrow::datatypes::ArrowDataType;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::hash::Hash;
+use std::io;
 
 /// A table of the results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -66,6 +69,41 @@ enum Cells {
     Flags(Vec<Option<bool>>),
 }
 
+impl Cells {
+    /// The cells of an array.
+    fn of(name: &str, array: &dyn Array) -> io::Result<Self> {
+        let mut cells = match array.dtype() {
+            ArrowDataType::Float64 | ArrowDataType::Int64 => Self::Numbers(Vec::new()),
+            ArrowDataType::Utf8View => Self::Words(Vec::new()),
+            ArrowDataType::Boolean => Self::Flags(Vec::new()),
+            other => return Err(io::Error::other(format!("column {name} of type {other:?}"))),
+        };
+        cells.append(name, array)?;
+        Ok(cells)
+    }
+
+    /// Appends the cells of an array of the same type.
+    fn append(&mut self, name: &str, array: &dyn Array) -> io::Result<()> {
+        let array = array.as_any();
+        if let (Self::Numbers(cells), Some(more)) = (&mut *self, array.downcast_ref::<PrimitiveArray<f64>>()) {
+            if more.iter().flatten().any(|x| !x.is_finite()) {
+                let text = format!("column {name} holds what is no finite number");
+                return Err(io::Error::other(text));
+            }
+            cells.extend(more.iter().map(|x| x.copied()));
+        } else if let (Self::Numbers(cells), Some(more)) = (&mut *self, array.downcast_ref::<PrimitiveArray<i64>>()) {
+            cells.extend(more.iter().map(|x| x.map(|x| *x as f64)));
+        } else if let (Self::Words(cells), Some(more)) = (&mut *self, array.downcast_ref::<Utf8ViewArray>()) {
+            cells.extend(more.iter().map(|word| word.map(str::to_owned)));
+        } else if let (Self::Flags(cells), Some(more)) = (self, array.downcast_ref::<BooleanArray>()) {
+            cells.extend(more.iter());
+        } else {
+            return Err(io::Error::other(format!("column {name} of several types")));
+        }
+        Ok(())
+    }
+}
+
 /// What the cells of a column are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -89,35 +127,21 @@ impl Kind {
 }
 
 impl Table {
-    /// The table of a data frame.
+    /// The table of frames, one below the other, of the columns of the first.
     ///
     /// # Errors
-    /// The table library's, where a column is of none of the types that tables have or a number is not finite.
-    pub(super) fn from_frame(frame: &DataFrame) -> PolarsResult<Self> {
-        let columns = frame.columns().iter().map(|column| {
-            let series = column.as_materialized_series();
-            let cells = match series.dtype() {
-                DataType::Float64 => {
-                    let numbers: Vec<Option<f64>> = series.f64()?.iter().collect();
-                    if numbers.iter().flatten().any(|x| !x.is_finite()) {
-                        let text = format!("column {} holds what is no finite number", column.name());
-                        return Err(PolarsError::ComputeError(text.into()));
-                    }
-                    Cells::Numbers(numbers)
-                }
-                DataType::Int64 => Cells::Numbers(series.i64()?.iter().map(|v| v.map(|v| v as f64)).collect()),
-                DataType::String => Cells::Words(series.str()?.iter().map(|v| v.map(str::to_owned)).collect()),
-                DataType::Boolean => Cells::Flags(series.bool()?.iter().collect()),
-                other => {
-                    let text = format!("column {} of type {other}", column.name());
-                    return Err(PolarsError::SchemaMismatch(text.into()));
-                }
-            };
-            Ok((column.name().to_string(), cells))
-        });
+    /// Where a column is of none of the types that tables have, or a number is not finite.
+    pub(super) fn from_frames(frames: &[Frame]) -> io::Result<Self> {
+        let mut columns: Vec<(String, Cells)> = Vec::new();
+        for (column, (name, array)) in frames.iter().flat_map(|frame| frame.columns().enumerate()) {
+            match columns.get_mut(column) {
+                Some((_, cells)) => cells.append(name, array)?,
+                None => columns.push((name.to_owned(), Cells::of(name, array)?)),
+            }
+        }
         Ok(Self {
-            rows: frame.height(),
-            columns: columns.collect::<PolarsResult<_>>()?,
+            rows: frames.iter().map(Frame::rows).sum(),
+            columns,
         })
     }
 

@@ -1,7 +1,6 @@
 //! `report --figures`: the numbers plotted, and what an SVG and its PNG show of them.
 
-use crate::stage::{Stage, is_refused, reference, stderr, stdout};
-use polars_core::prelude::DataFrame;
+use crate::stage::{Frame, Stage, is_refused, reference, stderr, stdout};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
@@ -57,18 +56,9 @@ fn points(line: &Value) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn column(table: &DataFrame, name: &str) -> Vec<f64> {
-    let column = table
-        .column(name)
-        .unwrap()
-        .cast(&polars_core::prelude::DataType::Float64)
-        .unwrap();
-    column
-        .f64()
-        .unwrap()
-        .iter()
-        .map(|value| value.unwrap_or(f64::NAN))
-        .collect()
+fn column(table: &Frame, name: &str) -> Vec<f64> {
+    let numbers = table.column(name).unwrap().numbers().into_iter();
+    numbers.map(|value| value.unwrap_or(f64::NAN)).collect()
 }
 
 /// A line's value at a place, between its points.

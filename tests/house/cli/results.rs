@@ -1,13 +1,11 @@
 //! Runs that end with tables.
 
-use crate::stage::{Stage, stderr, stdout};
-use polars_core::prelude::DataFrame;
-use polars_io::prelude::{ParquetReader, SerReader};
+use crate::stage::{Frame, Stage, stderr, stdout};
 use serde_json::{Value, json};
 use std::fs;
 
-fn columns(frame: &DataFrame) -> Vec<String> {
-    frame.get_column_names().iter().map(|name| name.to_string()).collect()
+fn columns(frame: &Frame) -> Vec<String> {
+    frame.names()
 }
 
 /// A stage with fewer jobs.
@@ -90,8 +88,8 @@ fn files_carry_where_they_come_from() {
             .code(),
         Some(0)
     );
-    let mut reader = ParquetReader::new(fs::File::open(stage.path("r/jobs.parquet")).unwrap());
-    let metadata = reader.get_metadata().unwrap().key_value_metadata().clone().unwrap();
+    let table = stage.table("r/jobs.parquet");
+    let metadata = table.metadata.key_value_metadata().clone().unwrap();
     let value = |key: &str| {
         metadata
             .iter()

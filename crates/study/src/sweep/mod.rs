@@ -26,8 +26,6 @@ mod opened;
 mod so_far;
 mod solving;
 mod status;
-#[cfg(test)]
-mod table_tests;
 
 pub use deaths::{Apart, ApartEnd, run_apart};
 pub use ending::ended_now;

@@ -1,14 +1,13 @@
 //! Tests of tables that are written as their rows come.
 
-use crate::run::{Batch, Setting, Silent, Stop, run};
-use polars_core::prelude::{DataFrame, DataType};
-use polars_io::prelude::{ParquetReader, SerReader};
+use crate::stage::Frame;
 use pontoon_journal::place::Folder;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::{Kind, Study};
 use pontoon_results::{
     Cell, JobRecord, Manifest, ModeRow, Moment, Outcome, Provenance, Results, Table, TableName, Writer, axis_names,
 };
+use pontoon_study::run::{Batch, Setting, Silent, Stop, run};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -81,9 +80,8 @@ fn manifest((study, jobs): &(Study, Vec<Job>), outcome: &Outcome) -> Manifest {
     )
 }
 
-fn read(folder: &Folder, name: TableName) -> DataFrame {
-    let file = fs::File::open(folder.path().join(name.file())).unwrap();
-    ParquetReader::new(file).finish().unwrap()
+fn read(folder: &Folder, name: TableName) -> Frame {
+    Frame::read(&folder.path().join(name.file()))
 }
 
 /// The summary as it is defined, all records at hand.
@@ -147,15 +145,14 @@ fn tables_are_the_same_however_their_rows_come() {
             let left = TableName::ALL
                 .into_iter()
                 .filter(|name| dir.path().join(name.file()).exists());
-            let frames: Vec<(TableName, DataFrame)> = left.map(|name| (name, read(&folder, name))).collect();
-            assert!(frames.len() > 2, "only {frames:?}");
+            let frames: Vec<(TableName, Frame)> = left.map(|name| (name, read(&folder, name))).collect();
+            assert!(frames.len() > 2, "only {} tables", frames.len());
             if at_once.is_empty() {
                 at_once = frames;
             } else {
                 assert_eq!(frames.len(), at_once.len());
                 for ((name, found), (_, expected)) in frames.iter().zip(&at_once) {
-                    assert_eq!(found.schema(), expected.schema());
-                    assert!(found.equals_missing(expected), "{name:?} in batches of {size}");
+                    assert!(found.same_cells(expected), "{name:?} in batches of {size}");
                 }
             }
             let results = Results::read(dir.path()).unwrap();
@@ -236,7 +233,7 @@ fn an_axis_keeps_its_type_where_a_batch_does_not_show_it() {
     }
     writer.finish(manifest(&of, &outcome)).unwrap();
     let jobs = read(&folder, TableName::Jobs);
-    assert_eq!(jobs.column("bridge.source").unwrap().dtype(), &DataType::String);
+    assert!(jobs.column("bridge.source").unwrap().str().is_some());
 }
 
 #[test]
@@ -253,8 +250,8 @@ fn a_table_without_rows_is_a_table() {
     writer.append(&[]).unwrap();
     writer.finish(manifest(&of, &outcome)).unwrap();
     let histories = read(&folder, TableName::Histories);
-    assert_eq!((histories.height(), histories.width()), (0, 5));
-    assert_eq!(histories.column("value").unwrap().dtype(), &DataType::Float64);
+    assert_eq!((histories.height(), histories.names().len()), (0, 5));
+    assert!(histories.column("value").unwrap().f64().is_some());
     let results = Results::read(dir.path()).unwrap();
     assert_eq!(results.table(TableName::Histories).map(Table::rows), Some(0));
     assert_eq!(results.jobs().rows(), of.1.len());
