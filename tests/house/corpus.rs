@@ -1,6 +1,7 @@
 //! What fuzzing keeps, read again as a run would read it: seeds, and inputs that once brought a reader down.
 
 #[path = "../../fuzz/src/lib.rs"]
+#[allow(unreachable_pub)]
 mod readers;
 
 use std::fs;

@@ -11,18 +11,18 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// A table as its file has it.
-pub struct Frame {
+pub(crate) struct Frame {
     /// What the file says of itself.
     pub metadata: FileMetadata,
     columns: Vec<(String, Box<dyn Array>)>,
 }
 
 /// A column of a table.
-pub struct Column<'a>(&'a dyn Array);
+pub(crate) struct Column<'a>(&'a dyn Array);
 
 impl Frame {
     /// Reads a file.
-    pub fn read(path: &Path) -> Self {
+    pub(crate) fn read(path: &Path) -> Self {
         let bytes = fs::read(path).unwrap();
         let metadata = read_metadata(&mut Cursor::new(&bytes)).unwrap();
         let schema = infer_schema(&metadata).unwrap();
@@ -45,54 +45,54 @@ impl Frame {
     }
 
     /// Whether another table has the same columns, of the same types, with the same cells.
-    pub fn same_cells(&self, other: &Self) -> bool {
-        let alike = |(a, b): (&(String, Box<dyn Array>), &(String, Box<dyn Array>))| a.0 == b.0 && a.1 == b.1;
-        self.columns.len() == other.columns.len() && self.columns.iter().zip(&other.columns).all(alike)
+    pub(crate) fn same_cells(&self, other: &Self) -> bool {
+        let mut pairs = self.columns.iter().zip(&other.columns);
+        self.columns.len() == other.columns.len() && pairs.all(|(a, b)| a.0 == b.0 && a.1 == b.1)
     }
 
     /// Number of rows.
-    pub fn height(&self) -> usize {
+    pub(crate) fn height(&self) -> usize {
         self.columns[0].1.len()
     }
 
     /// Names of the columns.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         self.columns.iter().map(|(name, _)| name.clone()).collect()
     }
 
     /// A column.
-    pub fn column(&self, name: &str) -> Option<Column<'_>> {
+    pub(crate) fn column(&self, name: &str) -> Option<Column<'_>> {
         let found = self.columns.iter().find(|(of, _)| of == name);
         found.map(|(_, array)| Column(&**array))
     }
 }
 
 impl<'a> Column<'a> {
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
-    pub fn null_count(&self) -> usize {
+    pub(crate) fn null_count(&self) -> usize {
         self.0.null_count()
     }
 
-    pub fn f64(&self) -> Option<Cells<f64>> {
+    pub(crate) fn f64(&self) -> Option<Cells<f64>> {
         let array: &PrimitiveArray<f64> = self.0.as_any().downcast_ref()?;
         Some(Cells(array.iter().map(|cell| cell.copied()).collect()))
     }
 
-    pub fn i64(&self) -> Option<Cells<i64>> {
+    pub(crate) fn i64(&self) -> Option<Cells<i64>> {
         let array: &PrimitiveArray<i64> = self.0.as_any().downcast_ref()?;
         Some(Cells(array.iter().map(|cell| cell.copied()).collect()))
     }
 
-    pub fn str(&self) -> Option<Cells<&'a str>> {
+    pub(crate) fn str(&self) -> Option<Cells<&'a str>> {
         let array: &'a Utf8ViewArray = self.0.as_any().downcast_ref()?;
         Some(Cells(array.iter().collect()))
     }
 
     /// Its numbers, whole or not; yes and no are one and nought.
-    pub fn numbers(&self) -> Vec<Option<f64>> {
+    pub(crate) fn numbers(&self) -> Vec<Option<f64>> {
         if let Some(flags) = self.0.as_any().downcast_ref::<BooleanArray>() {
             return flags
                 .iter()
@@ -107,20 +107,20 @@ impl<'a> Column<'a> {
 
 /// The cells of a column.
 #[derive(Clone)]
-pub struct Cells<T>(Vec<Option<T>>);
+pub(crate) struct Cells<T>(Vec<Option<T>>);
 
 impl<T: Copy> Cells<T> {
-    pub fn get(&self, row: usize) -> Option<T> {
+    pub(crate) fn get(&self, row: usize) -> Option<T> {
         self.0[row]
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = Option<T>> + '_ {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Option<T>> + '_ {
         self.0.iter().copied()
     }
 }
 
 /// The folder; gone with the value.
-pub struct Stage {
+pub(crate) struct Stage {
     dir: tempfile::TempDir,
     /// The study's document, to be changed before a run.
     pub study: Value,
@@ -138,7 +138,7 @@ fn document(path: &Path) -> Value {
 
 impl Stage {
     /// The smoke study with its bridge beside it.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let mut study = document(&studies().join("smoke/study.json"));
         study["bridge"] = "bridge.json".into();
         let bridge = document(&studies().join("bridges/smoke.json"));
@@ -150,36 +150,36 @@ impl Stage {
     }
 
     /// A file in the folder.
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.dir.path().join(name)
     }
 
     /// Writes both documents.
-    pub fn write(&self) -> &Self {
+    pub(crate) fn write(&self) -> &Self {
         fs::write(self.path("study.json"), format!("{:#}", self.study)).unwrap();
         fs::write(self.path("bridge.json"), format!("{:#}", self.bridge)).unwrap();
         self
     }
 
     /// Writes a document beside them.
-    pub fn json(&self, name: &str, document: &Value) {
+    pub(crate) fn json(&self, name: &str, document: &Value) {
         fs::write(self.path(name), format!("{document:#}")).unwrap();
     }
 
     /// Writes the documents and runs the study into a folder, to its good end.
-    pub fn ran(&self, out: &str) {
+    pub(crate) fn ran(&self, out: &str) {
         let output = self.write().pontoon(&["run", "study.json", "--out", out, "--quiet"]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }
 
     /// Holds results against `reference.json` made of some checks; exit status and the lines of the comparison.
-    pub fn held(&self, results: &str, checks: &Value) -> (Option<i32>, Vec<Value>) {
+    pub(crate) fn held(&self, results: &str, checks: &Value) -> (Option<i32>, Vec<Value>) {
         self.json("reference.json", &reference(checks));
         self.compared(results, "reference.json")
     }
 
     /// Holds results against what has a name; exit status and the lines of the comparison.
-    pub fn compared(&self, results: &str, with: &str) -> (Option<i32>, Vec<Value>) {
+    pub(crate) fn compared(&self, results: &str, with: &str) -> (Option<i32>, Vec<Value>) {
         let output = self.pontoon(&["compare", results, "--with", with, "--format", "json"]);
         let text = stdout(&output);
         let object: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}{}", stderr(&output)));
@@ -188,13 +188,13 @@ impl Stage {
     }
 
     /// Runs the program in the folder.
-    pub fn pontoon(&self, words: &[&str]) -> Output {
+    pub(crate) fn pontoon(&self, words: &[&str]) -> Output {
         // no cache but where a test says so
         self.pontoon_with(words, Path::new(""))
     }
 
     /// The same with a cache in a folder.
-    pub fn pontoon_with(&self, words: &[&str], cache: &Path) -> Output {
+    pub(crate) fn pontoon_with(&self, words: &[&str], cache: &Path) -> Output {
         Command::new(env!("CARGO_BIN_EXE_pontoon"))
             .args(words)
             .env("PONTOON_CACHE_DIR", cache)
@@ -204,17 +204,17 @@ impl Stage {
     }
 
     /// A table in a folder of results.
-    pub fn table(&self, path: &str) -> Frame {
+    pub(crate) fn table(&self, path: &str) -> Frame {
         Frame::read(&self.path(path))
     }
 
     /// A column of numbers of a table.
-    pub fn numbers(&self, path: &str, column: &str) -> Vec<Option<f64>> {
+    pub(crate) fn numbers(&self, path: &str, column: &str) -> Vec<Option<f64>> {
         self.table(path).column(column).unwrap().numbers()
     }
 
     /// The names of everything in the folder, sorted.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.dir.path()).unwrap();
         let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
@@ -222,28 +222,28 @@ impl Stage {
     }
 
     /// The manifest of the results in a folder.
-    pub fn manifest(&self, out: &str) -> Value {
+    pub(crate) fn manifest(&self, out: &str) -> Value {
         document(&self.path(out).join("manifest.json"))
     }
 }
 
 /// What a program wrote on standard output.
-pub fn stdout(output: &Output) -> String {
+pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
 /// What a program wrote on standard error.
-pub fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 /// A reference of some checks.
-pub fn reference(checks: &Value) -> Value {
+pub(crate) fn reference(checks: &Value) -> Value {
     json!({ "name": "expected", "source": "the tables themselves", "checks": checks })
 }
 
 /// The one message of a refusal: the first line of what was told. What follows it, if anything does, is one place of a file.
-pub fn one_message(told: &str) -> &str {
+pub(crate) fn one_message(told: &str) -> &str {
     let (message, place) = told.split_once('\n').unwrap();
     let begins = place.trim_start().starts_with("--> ");
     assert!(
@@ -255,7 +255,7 @@ pub fn one_message(told: &str) -> &str {
 }
 
 /// An end with status 2 and one message that holds all parts; nothing on standard output.
-pub fn is_refused(output: &Output, parts: &[&str]) {
+pub(crate) fn is_refused(output: &Output, parts: &[&str]) {
     let told = stderr(output);
     assert_eq!(output.status.code(), Some(2), "{parts:?}: {told}{}", stdout(output));
     let message = one_message(&told);

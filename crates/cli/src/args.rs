@@ -17,7 +17,7 @@ use std::path::PathBuf;
     propagate_version = true,
     after_help = "Example:\n  pontoon run studies/fu2005      runs a study and writes its tables to results/fu2005"
 )]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -28,7 +28,7 @@ pub struct Arguments {
 
 /// What every command takes.
 #[derive(Debug, Clone, Copy, Args)]
-pub struct Common {
+pub(crate) struct Common {
     /// How to write results on standard output.
     #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
     pub format: Format,
@@ -39,7 +39,7 @@ pub struct Common {
 
 /// How results are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub(crate) enum Format {
     /// For people.
     Text,
     /// For programs.
@@ -52,7 +52,7 @@ pub enum Format {
 
 /// The commands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Runs a study and writes its tables.
     ///
     /// Every job is checked before anything runs or is written. Jobs run in parallel; a job that fails is a row with its
@@ -138,7 +138,7 @@ pub enum Command {
 
 /// What `run` takes.
 #[derive(Debug, Args)]
-pub struct RunArguments {
+pub(crate) struct RunArguments {
     /// The study: a study.json or the folder that holds it.
     #[arg(value_name = "STUDY")]
     pub study: PathBuf,
@@ -182,7 +182,7 @@ fn apart(text: &str) -> Result<(String, Vec<usize>), String> {
 
 /// What `status` takes.
 #[derive(Debug, Args)]
-pub struct StatusArguments {
+pub(crate) struct StatusArguments {
     /// Folders of results, or of shards.
     #[arg(value_name = "DIR", required = true)]
     pub folders: Vec<PathBuf>,
@@ -190,7 +190,7 @@ pub struct StatusArguments {
 
 /// What `explain` takes.
 #[derive(Debug, Args)]
-pub struct ExplainArguments {
+pub(crate) struct ExplainArguments {
     /// Folder of results, or of a shard.
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
@@ -201,7 +201,7 @@ pub struct ExplainArguments {
 
 /// What `merge` takes.
 #[derive(Debug, Args)]
-pub struct MergeArguments {
+pub(crate) struct MergeArguments {
     /// Folders of the shards.
     #[arg(value_name = "DIR", required = true)]
     pub folders: Vec<PathBuf>,
@@ -215,7 +215,7 @@ pub struct MergeArguments {
 
 /// What `compare` takes.
 #[derive(Debug, Args)]
-pub struct CompareArguments {
+pub(crate) struct CompareArguments {
     /// Folder of the results.
     #[arg(value_name = "RESULTS")]
     pub results: PathBuf,
@@ -229,7 +229,7 @@ pub struct CompareArguments {
 
 /// What `report` takes.
 #[derive(Debug, Args)]
-pub struct ReportArguments {
+pub(crate) struct ReportArguments {
     /// Folder of the results, or of a run that is not done.
     #[arg(value_name = "RESULTS")]
     pub results: PathBuf,
@@ -252,7 +252,7 @@ pub struct ReportArguments {
 
 /// What `calibrate` takes.
 #[derive(Debug, Args)]
-pub struct CalibrateArguments {
+pub(crate) struct CalibrateArguments {
     /// The bridge to start from.
     #[arg(value_name = "BRIDGE")]
     pub bridge: PathBuf,
@@ -272,7 +272,7 @@ pub struct CalibrateArguments {
 
 /// What `plan` takes.
 #[derive(Debug, Args)]
-pub struct PlanArguments {
+pub(crate) struct PlanArguments {
     /// The study: a study.json or the folder that holds it.
     #[arg(value_name = "STUDY")]
     pub study: PathBuf,
@@ -283,7 +283,7 @@ pub struct PlanArguments {
 
 /// What `modes` takes.
 #[derive(Debug, Args)]
-pub struct ModesArguments {
+pub(crate) struct ModesArguments {
     /// The bridge file.
     #[arg(value_name = "BRIDGE")]
     pub bridge: PathBuf,
@@ -321,7 +321,7 @@ impl From<ModelArgument> for ModelSpec {
 
 /// What `export` takes.
 #[derive(Debug, Args)]
-pub struct ExportArguments {
+pub(crate) struct ExportArguments {
     /// A folder of results or a bridge file.
     #[arg(value_name = "RESULTS|BRIDGE")]
     pub source: PathBuf,
@@ -363,7 +363,7 @@ pub struct ExportArguments {
 
 /// How connectors work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ConnectionArgument {
+pub(crate) enum ConnectionArgument {
     /// Both trusses at once, without gaps.
     Linear,
     /// Each truss behind its gap.
@@ -372,7 +372,7 @@ pub enum ConnectionArgument {
 
 /// What `schema` takes.
 #[derive(Debug, Args)]
-pub struct SchemaArguments {
+pub(crate) struct SchemaArguments {
     /// Of which file.
     #[arg(value_enum)]
     pub of: SchemaOf,
@@ -380,7 +380,7 @@ pub struct SchemaArguments {
 
 /// The files that have a schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SchemaOf {
+pub(crate) enum SchemaOf {
     /// A study file.
     Study,
     /// A bridge file.
@@ -393,7 +393,7 @@ pub enum SchemaOf {
 
 /// What `completions` takes.
 #[derive(Debug, Args)]
-pub struct CompletionsArguments {
+pub(crate) struct CompletionsArguments {
     /// Of which shell.
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: clap_complete::Shell,
@@ -401,7 +401,7 @@ pub struct CompletionsArguments {
 
 /// What `man` takes.
 #[derive(Debug, Args)]
-pub struct ManArguments {
+pub(crate) struct ManArguments {
     /// Folder of the pages; made where it is missing. Pages of the same names are replaced.
     #[arg(long, value_name = "DIR")]
     pub to: PathBuf,

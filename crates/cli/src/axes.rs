@@ -23,7 +23,7 @@ struct Seen {
 }
 
 /// Each axis and its values, in the order of their first point.
-pub fn of(study: &Study) -> Vec<(String, String)> {
+pub(crate) fn of(study: &Study) -> Vec<(String, String)> {
     let mut axes: Vec<Seen> = Vec::new();
     for block in &study.blocks {
         let places: Vec<usize> = block.axes.iter().map(|axis| place(&mut axes, &axis.name)).collect();

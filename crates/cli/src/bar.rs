@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 /// Writes on standard error with the bar out of the way.
-pub fn aside(write: impl FnOnce()) {
+pub(crate) fn aside(write: impl FnOnce()) {
     let bar = BAR.lock().unwrap_or_else(PoisonError::into_inner).clone();
     match bar {
         Some(bar) => bar.suspend(write),
@@ -17,6 +17,6 @@ pub fn aside(write: impl FnOnce()) {
     }
 }
 
-pub fn set_bar(bar: Option<&ProgressBar>) {
+pub(crate) fn set_bar(bar: Option<&ProgressBar>) {
     *BAR.lock().unwrap_or_else(PoisonError::into_inner) = bar.cloned();
 }

@@ -1,4 +1,4 @@
 //! The sources that this program was built from.
 
 /// Commit of the sources that this program was built from, where they were a repository's.
-pub const COMMIT: Option<&str> = option_env!("PONTOON_COMMIT");
+pub(crate) const COMMIT: Option<&str> = option_env!("PONTOON_COMMIT");

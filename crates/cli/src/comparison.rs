@@ -27,7 +27,7 @@ fn cells(line: &Line) -> [String; 7] {
 }
 
 /// A comparison in a format.
-pub fn written(compared: &Comparison, format: Format) -> Result<String> {
+pub(crate) fn written(compared: &Comparison, format: Format) -> Result<String> {
     Ok(match format {
         Format::Text => text(compared, Look::of_results()),
         Format::Json => format!("{:#}\n", object(compared)),
@@ -47,7 +47,7 @@ const ORDER: [Verdict; 5] = [
 
 /// An aligned line a check with its verdict first, those of one verdict together, and the counts. Where lines are too long
 /// for a terminal, a check has several.
-pub fn text(compared: &Comparison, look: Look) -> String {
+pub(crate) fn text(compared: &Comparison, look: Look) -> String {
     let lines: Vec<&Line> = ORDER
         .iter()
         .flat_map(|&verdict| compared.lines.iter().filter(move |line| line.verdict == verdict))
@@ -138,7 +138,7 @@ fn style(verdict: Verdict) -> Style {
 }
 
 /// A comparison as a JSON object, with its lines and whether nothing falls short.
-pub fn object(compared: &Comparison) -> Value {
+pub(crate) fn object(compared: &Comparison) -> Value {
     let mut object = json!(compared);
     object["good"] = compared.good().into();
     object
@@ -201,7 +201,7 @@ fn junit(compared: &Comparison) -> Result<String> {
 }
 
 /// Says what has changed since the results, and which checks hold that were expected to fail.
-pub fn tell_changes(compared: &Comparison) {
+pub(crate) fn tell_changes(compared: &Comparison) {
     for note in &compared.notes {
         words::note(&format!("changed: {note}"));
     }

@@ -4,7 +4,7 @@
 
 /// How a command ended that could go on to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ending {
+pub(crate) enum Ending {
     /// All good.
     Good,
     /// Something fell short.
@@ -13,7 +13,7 @@ pub enum Ending {
 
 impl Ending {
     /// How two things ended that were asked for at once.
-    pub fn and(self, other: Self) -> Self {
+    pub(crate) fn and(self, other: Self) -> Self {
         if self == Self::Good { other } else { self }
     }
 }

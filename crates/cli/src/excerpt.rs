@@ -19,7 +19,7 @@ const LONGEST_LABEL: usize = 72;
 const WIDTH: usize = 120;
 
 /// The place that a refusal is about, where it is one of a file that a person wrote. Ends in a line end.
-pub fn excerpt(refusal: &Refusal, look: Look) -> Option<String> {
+pub(crate) fn excerpt(refusal: &Refusal, look: Look) -> Option<String> {
     let text = text_of(&refusal.file)?;
     let spot = spot(&text, &refusal.key, &refusal.found)?;
     Some(shown(

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use unicode_width::UnicodeWidthStr;
 
 /// How a run is shown.
-pub enum Shown {
+pub(crate) enum Shown {
     /// Not at all.
     Not,
     /// As a bar with what a line says beside it.
@@ -23,7 +23,7 @@ pub enum Shown {
 }
 
 /// When jobs began, and what was last said of them.
-pub struct Pace {
+pub(crate) struct Pace {
     began: Instant,
     last: Instant,
     most: usize,
@@ -40,7 +40,7 @@ const BESIDE_BAR: usize = 62;
 
 impl Shown {
     /// What fits where standard error goes.
-    pub fn fitting(quiet: bool) -> Self {
+    pub(crate) fn fitting(quiet: bool) -> Self {
         let now = Instant::now();
         let pace = Mutex::new(Pace {
             began: now,
@@ -61,7 +61,7 @@ impl Shown {
     }
 
     /// Takes the bar away.
-    pub fn finish(&self) {
+    pub(crate) fn finish(&self) {
         if let Self::Bar(bar, _) = self {
             set_bar(None);
             bar.finish_and_clear();

@@ -14,7 +14,7 @@ const INTERRUPTED: i32 = 130;
 
 /// What signals act on.
 #[derive(Debug, Default)]
-pub struct Heard {
+pub(crate) struct Heard {
     /// The run is to stop.
     pub stop: Stop,
     journal: Mutex<Weak<Writer>>,
@@ -27,7 +27,7 @@ impl Heard {
     /// # Errors
     /// What the system says.
     #[cfg(unix)]
-    pub fn listen() -> std::io::Result<Arc<Self>> {
+    pub(crate) fn listen() -> std::io::Result<Arc<Self>> {
         use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
         let heard = Arc::new(Self::default());
         let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
@@ -51,12 +51,12 @@ impl Heard {
     }
 
     /// The journal that is being written.
-    pub fn writing(&self, journal: &Arc<Writer>) {
+    pub(crate) fn writing(&self, journal: &Arc<Writer>) {
         *self.journal.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(journal);
     }
 
     /// How far the run has come.
-    pub fn count(&self, tally: Tally) {
+    pub(crate) fn count(&self, tally: Tally) {
         let mut last = self.tally.lock().unwrap_or_else(PoisonError::into_inner);
         if last.is_none_or(|last| last.done <= tally.done) {
             *last = Some(tally);

@@ -8,7 +8,7 @@ use terminal_size::{Width, terminal_size_of};
 
 /// The looks of a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Look {
+pub(crate) struct Look {
     /// Whether it shows colours.
     pub colour: bool,
     /// Characters of a line; none where lines may be of any length, as in a file.
@@ -16,19 +16,19 @@ pub struct Look {
 }
 
 /// What is good.
-pub const GOOD: Style = AnsiColor::Green.on_default();
+pub(crate) const GOOD: Style = AnsiColor::Green.on_default();
 /// What falls short.
-pub const BAD: Style = AnsiColor::Red.on_default().bold();
+pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 /// What has changed or is the largest.
-pub const NOTABLE: Style = AnsiColor::Yellow.on_default().bold();
+pub(crate) const NOTABLE: Style = AnsiColor::Yellow.on_default().bold();
 /// Heads of tables.
-pub const HEAD: Style = Style::new().bold();
+pub(crate) const HEAD: Style = Style::new().bold();
 /// What is of lesser weight.
-pub const FAINT: Style = Style::new().dimmed();
+pub(crate) const FAINT: Style = Style::new().dimmed();
 
 impl Look {
     /// Of standard output, where results go.
-    pub fn of_results() -> Self {
+    pub(crate) fn of_results() -> Self {
         Self::new(
             stdout().is_terminal(),
             terminal_size_of(stdout()).map(|(width, _)| width),
@@ -36,7 +36,7 @@ impl Look {
     }
 
     /// Of standard error, where progress and errors go.
-    pub fn of_notes() -> Self {
+    pub(crate) fn of_notes() -> Self {
         Self::new(
             stderr().is_terminal(),
             terminal_size_of(stderr()).map(|(width, _)| width),
@@ -57,7 +57,7 @@ impl Look {
     }
 
     /// A text in a style, where colours are shown.
-    pub fn painted(self, style: Style, text: &str) -> String {
+    pub(crate) fn painted(self, style: Style, text: &str) -> String {
         if self.colour && !text.is_empty() {
             format!("{style}{text}{style:#}")
         } else {

@@ -21,7 +21,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(10);
 const KILLED: i32 = 9;
 
 /// Who is told of a sweep.
-pub struct Watching<'a> {
+pub(crate) struct Watching<'a> {
     shown: Shown,
     heard: &'a Heard,
     /// Study and folder of results, for a process of its own.
@@ -30,12 +30,12 @@ pub struct Watching<'a> {
 
 impl<'a> Watching<'a> {
     /// Shows and counts.
-    pub fn new(shown: Shown, heard: &'a Heard, again: Option<(PathBuf, PathBuf)>) -> Self {
+    pub(crate) fn new(shown: Shown, heard: &'a Heard, again: Option<(PathBuf, PathBuf)>) -> Self {
         Self { shown, heard, again }
     }
 
     /// Takes a bar away.
-    pub fn finish(&self) {
+    pub(crate) fn finish(&self) {
         self.shown.finish();
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows text. Does not know what it says.
 
-pub use pontoon_view::labels::printable;
+pub(crate) use pontoon_view::labels::printable;
 use serde_json::Value;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use unicode_width::UnicodeWidthStr;
@@ -11,7 +11,7 @@ use unicode_width::UnicodeWidthStr;
 ///
 /// # Errors
 /// What the system says of any other failure.
-pub fn result(text: &str) -> io::Result<()> {
+pub(crate) fn result(text: &str) -> io::Result<()> {
     results(|out| out.write_all(text.as_bytes()))
 }
 
@@ -19,7 +19,7 @@ pub fn result(text: &str) -> io::Result<()> {
 ///
 /// # Errors
 /// As above.
-pub fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+pub(crate) fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
@@ -28,14 +28,14 @@ pub fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Resu
 }
 
 /// Writes a line on standard error, where it is nobody's loss if nobody reads it.
-pub fn note(line: &str) {
+pub(crate) fn note(line: &str) {
     crate::bar::aside(|| {
         let _ = writeln!(io::stderr().lock(), "{line}");
     });
 }
 
 /// A table with its columns aligned, numbers to the right; a last line end.
-pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
+pub(crate) fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
     let cells: Vec<Vec<String>> = rows
         .iter()
         .map(|row| columns.iter().zip(row).map(|(c, v)| cell(c, v)).collect())
@@ -65,7 +65,7 @@ pub fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
 }
 
 /// A text in lines of a width, broken at blanks; all but the first begin with blanks. A word that is longer stays whole.
-pub fn wrapped(text: &str, width: usize, indent: usize) -> String {
+pub(crate) fn wrapped(text: &str, width: usize, indent: usize) -> String {
     let indent = " ".repeat(indent);
     let options = textwrap::Options::new(width)
         .subsequent_indent(&indent)
@@ -77,7 +77,12 @@ pub fn wrapped(text: &str, width: usize, indent: usize) -> String {
 }
 
 /// A list behind its beginning, in lines of a width, broken between its entries where they fit a line; empty ones left out.
-pub fn listed(begin: &str, entries: impl Iterator<Item = impl AsRef<str>>, width: usize, indent: usize) -> String {
+pub(crate) fn listed(
+    begin: &str,
+    entries: impl Iterator<Item = impl AsRef<str>>,
+    width: usize,
+    indent: usize,
+) -> String {
     const KEPT: &str = "\u{a0}";
     let fits = |entry: &str| indent + entry.width() < width;
     let kept = |entry: &str| {
@@ -114,7 +119,7 @@ fn cell(column: &str, value: &Value) -> String {
 }
 
 /// A number with six digits.
-pub fn significant(x: f64) -> String {
+pub(crate) fn significant(x: f64) -> String {
     if x != 0.0 && (x.abs() < 1e-4 || x.abs() >= 1e7) {
         return format!("{x:.5e}");
     }
@@ -124,7 +129,7 @@ pub fn significant(x: f64) -> String {
 }
 
 /// A count with its thousands apart.
-pub fn grouped(count: u64) -> String {
+pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let first = digits.len() % 3;
     let (first, rest) = digits.split_at(if first == 0 { 3.min(digits.len()) } else { first });
@@ -133,7 +138,7 @@ pub fn grouped(count: u64) -> String {
 }
 
 /// Jobs a second for people: three digits.
-pub fn rate(per_second: f64) -> String {
+pub(crate) fn rate(per_second: f64) -> String {
     match per_second {
         r if r < 10.0 => format!("{r:.2} jobs/s"),
         r if r < 100.0 => format!("{r:.1} jobs/s"),
@@ -142,7 +147,7 @@ pub fn rate(per_second: f64) -> String {
 }
 
 /// A duration for people.
-pub fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 10.0 => format!("{s:.1} s"),
         s if s < 120.0 => format!("{s:.0} s"),

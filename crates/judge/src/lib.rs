@@ -2,7 +2,7 @@
 //!
 //! | module | charter |
 //! |---|---|
-//! | [`reference`] | the reference file: checks with their source |
+//! | [`mod@reference`] | the reference file: checks with their source |
 //! | [`compare`] | results held against a reference, or against older results |
 //! | [`calibrate`] | a bridge's numbers identified from the checks of references |
 //! | [`schema`] | the JSON Schema of references and parameters |

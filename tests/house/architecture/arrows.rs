@@ -8,11 +8,11 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, ImplItem, Item, ItemImpl, ItemMod, ItemUse, Macro, Meta, Path, Type, Visibility};
 
 /// From file to file: the names that the first takes from the second.
-pub type Arrows = BTreeMap<(usize, usize), BTreeSet<String>>;
+pub(super) type Arrows = BTreeMap<(usize, usize), BTreeSet<String>>;
 
 /// What the files of a crate have to do with each other.
 #[derive(Debug, Default)]
-pub struct Uses {
+pub(super) struct Uses {
     /// Arrows of the program.
     pub program: Arrows,
     /// Arrows of the tests inside the files.
@@ -24,7 +24,7 @@ pub struct Uses {
 
 impl Uses {
     /// Reads all files of a crate. What the root re-exports is its table of contents, no use.
-    pub fn of(modules: &Modules) -> Self {
+    pub(super) fn of(modules: &Modules) -> Self {
         let mut uses = Self::default();
         for (number, file) in modules.files.iter().enumerate() {
             let mut reader = Reader {

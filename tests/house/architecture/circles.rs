@@ -7,7 +7,7 @@ use super::modules::Modules;
 use std::collections::BTreeSet;
 
 /// A crate's modules and what they have to do with each other.
-pub struct Crate {
+pub(super) struct Crate {
     /// Its modules.
     pub modules: Modules,
     /// Who uses whom.
@@ -16,7 +16,7 @@ pub struct Crate {
 
 impl Crate {
     /// Reads a crate as [`Modules::read`].
-    pub fn read(root: &str, text: &dyn Fn(&str) -> Option<String>) -> Self {
+    pub(super) fn read(root: &str, text: &dyn Fn(&str) -> Option<String>) -> Self {
         let modules = Modules::read(root, text);
         Self {
             uses: Uses::of(&modules),
@@ -26,7 +26,7 @@ impl Crate {
 
     /// Circles of files, in words. A file that holds modules may know those below it and they it; the root may not, as all
     /// hangs on it. No other way back is good, nor one that leads through a parent.
-    pub fn circles(&self) -> Vec<String> {
+    pub(super) fn circles(&self) -> Vec<String> {
         let all: BTreeSet<usize> = (0..self.modules.files.len()).collect();
         let mut found = Vec::new();
         self.search(&all, &mut found);
@@ -56,7 +56,7 @@ impl Crate {
     }
 
     /// Circles of rooms, the modules of the root, in words.
-    pub fn circles_of_rooms(&self) -> Vec<String> {
+    pub(super) fn circles_of_rooms(&self) -> Vec<String> {
         let rooms: BTreeSet<&String> = self.modules.files.iter().filter_map(|f| f.module.first()).collect();
         let rooms: Vec<&String> = rooms.into_iter().collect();
         let room = |file: usize| {
@@ -79,7 +79,7 @@ impl Crate {
     }
 
     /// `impl` blocks outside the file of their type, in words.
-    pub fn outside(&self) -> Vec<String> {
+    pub(super) fn outside(&self) -> Vec<String> {
         let name = |file: usize| &self.modules.files[file].name;
         let words = |(of, home, at): &(String, usize, usize)| {
             format!("impl of {of} stands in {}, not in {}", name(*at), name(*home))

@@ -6,11 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use syn::{Attribute, Item, Meta, UseTree};
 
 /// A module's path from the root of its crate: no names are the root itself.
-pub type ModulePath = Vec<String>;
+pub(super) type ModulePath = Vec<String>;
 
 /// What a `use` says, one entry a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Import {
+pub(super) struct Import {
     /// The path as written.
     pub path: Vec<String>,
     /// Name under which it is known here; none where all names are taken.
@@ -25,7 +25,7 @@ struct Module {
 }
 
 /// A file of the crate.
-pub struct SourceFile {
+pub(super) struct SourceFile {
     /// Its place below `src`.
     pub name: String,
     /// Its module.
@@ -38,7 +38,7 @@ pub struct SourceFile {
 
 /// What a path leads to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Found {
+pub(super) enum Found {
     /// A module.
     Module(ModulePath),
     /// Something that a module defines.
@@ -47,14 +47,14 @@ pub enum Found {
 
 /// The modules of a crate.
 #[derive(Default)]
-pub struct Modules {
+pub(super) struct Modules {
     /// Files, the root first.
     pub files: Vec<SourceFile>,
     all: BTreeMap<ModulePath, Module>,
 }
 
 /// The names of a path, as in `use`.
-pub fn imports(tree: &UseTree) -> Vec<Import> {
+pub(super) fn imports(tree: &UseTree) -> Vec<Import> {
     let mut found = Vec::new();
     flatten(tree, &mut Vec::new(), &mut found);
     found
@@ -84,7 +84,7 @@ fn flatten(tree: &UseTree, before: &mut Vec<String>, found: &mut Vec<Import>) {
 }
 
 /// Whether something is compiled for tests only.
-pub fn is_test(attributes: &[Attribute]) -> bool {
+pub(super) fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| match &attribute.meta {
         Meta::List(list) if list.path.is_ident("cfg") => list.tokens.to_string() == "test",
         meta => meta.path().is_ident("test"),
@@ -92,7 +92,7 @@ pub fn is_test(attributes: &[Attribute]) -> bool {
 }
 
 /// Attributes of an item.
-pub fn attributes(item: &Item) -> &[Attribute] {
+pub(super) fn attributes(item: &Item) -> &[Attribute] {
     match item {
         Item::Const(x) => &x.attrs,
         Item::Enum(x) => &x.attrs,
@@ -131,7 +131,7 @@ fn child(of: &[String], name: &str) -> ModulePath {
 
 impl Modules {
     /// Reads a crate from its root file; `text` gives what stands in a file, none where there is no such file.
-    pub fn read(root: &str, text: &dyn Fn(&str) -> Option<String>) -> Self {
+    pub(super) fn read(root: &str, text: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut modules = Self::default();
         modules.read_file(root.to_owned(), "", Vec::new(), false, text);
         modules
@@ -196,13 +196,13 @@ impl Modules {
     }
 
     /// The file of what was found.
-    pub fn file(&self, found: &Found) -> usize {
+    pub(super) fn file(&self, found: &Found) -> usize {
         let (Found::Module(path) | Found::Item(path, _)) = found;
         self.all[path].file
     }
 
     /// What a path in the module `here` leads to within the crate; none where it leads outside.
-    pub fn resolve(&self, here: &[String], path: &[String]) -> Option<Found> {
+    pub(super) fn resolve(&self, here: &[String], path: &[String]) -> Option<Found> {
         self.resolve_within(here, path, 0)
     }
 

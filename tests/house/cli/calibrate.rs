@@ -12,7 +12,7 @@ const TOTAL_KG_M: f64 = 12600.0;
 
 /// A stage of calibration: `truth.json` with the known numbers, `start.json` with others, references of modes and statics
 /// that expect what the true bridge has.
-pub fn stage() -> Stage {
+pub(super) fn stage() -> Stage {
     let mut stage = Stage::new();
     let start = stage.bridge.clone();
     let module = &mut stage.bridge["module"];
@@ -53,12 +53,12 @@ pub fn stage() -> Stage {
 }
 
 /// What a static job has at position 2 under the load there.
-pub fn static_check(expected: f64, relative_tolerance: f64) -> Value {
+pub(super) fn static_check(expected: f64, relative_tolerance: f64) -> Value {
     let of = json!({ "select": { "table": "positions", "column": "deflection_m", "where": { "position": 2, "load_position": 2 } } });
     json!({ "id": "deflection", "value": { "of": of, "expected": expected, "relative_tolerance": relative_tolerance } })
 }
 
-pub fn document(study: &str, checks: &[Value]) -> Value {
+pub(super) fn document(study: &str, checks: &[Value]) -> Value {
     json!({ "name": study, "source": "a bridge of known numbers", "study": study, "checks": checks })
 }
 
@@ -72,12 +72,12 @@ fn structural_mass_kg(stage: &Stage, bridge: &str) -> f64 {
     stage.numbers("mass/jobs.parquet", "structural_mass_kg")[0].unwrap()
 }
 
-pub fn parameter(name: &str, lower: f64, upper: f64) -> Value {
+pub(super) fn parameter(name: &str, lower: f64, upper: f64) -> Value {
     json!({ "name": name, "lower": lower, "upper": upper })
 }
 
 /// All four numbers that the true bridge has otherwise.
-pub fn parameters() -> Value {
+pub(super) fn parameters() -> Value {
     let mut plates = parameter("plates_m", 0.002, 0.005);
     plates["sets"] = json!({ "module.deck_thickness_m": 1, "module.bottom_thickness_m": 1 });
     json!({ "parameters": [
@@ -89,7 +89,7 @@ pub fn parameters() -> Value {
 }
 
 /// Calibrates `start.json` to both references with further words.
-pub fn calibrate(stage: &Stage, parameters: &Value, more: &[&str]) -> Output {
+pub(super) fn calibrate(stage: &Stage, parameters: &Value, more: &[&str]) -> Output {
     stage.json("parameters.json", parameters);
     let words = [
         "calibrate",

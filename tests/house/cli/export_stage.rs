@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// A stage whose crossings are solved by the reference solver, so that what is exported is what is in the tables.
-pub fn crossings() -> Stage {
+pub(super) fn crossings() -> Stage {
     let mut stage = Stage::new();
     stage.study["analysis"] = json!({ "kind": "crossing", "time_step_s": 0.02, "tail_s": 0.5, "solver": "reference" });
     stage.study["design"] = json!([{ "grid": { "connection": ["linear", "nonlinear"], "gap_tension_m": 0.0,
@@ -15,7 +15,7 @@ pub fn crossings() -> Stage {
     stage
 }
 
-pub fn static_cases() -> Stage {
+pub(super) fn static_cases() -> Stage {
     let mut stage = Stage::new();
     stage.study["analysis"] = json!({ "kind": "static" });
     stage.study["record"] = json!({});
@@ -23,13 +23,13 @@ pub fn static_cases() -> Stage {
     stage
 }
 
-pub fn exported(stage: &Stage, words: &[&str]) -> Value {
+pub(super) fn exported(stage: &Stage, words: &[&str]) -> Value {
     let output = stage.pontoon(&[&["export"], words, &["--format", "json"]].concat());
     assert_eq!(output.status.code(), Some(0), "{words:?}: {}", stderr(&output));
     serde_json::from_str(&stdout(&output)).unwrap()
 }
 
-pub fn refused(stage: &Stage, words: &[&str], parts: &[&str]) {
+pub(super) fn refused(stage: &Stage, words: &[&str], parts: &[&str]) {
     let output = stage.pontoon(&[&["export"], words, &["--to", "vtk"]].concat());
     is_refused(&output, parts);
     assert!(!stage.path("vtk").exists(), "{words:?} left a folder");
@@ -40,14 +40,14 @@ pub fn refused(stage: &Stage, words: &[&str], parts: &[&str]) {
     );
 }
 
-pub fn names(folder: &Path) -> Vec<String> {
+pub(super) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
 
-pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+pub(super) fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let read = |name: String| (name.clone(), fs::read(folder.join(name)).unwrap());
     names(folder).into_iter().map(read).collect()
 }
@@ -60,7 +60,7 @@ fn attribute<'a>(text: &'a str, name: &str) -> &'a str {
 }
 
 /// The times and files of a collection.
-pub fn collection(path: &Path) -> Vec<(f64, String)> {
+pub(super) fn collection(path: &Path) -> Vec<(f64, String)> {
     let text = fs::read_to_string(path).unwrap();
     let value = |line: &str, key: &str| attribute(line, &format!(" {key}")).to_owned();
     let lines = text.lines().filter(|line| line.contains("<DataSet "));
@@ -70,13 +70,13 @@ pub fn collection(path: &Path) -> Vec<(f64, String)> {
 }
 
 /// A grid's head and its appended bytes.
-pub struct Grid {
+pub(super) struct Grid {
     head: String,
     bytes: Vec<u8>,
 }
 
 impl Grid {
-    pub fn read(path: &Path) -> Self {
+    pub(super) fn read(path: &Path) -> Self {
         let bytes = fs::read(path).unwrap();
         let mark = b"<AppendedData encoding=\"raw\">";
         let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len();
@@ -87,11 +87,11 @@ impl Grid {
         }
     }
 
-    pub fn count(&self, of: &str) -> usize {
+    pub(super) fn count(&self, of: &str) -> usize {
         attribute(&self.head, of).parse().unwrap()
     }
 
-    pub fn raw(&self, name: &str) -> (&str, &[u8]) {
+    pub(super) fn raw(&self, name: &str) -> (&str, &[u8]) {
         let line = self
             .head
             .lines()
@@ -104,7 +104,7 @@ impl Grid {
         (value("type"), &rest[..count])
     }
 
-    pub fn numbers(&self, name: &str) -> Vec<f64> {
+    pub(super) fn numbers(&self, name: &str) -> Vec<f64> {
         let (kind, bytes) = self.raw(name);
         match kind {
             "Float64" => bytes
@@ -123,12 +123,12 @@ impl Grid {
         }
     }
 
-    pub fn text(&self, name: &str) -> String {
+    pub(super) fn text(&self, name: &str) -> String {
         String::from_utf8(self.raw(name).1.to_vec()).unwrap()
     }
 
     /// Deflection of the bottom's centre line at a place along the bridge `[m]`.
-    pub fn deflection_m(&self, x_m: f64) -> f64 {
+    pub(super) fn deflection_m(&self, x_m: f64) -> f64 {
         let points = self.numbers("points");
         let there = |p: &[f64]| (p[0] - x_m).abs() < 1e-4 && p[1] == 0.0 && p[2] == 0.0;
         let node = points.chunks(3).position(there).unwrap();

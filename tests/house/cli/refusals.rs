@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::fs;
 
 /// Runs a study as it stands and expects it to be refused with all of `parts` in the one line of the message.
-pub fn refused(stage: &Stage, parts: &[&str]) {
+pub(super) fn refused(stage: &Stage, parts: &[&str]) {
     let before = stage.names();
     for command in ["run", "plan"] {
         let output = stage.pontoon(&[command, "study.json"]);
@@ -34,19 +34,19 @@ fn is_of_the_whole(message: &str) -> bool {
 }
 
 /// Sets a value of the study at a JSON pointer's parent and key and expects the refusal.
-pub fn study(pointer: &str, key: &str, value: Value, parts: &[&str]) {
+pub(super) fn study(pointer: &str, key: &str, value: Value, parts: &[&str]) {
     let mut stage = Stage::new();
     stage.study.pointer_mut(pointer).unwrap()[key] = value;
     refused(stage.write(), &[&["study.json: "], parts].concat());
 }
 
-pub fn bridge(pointer: &str, key: &str, value: Value, parts: &[&str]) {
+pub(super) fn bridge(pointer: &str, key: &str, value: Value, parts: &[&str]) {
     let mut stage = Stage::new();
     stage.bridge.pointer_mut(pointer).unwrap()[key] = value;
     refused(stage.write(), &[&["bridge.json: "], parts].concat());
 }
 
-pub fn grid(key: &str, value: Value, parts: &[&str]) {
+pub(super) fn grid(key: &str, value: Value, parts: &[&str]) {
     study(
         "/design/0/grid",
         key,
@@ -56,7 +56,7 @@ pub fn grid(key: &str, value: Value, parts: &[&str]) {
 }
 
 /// A study of static cases on the smoke bridge.
-pub fn static_stage(case: Value) -> Stage {
+pub(super) fn static_stage(case: Value) -> Stage {
     let mut stage = Stage::new();
     stage.study["analysis"] = json!({ "kind": "static" });
     stage.study["design"] = json!([{ "cases": [case] }]);

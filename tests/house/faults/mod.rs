@@ -13,4 +13,4 @@ mod places;
 mod resume;
 mod shards;
 mod signals;
-pub mod sweep;
+pub(crate) mod sweep;

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 /// A stage with a sweep of `gaps` x 6 x 4 crossings at a time step.
-pub fn sweep(gaps: usize, time_step_s: f64) -> Stage {
+pub(crate) fn sweep(gaps: usize, time_step_s: f64) -> Stage {
     let mut stage = Stage::new();
     stage.study["analysis"] = json!({ "kind": "crossing", "time_step_s": time_step_s, "tail_s": 1.0 });
     stage.study["design"] = json!([{ "grid": {
@@ -20,7 +20,7 @@ pub fn sweep(gaps: usize, time_step_s: f64) -> Stage {
 }
 
 /// A sweep of few jobs that leave little.
-pub fn tiny() -> Stage {
+pub(crate) fn tiny() -> Stage {
     let mut stage = Stage::new();
     stage.study["analysis"] = json!({ "kind": "crossing", "time_step_s": 0.05, "tail_s": 0.5 });
     stage.study["design"] = json!([{ "grid": { "gap_tension_m": [0.0, 0.03], "speed_m_s": [15, 20], "load_n": 1e5 } }]);
@@ -30,7 +30,7 @@ pub fn tiny() -> Stage {
 }
 
 /// The program at work on a sweep, to be disturbed.
-pub fn begin(stage: &Stage, out: &str, more: &[&str]) -> Child {
+pub(crate) fn begin(stage: &Stage, out: &str, more: &[&str]) -> Child {
     command(stage, &[&["run", "study.json", "--out", out, "--quiet"], more].concat())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
@@ -39,7 +39,7 @@ pub fn begin(stage: &Stage, out: &str, more: &[&str]) -> Child {
 }
 
 /// The program in the folder of a stage.
-pub fn command(stage: &Stage, words: &[&str]) -> Command {
+pub(crate) fn command(stage: &Stage, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pontoon"));
     command
         .args(words)
@@ -49,14 +49,14 @@ pub fn command(stage: &Stage, words: &[&str]) -> Command {
 }
 
 /// Runs a sweep to its end, come what may.
-pub fn run(stage: &Stage, out: &str, more: &[&str]) -> Output {
+pub(crate) fn run(stage: &Stage, out: &str, more: &[&str]) -> Output {
     command(stage, &[&["run", "study.json", "--out", out, "--quiet"], more].concat())
         .output()
         .unwrap()
 }
 
 /// The same with a fault on the way.
-pub fn run_with(stage: &Stage, out: &str, fault: &str) -> Output {
+pub(crate) fn run_with(stage: &Stage, out: &str, fault: &str) -> Output {
     command(stage, &["run", "study.json", "--out", out, "--quiet"])
         .env("PONTOON_FAULT", fault)
         .output()
@@ -64,14 +64,14 @@ pub fn run_with(stage: &Stage, out: &str, fault: &str) -> Output {
 }
 
 /// Runs a sweep to its good end.
-pub fn finish(stage: &Stage, out: &str) -> Output {
+pub(crate) fn finish(stage: &Stage, out: &str) -> Output {
     let output = run(stage, out, &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     output
 }
 
 /// The bytes of all tables in a folder, by name.
-pub fn tables(stage: &Stage, out: &str) -> Vec<(String, Vec<u8>)> {
+pub(crate) fn tables(stage: &Stage, out: &str) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(stage.path(out)).unwrap() {
         let path = entry.unwrap().path();
@@ -85,7 +85,7 @@ pub fn tables(stage: &Stage, out: &str) -> Vec<(String, Vec<u8>)> {
 
 /// Refuses tables that are not those of another folder, byte for byte.
 #[track_caller]
-pub fn same_tables(stage: &Stage, out: &str, expected: &[(String, Vec<u8>)]) {
+pub(crate) fn same_tables(stage: &Stage, out: &str, expected: &[(String, Vec<u8>)]) {
     let found = tables(stage, out);
     let names = |list: &[(String, Vec<u8>)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&found), names(expected));
@@ -102,7 +102,7 @@ fn name(path: &Path) -> String {
 }
 
 /// Records that all processes wrote to a folder's journal, by the manifest: those before the last one, and the last.
-pub fn records(stage: &Stage, out: &str) -> usize {
+pub(crate) fn records(stage: &Stage, out: &str) -> usize {
     let manifest = stage.manifest(out);
     let before = manifest["sessions"]
         .as_array()
@@ -113,16 +113,16 @@ pub fn records(stage: &Stage, out: &str) -> usize {
 }
 
 /// How often something is tried: more often where the environment says so.
-pub fn tries(few: usize) -> usize {
+pub(crate) fn tries(few: usize) -> usize {
     std::env::var("PONTOON_FAULT_TRIES").map_or(few, |many| many.parse().unwrap())
 }
 
 /// Numbers that look random, the same in each run of a test.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
     /// The next one, below a bound.
-    pub fn below(&mut self, bound: u64) -> u64 {
+    pub(crate) fn below(&mut self, bound: u64) -> u64 {
         // splitmix64
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -133,7 +133,7 @@ impl Random {
 }
 
 /// What `status` says of a folder.
-pub fn status(stage: &Stage, folders: &[&str]) -> Value {
+pub(crate) fn status(stage: &Stage, folders: &[&str]) -> Value {
     let output = command(stage, &[&["status", "--format", "json"], folders].concat())
         .output()
         .unwrap();

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// Fits, writes the bridge and says what was found.
-pub fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Ending> {
+pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Ending> {
     let bridge = read_bridge(&arguments.bridge)?;
     let references = arguments
         .with

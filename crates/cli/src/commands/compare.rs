@@ -10,7 +10,7 @@ use pontoon_plan::input::Refusal;
 use pontoon_results::Results;
 
 /// Compares and writes a line a check.
-pub fn compare(arguments: &CompareArguments, common: Common) -> Result<Ending> {
+pub(crate) fn compare(arguments: &CompareArguments, common: Common) -> Result<Ending> {
     let results = Results::read(&arguments.results)?;
     let older = arguments.with.is_dir() && !arguments.with.join("reference.json").is_file();
     let compared = if older {

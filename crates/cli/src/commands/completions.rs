@@ -7,7 +7,7 @@ use anyhow::Result;
 use clap::{Arg, Command, CommandFactory};
 
 /// Writes the script of a shell, made of the definitions that words are understood by.
-pub fn completions(arguments: &CompletionsArguments) -> Result<Ending> {
+pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<Ending> {
     let mut script = Vec::new();
     clap_complete::generate(
         arguments.shell,

@@ -8,7 +8,7 @@ use pontoon_study::sweep::{Explanation, explain as explain_job};
 use serde_json::json;
 
 /// Explains a job.
-pub fn explain(arguments: &ExplainArguments, common: Common) -> Result<Ending> {
+pub(crate) fn explain(arguments: &ExplainArguments, common: Common) -> Result<Ending> {
     let told = explain_job(&arguments.folder, arguments.job)?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(told)),

@@ -10,7 +10,7 @@ use pontoon_view::export::{ExportError, Exported, LoadRequest, Request, export a
 use serde_json::{Value, json};
 
 /// Writes what is asked for and says which files to open.
-pub fn export(arguments: &ExportArguments, common: Common) -> Result<Ending> {
+pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Ending> {
     let request = Request {
         count: arguments.count.map(usize::from),
         supports: arguments.supports,

@@ -12,7 +12,7 @@ use pontoon_plan::input::Refusal;
 use serde_json::json;
 
 /// Writes the pages of the definitions that words are understood by.
-pub fn man(arguments: &ManArguments, common: Common) -> Result<Ending> {
+pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<Ending> {
     let to = &arguments.to;
     if to.exists() && !to.is_dir() {
         return Err(Refusal::new(to, "", "a file", "a folder for the pages").into());

@@ -10,7 +10,7 @@ use anyhow::Result;
 use pontoon_study::sweep::{Merged, SweepSetting, merge as merge_shards};
 
 /// Puts shards together.
-pub fn merge(arguments: &MergeArguments, common: Common) -> Result<Ending> {
+pub(crate) fn merge(arguments: &MergeArguments, common: Common) -> Result<Ending> {
     let heard = Heard::listen()?;
     let merged = Merged::of(&arguments.folders)?;
     let setting = SweepSetting {

@@ -1,15 +1,15 @@
 //! A file a command: what it asks of the study's rooms and how it answers.
 
-pub mod calibrate;
-pub mod compare;
-pub mod completions;
-pub mod explain;
-pub mod export;
-pub mod man;
-pub mod merge;
-pub mod modes;
-pub mod plan;
-pub mod report;
-pub mod run;
-pub mod schema;
-pub mod status;
+pub(crate) mod calibrate;
+pub(crate) mod compare;
+pub(crate) mod completions;
+pub(crate) mod explain;
+pub(crate) mod export;
+pub(crate) mod man;
+pub(crate) mod merge;
+pub(crate) mod modes;
+pub(crate) mod plan;
+pub(crate) mod report;
+pub(crate) mod run;
+pub(crate) mod schema;
+pub(crate) mod status;

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
 /// Finds the lowest modes of a bridge file.
-pub fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
+pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
     let file = read_bridge(&arguments.bridge)?;
     let request = ModesRequest {
         model: arguments.model.into(),

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use unicode_width::UnicodeWidthStr;
 
 /// Checks every job and says what would run, how long it takes, and what of it is done.
-pub fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
+pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
     let study = Study::open(&arguments.study)?;
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let default_out = || PathBuf::from("results").join(&study.spec.name);

@@ -25,7 +25,7 @@ const MODES: usize = 16;
 const HEAD: u64 = 4096;
 
 /// Writes figures where they are asked for, and a page unless they alone are.
-pub fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
+pub(crate) fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
     match &arguments.figures {
         Some(folder) => {
             let drawn = draw(arguments, folder, common)?;

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 
 /// Checks every job, runs what is missing, writes the tables, prints the summary and, where asked, holds the results against
 /// a reference.
-pub fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
+pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let heard = Heard::listen()?;
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;

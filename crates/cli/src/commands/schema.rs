@@ -6,7 +6,7 @@ use crate::words;
 use anyhow::Result;
 
 /// Writes a schema.
-pub fn schema(arguments: &SchemaArguments) -> Result<Ending> {
+pub(crate) fn schema(arguments: &SchemaArguments) -> Result<Ending> {
     let schema = match arguments.of {
         SchemaOf::Study => pontoon_plan::schema::study(),
         SchemaOf::Bridge => pontoon_plan::schema::bridge(),

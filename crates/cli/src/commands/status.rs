@@ -8,7 +8,7 @@ use pontoon_study::sweep::{Standings, standings};
 use serde_json::{Value, json};
 
 /// Says how far the runs of folders have come.
-pub fn status(arguments: &StatusArguments, common: Common) -> Result<Ending> {
+pub(crate) fn status(arguments: &StatusArguments, common: Common) -> Result<Ending> {
     let all = standings(&arguments.folders)?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", object(&all)),

@@ -13,7 +13,7 @@ const GAP: usize = 2;
 
 /// A value as it is written, with its style.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Cell {
+pub(super) struct Cell {
     /// The text; numbers end in a blank where others end in a mark.
     pub text: String,
     /// How it is painted.
@@ -22,7 +22,7 @@ pub struct Cell {
 
 /// What names a row: a column of the table.
 #[derive(Debug, Clone)]
-pub struct Names {
+pub(super) struct Names {
     /// Lines of the head; the last stands beside the last of the heads of values.
     pub head: Vec<String>,
     /// A name a row.
@@ -33,7 +33,7 @@ pub struct Names {
 
 /// A table.
 #[derive(Debug, Clone, Default)]
-pub struct Grid {
+pub(super) struct Grid {
     /// Columns that name rows.
     pub names: Vec<Names>,
     /// Heads of the columns of values, each of as many lines.
@@ -66,12 +66,12 @@ fn longest<'a>(texts: impl Iterator<Item = &'a String>) -> usize {
 
 impl Grid {
     /// Number of pieces that a width asks for.
-    pub fn pieces(&self, width: usize) -> usize {
+    pub(super) fn pieces(&self, width: usize) -> usize {
         self.split(width_of(&self.columns_of_names(width)), width).len()
     }
 
     /// The table in pieces that fit a width, if there is any way to.
-    pub fn written(&self, width: usize, look: Look) -> String {
+    pub(super) fn written(&self, width: usize, look: Look) -> String {
         let names = self.columns_of_names(width);
         let mut text = String::new();
         if self.is_numbered(width) {

@@ -7,13 +7,13 @@ use pontoon_view::labels::printable;
 use serde_json::Value;
 
 /// A name in words and the unit that it ends in, if any: `gap_tension_m` is "tension gap" in "m".
-pub fn label(name: &str) -> (String, Option<&'static str>) {
+pub(super) fn label(name: &str) -> (String, Option<&'static str>) {
     let unit = Some(labels::unit(name)).filter(|unit| !unit.is_empty());
     (printable(&labels::label(name)), unit)
 }
 
 /// Names of axes as heads: of a path its last part, where no other axis ends in the same.
-pub fn heads(names: &[String]) -> Vec<(String, Option<&'static str>)> {
+pub(super) fn heads(names: &[String]) -> Vec<(String, Option<&'static str>)> {
     let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
     let short = |name: &String| {
         let alone = names.iter().filter(|other| last(other) == last(name)).count() == 1;
@@ -23,13 +23,13 @@ pub fn heads(names: &[String]) -> Vec<(String, Option<&'static str>)> {
 }
 
 /// A value of an axis with its name and unit: "tension gap 0.028 m".
-pub fn told((name, unit): &(String, Option<&str>), value: &Value) -> String {
+pub(super) fn told((name, unit): &(String, Option<&str>), value: &Value) -> String {
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
     format!("{name} {}{unit}", axis(value))
 }
 
 /// A value of an axis: a number with at most six digits, none that says nothing; nothing is a dash.
-pub fn axis(value: &Value) -> String {
+pub(crate) fn axis(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
         Value::String(word) => printable(word),
@@ -55,7 +55,7 @@ fn digits(x: f64) -> String {
 }
 
 /// A peak: lengths to a tenth of a millimetre, forces to a newton.
-pub fn peak(name: &str, x: f64) -> String {
+pub(super) fn peak(name: &str, x: f64) -> String {
     if name.ends_with("_n") {
         format!("{x:.0}")
     } else {

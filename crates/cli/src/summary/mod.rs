@@ -19,14 +19,14 @@ mod survey;
 mod tests;
 
 use crate::terminal::Look;
-pub use label::axis as told;
+pub(crate) use label::axis as told;
 use survey::Row;
 
 /// Characters of a line where the place does not say how many it has.
 const WIDTH: usize = 118;
 
 /// The summary for people. `rows` are made as often as they are looked at.
-pub fn text<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I, look: Look) -> String {
+pub(crate) fn text<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I, look: Look) -> String {
     let width = look.width.unwrap_or(WIDTH);
     if columns.last().is_some_and(|column| column == "shape") {
         modes::modes(columns, rows(), look, width)

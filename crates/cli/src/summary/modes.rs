@@ -22,7 +22,7 @@ struct OfJob {
 }
 
 /// The frequencies of a summary of modes.
-pub fn modes(columns: &[String], rows: impl Iterator<Item = Row>, look: Look, width: usize) -> String {
+pub(super) fn modes(columns: &[String], rows: impl Iterator<Item = Row>, look: Look, width: usize) -> String {
     let axes = columns.len() - 3;
     let mut jobs: Vec<OfJob> = Vec::new();
     let mut left = 0;

@@ -24,7 +24,12 @@ const FAILED: &str = "failed";
 type Head = (String, Option<&'static str>);
 
 /// The peaks of a summary as a table and what is largest.
-pub fn peaks<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I, look: Look, width: usize) -> String {
+pub(super) fn peaks<I: Iterator<Item = Row>>(
+    columns: &[String],
+    rows: impl Fn() -> I,
+    look: Look,
+    width: usize,
+) -> String {
     let survey = Survey::new(columns, &rows);
     let heads = heads(columns);
     let mut text = String::new();

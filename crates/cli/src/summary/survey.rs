@@ -7,10 +7,10 @@ use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A row of a summary.
-pub type Row = Vec<Value>;
+pub(super) type Row = Vec<Value>;
 
 /// The peaks of a summary, in the order in which they are told.
-pub const PEAKS: [&str; 4] = [
+pub(super) const PEAKS: [&str; 4] = [
     "peak_deflection_m",
     "peak_uplift_m",
     "peak_compression_n",
@@ -25,7 +25,7 @@ const MOST_VALUES: usize = 400;
 
 /// What a look at all rows has found.
 #[derive(Debug)]
-pub struct Survey {
+pub(super) struct Survey {
     /// Places of the axes that vary, in their order.
     pub varying: Vec<usize>,
     /// Places of the axes that have one value, and the value.
@@ -75,7 +75,7 @@ fn order(a: &Value, b: &Value) -> std::cmp::Ordering {
 
 impl Survey {
     /// Looks at all rows twice.
-    pub fn new<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I) -> Self {
+    pub(super) fn new<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I) -> Self {
         let place = |name: &str| columns.iter().position(|column| column == name);
         let peaks: Vec<usize> = PEAKS.iter().filter_map(|name| place(name)).collect();
         let axes: Vec<usize> = (0..columns.len()).filter(|i| !peaks.contains(i)).collect();
@@ -160,7 +160,7 @@ fn combinations(rows: impl Iterator<Item = Row>, axes: &[usize]) -> usize {
 }
 
 /// A number for the values of some axes.
-pub fn hash(row: &Row, axes: &[usize]) -> u64 {
+pub(super) fn hash(row: &Row, axes: &[usize]) -> u64 {
     let mut hasher = DefaultHasher::new();
     axes.iter().for_each(|&i| row[i].to_string().hash(&mut hasher));
     hasher.finish()

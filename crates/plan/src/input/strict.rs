@@ -220,7 +220,7 @@ impl<'de> Visitor<'de> for StrictVisitor {
 
 /// The same value with whole numbers written as whole numbers (`3.0` as `3`, `-0.0` as `0`), so that equal values have
 /// equal texts.
-pub fn canonical(value: &Value) -> Value {
+pub(crate) fn canonical(value: &Value) -> Value {
     match value {
         Value::Number(n) => match n.as_f64() {
             Some(x) if n.is_f64() && x.fract() == 0.0 && x.abs() < 9.0e15 => Value::from(x as i64),

@@ -42,7 +42,7 @@ fn list_for_object(at: &str, written: &Value, read: &Value) -> Option<String> {
 }
 
 /// Two key paths one after the other.
-pub fn join(prefix: &str, path: &str) -> String {
+pub(super) fn join(prefix: &str, path: &str) -> String {
     match (prefix.is_empty(), path.is_empty()) {
         (true, _) => path.to_owned(),
         (_, true) => prefix.to_owned(),

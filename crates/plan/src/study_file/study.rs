@@ -274,7 +274,7 @@ fn check_name(file: &Path, name: &str) -> Result<(), Refusal> {
 }
 
 /// Refuses histories of what the bridge does not have, and the same one twice.
-pub fn check_histories(file: &Path, histories: &HistoriesSpec, modules: usize) -> Result<(), Refusal> {
+pub(crate) fn check_histories(file: &Path, histories: &HistoriesSpec, modules: usize) -> Result<(), Refusal> {
     for (of, list, from, to) in [
         ("positions", &histories.positions, 1, modules + 1),
         ("joints", &histories.joints, 2, modules),

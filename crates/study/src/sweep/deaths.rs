@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const SUSPECT: usize = 2;
 
 /// Numbers of jobs that are not to be solved, with the reason.
-pub type PassedOver = BTreeMap<usize, String>;
+pub(super) type PassedOver = BTreeMap<usize, String>;
 
 /// How a process ended that solved jobs apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use crate::figures::Figures;
 use crate::labels::printable;
 
 /// The captions of all figures, and what none holds.
-pub fn markdown(figures: &Figures) -> String {
+pub(super) fn markdown(figures: &Figures) -> String {
     let mut text = format!("# Figures of {}\n", escaped(&figures.study));
     if let Some(reference) = &figures.reference {
         text += &format!("\nReference: {}\n", escaped(reference));

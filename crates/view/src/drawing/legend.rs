@@ -25,14 +25,14 @@ enum Sample {
 }
 
 /// A legend laid out.
-pub struct Legend {
+pub(super) struct Legend {
     /// What, its words, and where it begins: across and in which row.
     entries: Vec<(Sample, String, f64, usize)>,
 }
 
 impl Legend {
     /// The legend of a figure between two places across.
-    pub fn new(figure: &Figure, letters: &Letters, left: f64, right: f64) -> Self {
+    pub(super) fn new(figure: &Figure, letters: &Letters, left: f64, right: f64) -> Self {
         let mut wanted: Vec<(Sample, String)> = Vec::new();
         let mut want = |entry: (Sample, String)| {
             if !wanted.contains(&entry) {
@@ -100,13 +100,13 @@ impl Legend {
     }
 
     /// Its height `[pt]`.
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         let rows = self.entries.last().map_or(0, |(.., row)| row + 1);
         ROW * rows as f64 + 4.0
     }
 
     /// Draws it below a place.
-    pub fn draw(&self, pen: &mut Pen, top: f64) -> io::Result<()> {
+    pub(super) fn draw(&self, pen: &mut Pen, top: f64) -> io::Result<()> {
         pen.group("legend")?;
         for (sample, words, x, row) in &self.entries {
             let middle = top + ROW * (*row as f64 + 0.5) + 2.0;

@@ -10,10 +10,10 @@ use std::sync::Arc;
 use thiserror::Error;
 
 /// Families that an SVG asks for: the embedded one, then those whose letters are as wide.
-pub const FAMILY: &str = "Arimo, Arial, 'Liberation Sans', Helvetica, sans-serif";
+pub(super) const FAMILY: &str = "Arimo, Arial, 'Liberation Sans', Helvetica, sans-serif";
 
 /// Dots in an inch of the pixels.
-pub const DPI: f32 = 300.0;
+pub(super) const DPI: f32 = 300.0;
 
 /// Letters for pixels and widths.
 const PIXELS: &[u8] = include_bytes!("font/Arimo-Regular.subset.ttf");
@@ -39,14 +39,14 @@ pub enum PixelsError {
 }
 
 /// The font, read.
-pub struct Letters {
+pub(super) struct Letters {
     options: Options<'static>,
     face: String,
 }
 
 impl Letters {
     /// Reads the font.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let mut fonts = Database::new();
         fonts.load_font_data(PIXELS.to_vec());
         let options = Options {
@@ -63,12 +63,12 @@ impl Letters {
     }
 
     /// The font as an SVG embeds it.
-    pub fn face(&self) -> &str {
+    pub(super) fn face(&self) -> &str {
         &self.face
     }
 
     /// How wide a word is at a size, both in points.
-    pub fn width(&self, text: &str, size: f64) -> f64 {
+    pub(super) fn width(&self, text: &str, size: f64) -> f64 {
         let escaped = quick_xml::escape::escape(text);
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"><text font-family=\"Arimo\" font-size=\"100\" \
@@ -84,7 +84,7 @@ impl Letters {
     }
 
     /// A word cut to a width, with an ellipsis where it is longer.
-    pub fn fitting(&self, text: &str, size: f64, most: f64) -> String {
+    pub(super) fn fitting(&self, text: &str, size: f64, most: f64) -> String {
         if self.width(text, size) <= most {
             return text.to_owned();
         }
@@ -99,7 +99,7 @@ impl Letters {
     ///
     /// # Errors
     /// [`PixelsError`].
-    pub fn png(&self, svg: &str) -> Result<Vec<u8>, PixelsError> {
+    pub(super) fn png(&self, svg: &str) -> Result<Vec<u8>, PixelsError> {
         let tree = Tree::from_str(svg, &self.options)?;
         let size = tree.size().to_int_size();
         let mut pixels = Pixmap::new(size.width(), size.height()).ok_or(PixelsError::NoSize)?;

@@ -28,7 +28,7 @@ const TICKS: f64 = 13.0;
 const WORDS: f64 = 11.0;
 
 /// The SVG of a figure.
-pub fn svg(figure: &Figure, letters: &Letters) -> io::Result<String> {
+pub(super) fn svg(figure: &Figure, letters: &Letters) -> io::Result<String> {
     let count = figure.panels.len();
     let columns = count.clamp(1, 2);
     let rows = count.div_ceil(columns);

@@ -19,7 +19,7 @@ const MARKED: usize = 10;
 const MARKERS: usize = 7;
 
 /// Where a panel is `[pt]`.
-pub struct Frame {
+pub(super) struct Frame {
     /// Its left edge.
     pub x: f64,
     /// Its upper edge.
@@ -34,7 +34,7 @@ pub struct Frame {
 
 /// The scales of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scales {
+pub(super) struct Scales {
     /// Across.
     pub x: Scale,
     /// Up, or down.
@@ -56,7 +56,7 @@ fn shared(figure: &Figure, own: impl Fn(&[&Panel], &Panel) -> Scales) -> Vec<Sca
 }
 
 /// The scales of all panels: those that count the same upward have one.
-pub fn scales(figure: &Figure) -> Vec<Scales> {
+pub(super) fn scales(figure: &Figure) -> Vec<Scales> {
     shared(figure, |like, panel| {
         let points = |panel: &Panel| -> Vec<[f64; 2]> {
             let of_lines = panel.lines.iter().flat_map(|line| line.points.iter().copied());
@@ -104,7 +104,7 @@ fn roomy(values: impl Iterator<Item = f64>, named: bool) -> impl Iterator<Item =
 }
 
 /// Room left of a panel `[pt]`.
-pub fn left(panel: &Panel, scales: &Scales, letters: &Letters) -> f64 {
+pub(super) fn left(panel: &Panel, scales: &Scales, letters: &Letters) -> f64 {
     let ticks = if panel.y.words.is_empty() {
         scales.y.ticks().iter().map(|tick| scales.y.text(*tick)).collect()
     } else {
@@ -116,7 +116,7 @@ pub fn left(panel: &Panel, scales: &Scales, letters: &Letters) -> f64 {
 }
 
 /// The words of an axis with its unit.
-pub fn words(axis: &Axis) -> String {
+pub(super) fn words(axis: &Axis) -> String {
     if axis.unit.is_empty() {
         axis.label.clone()
     } else {
@@ -125,7 +125,7 @@ pub fn words(axis: &Axis) -> String {
 }
 
 /// Draws a panel.
-pub fn draw(pen: &mut Pen, panel: &Panel, scales: &Scales, frame: &Frame) -> io::Result<()> {
+pub(super) fn draw(pen: &mut Pen, panel: &Panel, scales: &Scales, frame: &Frame) -> io::Result<()> {
     let at = |[x, y]: [f64; 2]| {
         let up = scales.y.share(y);
         let down = if panel.y.down { up } else { 1.0 - up };

@@ -9,11 +9,11 @@ use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 use std::io;
 
 /// Points in a millimetre.
-pub const PT_MM: f64 = 72.0 / 25.4;
+pub(super) const PT_MM: f64 = 72.0 / 25.4;
 
 /// Where a text stands to its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
+pub(super) enum Anchor {
     /// It begins there.
     Start,
     /// It is centred there.
@@ -24,7 +24,7 @@ pub enum Anchor {
 
 /// How something is stroked.
 #[derive(Debug, Clone, Copy)]
-pub struct Stroke<'a> {
+pub(super) struct Stroke<'a> {
     /// Its colour.
     pub colour: &'a str,
     /// Its width `[pt]`.
@@ -34,7 +34,7 @@ pub struct Stroke<'a> {
 }
 
 /// Writes an SVG.
-pub struct Pen {
+pub(super) struct Pen {
     writer: Writer<Vec<u8>>,
 }
 
@@ -53,7 +53,7 @@ fn fit_for_xml(text: &str) -> String {
 
 impl Pen {
     /// Begins an SVG of a size on white. `described` is what it shows, for those who cannot see it.
-    pub fn new(width: f64, height: f64, described: &str, letters: &Letters) -> io::Result<Self> {
+    pub(super) fn new(width: f64, height: f64, described: &str, letters: &Letters) -> io::Result<Self> {
         let mut pen = Self {
             writer: Writer::new(Vec::new()),
         };
@@ -73,7 +73,7 @@ impl Pen {
     }
 
     /// Ends it.
-    pub fn end(mut self) -> io::Result<String> {
+    pub(super) fn end(mut self) -> io::Result<String> {
         self.event(Event::End(BytesEnd::new("svg")))?;
         String::from_utf8(self.writer.into_inner()).map_err(io::Error::other)
     }
@@ -101,12 +101,12 @@ impl Pen {
     }
 
     /// Begins a group of a class.
-    pub fn group(&mut self, class: &str) -> io::Result<()> {
+    pub(super) fn group(&mut self, class: &str) -> io::Result<()> {
         self.event(Event::Start(Self::element("g", &[("class", class)])))
     }
 
     /// Begins a group that shows inside a rectangle alone; `id` is unlike any other's.
-    pub fn clipped(&mut self, id: &str, [x, y, width, height]: [f64; 4]) -> io::Result<()> {
+    pub(super) fn clipped(&mut self, id: &str, [x, y, width, height]: [f64; 4]) -> io::Result<()> {
         self.event(Event::Start(Self::element("clipPath", &[("id", id)])))?;
         let of = [("x", n(x)), ("y", n(y)), ("width", n(width)), ("height", n(height))];
         self.empty("rect", &of.each_ref().map(|(key, value)| (*key, value.as_str())))?;
@@ -116,12 +116,12 @@ impl Pen {
     }
 
     /// Ends a group.
-    pub fn end_group(&mut self) -> io::Result<()> {
+    pub(super) fn end_group(&mut self) -> io::Result<()> {
         self.event(Event::End(BytesEnd::new("g")))
     }
 
     /// A line through points.
-    pub fn line(&mut self, points: &[[f64; 2]], stroke: Stroke<'_>) -> io::Result<()> {
+    pub(super) fn line(&mut self, points: &[[f64; 2]], stroke: Stroke<'_>) -> io::Result<()> {
         let d: Vec<String> = points.iter().map(|[x, y]| format!("{} {}", n(*x), n(*y))).collect();
         self.path(&format!("M{}", d.join("L")), "none", stroke)
     }
@@ -142,13 +142,13 @@ impl Pen {
     }
 
     /// A rectangle that is not filled.
-    pub fn frame(&mut self, [x, y, width, height]: [f64; 4], stroke: Stroke<'_>) -> io::Result<()> {
+    pub(super) fn frame(&mut self, [x, y, width, height]: [f64; 4], stroke: Stroke<'_>) -> io::Result<()> {
         let corners = [[x, y], [x + width, y], [x + width, y + height], [x, y + height], [x, y]];
         self.line(&corners, stroke)
     }
 
     /// A marker; `through` where what lies below it is to be seen.
-    pub fn marker(
+    pub(super) fn marker(
         &mut self,
         marker: Marker,
         [x, y]: [f64; 2],
@@ -189,7 +189,7 @@ impl Pen {
     }
 
     /// A star of five points: what an experiment left is filled, what a reference expects is open.
-    pub fn star(&mut self, [x, y]: [f64; 2], radius: f64, filled: bool) -> io::Result<()> {
+    pub(super) fn star(&mut self, [x, y]: [f64; 2], radius: f64, filled: bool) -> io::Result<()> {
         let corner = |i: u32| {
             let (r, angle) = (
                 if i.is_multiple_of(2) { radius } else { 0.42 * radius },
@@ -207,7 +207,7 @@ impl Pen {
     }
 
     /// An upright bar, where marks would hide what they are compared with.
-    pub fn bar(&mut self, [x, y]: [f64; 2], half: f64) -> io::Result<()> {
+    pub(super) fn bar(&mut self, [x, y]: [f64; 2], half: f64) -> io::Result<()> {
         let stroke = Stroke {
             colour: "#000000",
             width: 1.1,
@@ -217,7 +217,14 @@ impl Pen {
     }
 
     /// A word with its baseline at a place.
-    pub fn text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, colour: &str, text: &str) -> io::Result<()> {
+    pub(super) fn text(
+        &mut self,
+        [x, y]: [f64; 2],
+        size: f64,
+        anchor: Anchor,
+        colour: &str,
+        text: &str,
+    ) -> io::Result<()> {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -235,7 +242,7 @@ impl Pen {
     }
 
     /// A word that reads upward, centred at a place.
-    pub fn upward(&mut self, [x, y]: [f64; 2], size: f64, text: &str) -> io::Result<()> {
+    pub(super) fn upward(&mut self, [x, y]: [f64; 2], size: f64, text: &str) -> io::Result<()> {
         let (turned, size) = (format!("translate({} {}) rotate(-90)", n(x), n(y)), n(size));
         let attributes = [
             ("transform", turned.as_str()),

@@ -10,7 +10,7 @@ const ON_TICK: f64 = 1e-9;
 
 /// An axis from one value to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
+pub(super) struct Scale {
     /// Its least value.
     pub from: f64,
     /// Its largest value.
@@ -21,7 +21,7 @@ pub struct Scale {
 
 impl Scale {
     /// An axis that reaches over some values with about so many steps, and ends at ticks or half-way between them.
-    pub fn round(values: impl Iterator<Item = f64>, steps: f64) -> Self {
+    pub(super) fn round(values: impl Iterator<Item = f64>, steps: f64) -> Self {
         let exact = Self::exact(values, steps);
         let half = 0.5 * exact.step;
         Self {
@@ -32,7 +32,7 @@ impl Scale {
     }
 
     /// An axis that ends at the least and the largest of some values; about so many steps.
-    pub fn exact(values: impl Iterator<Item = f64>, steps: f64) -> Self {
+    pub(super) fn exact(values: impl Iterator<Item = f64>, steps: f64) -> Self {
         let (mut from, mut to) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         if from > to {
             (from, to) = (0.0, 1.0);
@@ -55,7 +55,7 @@ impl Scale {
     }
 
     /// The axis with a share of its length before and behind.
-    pub fn padded(self, share: f64) -> Self {
+    pub(super) fn padded(self, share: f64) -> Self {
         let more = share * (self.to - self.from);
         Self {
             from: self.from - more,
@@ -65,7 +65,7 @@ impl Scale {
     }
 
     /// Its ticks.
-    pub fn ticks(&self) -> Vec<f64> {
+    pub(super) fn ticks(&self) -> Vec<f64> {
         let first = (self.from / self.step - ON_TICK).ceil();
         let last = (self.to / self.step + ON_TICK).floor();
         let count = (last - first).clamp(-1.0, 100.0) as i64;
@@ -73,7 +73,7 @@ impl Scale {
     }
 
     /// A tick in digits, with the minus sign that print has.
-    pub fn text(&self, tick: f64) -> String {
+    pub(super) fn text(&self, tick: f64) -> String {
         let decimals = usize::try_from(-(self.step.log10() + ON_TICK).floor() as i64)
             .unwrap_or(0)
             .min(12);
@@ -85,7 +85,7 @@ impl Scale {
     }
 
     /// Which share of the axis lies before a value.
-    pub fn share(&self, value: f64) -> f64 {
+    pub(super) fn share(&self, value: f64) -> f64 {
         (value - self.from) / (self.to - self.from)
     }
 }

@@ -3,16 +3,16 @@
 //! Knows shapes. Does not know what they stand for.
 
 /// Sizes of letters `[pt]`.
-pub const SMALL: f64 = 7.0;
-pub const LARGE: f64 = 8.0;
+pub(super) const SMALL: f64 = 7.0;
+pub(super) const LARGE: f64 = 8.0;
 
 /// Radius of a line's marker, of a mark `[pt]`.
-pub const MARKER: f64 = 2.2;
-pub const MARK: f64 = 4.2;
+pub(super) const MARKER: f64 = 2.2;
+pub(super) const MARK: f64 = 4.2;
 
 /// A style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Style {
+pub(super) struct Style {
     /// Its colour: of Okabe and Ito's, which differ for colour-blind eyes and, in grey, in lightness.
     pub colour: &'static str,
     /// Lengths of dashes and gaps `[pt]`; empty where it is drawn through.
@@ -25,7 +25,7 @@ pub struct Style {
 
 /// A marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
+pub(super) enum Marker {
     /// A filled circle.
     Disc,
     /// An open square.
@@ -66,7 +66,7 @@ const STYLES: [Style; 7] = [
 ];
 
 /// The style of a number.
-pub fn of(number: usize) -> Style {
+pub(super) fn of(number: usize) -> Style {
     match number {
         0 => STYLES[0],
         n => STYLES[1 + (n - 1) % (STYLES.len() - 1)],
@@ -75,7 +75,7 @@ pub fn of(number: usize) -> Style {
 
 impl Marker {
     /// Its outline around the origin, of a radius; and whether it is filled with its colour (else with white, but for crosses).
-    pub fn path(self, r: f64) -> (Vec<Vec<[f64; 2]>>, Fill) {
+    pub(super) fn path(self, r: f64) -> (Vec<Vec<[f64; 2]>>, Fill) {
         let d = r * std::f64::consts::FRAC_1_SQRT_2;
         match self {
             Self::Disc => (Vec::new(), Fill::Colour),
@@ -93,7 +93,7 @@ impl Marker {
 
 /// With what a marker is filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fill {
+pub(super) enum Fill {
     /// With its own colour.
     Colour,
     /// With white.

@@ -26,7 +26,7 @@ pub struct FailedPoint {
 
 /// A point and what the model answered there.
 #[derive(Clone, Debug)]
-pub struct Answer {
+pub(super) struct Answer {
     /// The parameters.
     pub point: Vec<f64>,
     /// The scaled residuals.
@@ -35,16 +35,16 @@ pub struct Answer {
 
 impl Answer {
     /// Whether the sum of squares is as low as that of `other`, or lower.
-    pub fn is_no_worse_than(&self, other: &Self) -> bool {
+    pub(super) fn is_no_worse_than(&self, other: &Self) -> bool {
         sum_of_squares(&self.residuals) <= sum_of_squares(&other.residuals)
     }
 }
 
 /// Columns of a Jacobian, one a parameter; `None` where no derivative could be formed.
-pub type Columns = Vec<Option<Vec<f64>>>;
+pub(super) type Columns = Vec<Option<Vec<f64>>>;
 
 /// The model with its book-keeping.
-pub struct Evaluator<'a> {
+pub(super) struct Evaluator<'a> {
     /// The parameters.
     pub parameters: &'a [Parameter],
     /// Points asked for so far.
@@ -60,7 +60,7 @@ pub struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// A model that has not been asked yet.
-    pub fn new(parameters: &'a [Parameter], model: &'a Model<'a>, settings: &Settings) -> Self {
+    pub(super) fn new(parameters: &'a [Parameter], model: &'a Model<'a>, settings: &Settings) -> Self {
         Self {
             parameters,
             model,
@@ -75,7 +75,11 @@ impl<'a> Evaluator<'a> {
 
     /// Residuals at `points`, `None` where the model fails, which goes into the list of failures. The model is asked
     /// for all of them at once, but for those that it was asked for before.
-    pub fn evaluate(&mut self, points: &[Vec<f64>], purpose: impl Fn(usize) -> Purpose) -> Vec<Option<Vec<f64>>> {
+    pub(super) fn evaluate(
+        &mut self,
+        points: &[Vec<f64>],
+        purpose: impl Fn(usize) -> Purpose,
+    ) -> Vec<Option<Vec<f64>>> {
         let is_new = |k: &usize| self.known.iter().all(|(point, _)| *point != points[*k]);
         let new: Vec<usize> = (0..points.len()).filter(is_new).collect();
         let batch: Vec<Vec<f64>> = new.iter().map(|&k| points[k].clone()).collect();
@@ -115,7 +119,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// [`Self::evaluate`] for trial points, the answers with their points.
-    pub fn answers(&mut self, points: Vec<Vec<f64>>) -> Vec<Option<Answer>> {
+    pub(super) fn answers(&mut self, points: Vec<Vec<f64>>) -> Vec<Option<Answer>> {
         let answers = self.evaluate(&points, |_| Purpose::Trial);
         points
             .into_iter()
@@ -125,13 +129,13 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Points in the first batch of a Jacobian at `point`.
-    pub fn jacobian_batch(&self, point: &[f64]) -> usize {
+    pub(super) fn jacobian_batch(&self, point: &[f64]) -> usize {
         (0..point.len()).map(|k| self.first_sides(point, k).len()).sum()
     }
 
     /// Columns of the Jacobian at `at`, by parameters in widths between their bounds; `None` where the model fails on
     /// both sides. One batch; a second one for the other sides of those that failed.
-    pub fn jacobian(&mut self, at: &Answer) -> Columns {
+    pub(super) fn jacobian(&mut self, at: &Answer) -> Columns {
         let count = at.point.len();
         let mut sides: Vec<Vec<Answer>> = vec![Vec::new(); count];
         let first: Vec<(usize, Vec<f64>)> = (0..count)

@@ -12,13 +12,13 @@ use super::variable::{bounded, unbounded};
 use super::{Parameter, sum_of_squares};
 
 /// Cosine between residuals and column from which on the residuals pull a parameter off its bound, or push it there.
-pub const PULL: f64 = 0.01;
+pub(super) const PULL: f64 = 0.01;
 /// A failed trial counts as residuals with this many times the first norm; from 10 on the optimiser cuts its region.
 const REFUSED_NORM: f64 = 100.0;
 
 /// Cosine between residuals and a column of the Jacobian, positive if the sum of squares falls, d(sum)/dt = 2 column .
 /// r, as the parameter goes from `x` to the nearer bound; zero without a column or with one of zeros.
-pub fn outward_cosine(parameter: &Parameter, x: f64, column: Option<&[f64]>, residuals: &[f64]) -> f64 {
+pub(super) fn outward_cosine(parameter: &Parameter, x: f64, column: Option<&[f64]>, residuals: &[f64]) -> f64 {
     let Some(column) = column else { return 0.0 };
     let product: f64 = column.iter().zip(residuals).map(|(a, b)| a * b).sum();
     let norms = sum_of_squares(column).sqrt() * sum_of_squares(residuals).sqrt();
@@ -31,7 +31,7 @@ pub fn outward_cosine(parameter: &Parameter, x: f64, column: Option<&[f64]>, res
 }
 
 /// The least-squares problem as the optimiser asks for it.
-pub struct Problem<'p, 'a> {
+pub(super) struct Problem<'p, 'a> {
     /// Where the search starts: an `u` that has not moved gives back its value bit by bit.
     origin: (DVector<f64>, Vec<f64>),
     u: DVector<f64>,
@@ -44,7 +44,7 @@ pub struct Problem<'p, 'a> {
 }
 
 /// What a search remembers of its way.
-pub struct Notes {
+pub(super) struct Notes {
     /// The best of all points tried, or what was best before.
     pub best: Answer,
     /// The last Jacobian, and the point it is of.
@@ -59,7 +59,7 @@ pub struct Notes {
 impl<'p, 'a> Problem<'p, 'a> {
     /// A search from `from`, where `best` is the best point so far. A parameter closer to a bound than
     /// `left_alone_share` of the width that is pushed outwards is left alone.
-    pub fn new(
+    pub(super) fn new(
         evaluator: &'p mut Evaluator<'a>,
         evaluations_limit: usize,
         left_alone_share: f64,
@@ -89,7 +89,7 @@ impl<'p, 'a> Problem<'p, 'a> {
     }
 
     /// Where a search ended, and what it remembers.
-    pub fn into_parts(self) -> (Vec<f64>, Notes) {
+    pub(super) fn into_parts(self) -> (Vec<f64>, Notes) {
         (self.point, self.notes.into_inner())
     }
 

@@ -80,7 +80,7 @@ impl Ending {
 }
 
 /// What a search found.
-pub struct Found {
+pub(super) struct Found {
     /// The start as given.
     pub start: Answer,
     /// The best of all points tried.
@@ -92,7 +92,7 @@ pub struct Found {
 }
 
 /// Searches from the start of the parameters.
-pub fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Result<Found, FitError> {
+pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Result<Found, FitError> {
     let parameters = evaluator.parameters;
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
     let moved: Vec<f64> = parameters

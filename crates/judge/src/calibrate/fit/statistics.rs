@@ -66,7 +66,7 @@ pub struct Direction {
 }
 
 /// Statistics of the free parameters, in widths between their bounds.
-pub struct Statistics {
+pub(super) struct Statistics {
     /// Standard errors; `None` for a parameter that is part of an undetermined direction.
     pub standard_errors: Vec<Option<f64>>,
     /// Correlation; `None` where one of the two has no standard error, or where it is zero.
@@ -81,7 +81,7 @@ pub struct Statistics {
 
 /// Statistics from the Jacobian's `columns` (one for each free parameter, in the order of `indices`, each with one
 /// entry for each of the `count` residuals) and the sum of squares.
-pub fn statistics(
+pub(super) fn statistics(
     columns: &[&[f64]],
     indices: &[usize],
     count: usize,

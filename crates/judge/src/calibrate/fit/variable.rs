@@ -10,27 +10,27 @@ use super::{Bound, Parameter};
 const NUDGE_SHARE: f64 = 0.01;
 
 /// `x`, moved inside if it lies on a bound or next to it.
-pub fn nudged(parameter: &Parameter, x: f64) -> f64 {
+pub(super) fn nudged(parameter: &Parameter, x: f64) -> f64 {
     let margin = NUDGE_SHARE * parameter.width();
     x.clamp(parameter.lower + margin, parameter.upper - margin)
 }
 
 /// The parameter at `u`, never outside its bounds.
-pub fn bounded(parameter: &Parameter, u: f64) -> f64 {
+pub(super) fn bounded(parameter: &Parameter, u: f64) -> f64 {
     let t = (1.0 + u.sin()) / 2.0;
     (parameter.lower + parameter.width() * t).clamp(parameter.lower, parameter.upper)
 }
 
 /// The `u` of `x`, on the branch around 2 pi: u is then of one size for all parameters, and never zero, so that the
 /// optimiser's steps and tolerances, which are relative to it, are shares of the range.
-pub fn unbounded(parameter: &Parameter, x: f64) -> f64 {
+pub(super) fn unbounded(parameter: &Parameter, x: f64) -> f64 {
     TAU + (2.0 * (x - parameter.lower) / parameter.width() - 1.0)
         .clamp(-1.0, 1.0)
         .asin()
 }
 
 /// The bound that `x` lies on, up to rounding.
-pub fn bound_at(parameter: &Parameter, x: f64) -> Option<Bound> {
+pub(super) fn bound_at(parameter: &Parameter, x: f64) -> Option<Bound> {
     let slack = 1e-9 * parameter.width();
     if x - parameter.lower <= slack {
         Some(Bound::Lower)
