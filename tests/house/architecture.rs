@@ -376,8 +376,10 @@ fn is_path(word: &str) -> bool {
 fn paths_in_docs_exist() {
     let mut docs = rust_files();
     docs.extend(files(&root().join("crates"), ".md"));
-    docs.extend(files(&root().join("studies"), ".md"));
-    docs.extend(Some(root().join("README.md")).filter(|readme| readme.exists()));
+    for folder in ["studies", "book/src", "tests"] {
+        docs.extend(files(&root().join(folder), ".md"));
+    }
+    docs.extend(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root().join(name)));
     for file in docs {
         let rust = file.extension().is_some_and(|e| e == "rs");
         for line in read(&file)

@@ -147,6 +147,24 @@ fn tables_are_the_same_however_their_rows_come() {
                 .filter(|name| dir.path().join(name.file()).exists());
             let frames: Vec<(TableName, Frame)> = left.map(|name| (name, read(&folder, name))).collect();
             assert!(frames.len() > 2, "only {} tables", frames.len());
+            for (name, frame) in &frames {
+                // whole numbers are whole, others are not
+                assert!(frame.column("job").unwrap().i64().is_some(), "{name:?}");
+                for (column, whole) in [
+                    ("steps", true),
+                    ("joint", true),
+                    ("position", true),
+                    ("x_m", false),
+                    ("value", false),
+                ] {
+                    let Some(column) = frame.column(column) else { continue };
+                    assert_eq!(
+                        (column.i64().is_some(), column.f64().is_some()),
+                        (whole, !whole),
+                        "{name:?}"
+                    );
+                }
+            }
             if at_once.is_empty() {
                 at_once = frames;
             } else {

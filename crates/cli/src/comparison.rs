@@ -90,13 +90,13 @@ fn verdict_first(line: &Line) -> Vec<String> {
 /// Rows as values, some columns to the right.
 fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec<Value>> {
     let width = |i: usize| {
-        let longest = rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0);
-        longest.max(heads[i].len())
+        let longest = rows.iter().map(|row| row[i].width()).max().unwrap_or(0);
+        longest.max(heads[i].width())
     };
     let widths: Vec<usize> = (0..heads.len()).map(width).collect();
     let cell = |(i, text): (usize, String)| {
         if columns.contains(&i) {
-            format!("{text:>width$}", width = widths[i]).into()
+            words::padded(&text, widths[i], true).into()
         } else {
             text.into()
         }

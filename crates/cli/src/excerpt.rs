@@ -4,8 +4,7 @@
 
 use crate::terminal::Look;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, renderer::DecorStyle};
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::{Spot, SpotKind, spot};
+use pontoon_plan::input::{Refusal, Spot, SpotKind, spot};
 use pontoon_view::labels::printable;
 use std::fs;
 use std::ops::Range;

@@ -5,7 +5,7 @@
 //! | `args` | the words that are understood |
 //! | `axes` | the axes of a study for people |
 //! | `bar` | the progress bar that stands on the terminal |
-//! | `commands` | a file a command: what it asks of the study's rooms and how it answers |
+//! | `commands` | a file a command: what it asks of the other crates and how it answers |
 //! | `commit` | the sources that the program was built from |
 //! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
 //! | `ending` | how a command ended that could go on to its end |

@@ -52,16 +52,21 @@ pub(crate) fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
         let mut text = String::new();
         for (i, cell) in row.iter().enumerate() {
             let gap = if i == 0 { "" } else { "  " };
-            let blanks = " ".repeat(widths[i] - cell.width());
-            text += &if numbers[i] {
-                format!("{gap}{blanks}{cell}")
-            } else {
-                format!("{gap}{cell}{blanks}")
-            };
+            text += &format!("{gap}{}", padded(cell, widths[i], numbers[i]));
         }
         text.trim_end().to_owned() + "\n"
     };
     cells.iter().fold(line(columns), |text, row| text + &line(row))
+}
+
+/// A text made as wide as `width` columns of a terminal by blanks, before it or behind it.
+pub(crate) fn padded(text: &str, width: usize, to_the_right: bool) -> String {
+    let blanks = " ".repeat(width.saturating_sub(text.width()));
+    if to_the_right {
+        format!("{blanks}{text}")
+    } else {
+        format!("{text}{blanks}")
+    }
 }
 
 /// A text in lines of a width, broken at blanks; all but the first begin with blanks. A word that is longer stays whole.
@@ -172,6 +177,15 @@ mod tests {
                         linear              3             0.1400\n\
                         nonlinear        6.09                  -\n";
         assert_eq!(table(&columns, &rows), expected);
+    }
+
+    #[test]
+    fn wide_letters_take_two_columns() {
+        assert_eq!(
+            [padded("\u{6a4b}", 4, true), padded("\u{6a4b}", 4, false)],
+            ["  \u{6a4b}", "\u{6a4b}  "]
+        );
+        assert_eq!(padded("long", 2, true), "long");
     }
 
     #[test]

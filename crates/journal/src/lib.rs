@@ -10,7 +10,7 @@
 //! | [`place`] | files that are replaced whole or not at all |
 //! | [`fault`] | faults on demand: deaths and full disks at named places |
 //!
-//! Knows a disk. Does not know what a record holds, nor bridges, studies or jobs.
+//! Knows a disk. Does not know what a record holds, nor what the documents mean that records are bound to.
 //!
 //! # The journal
 //!
@@ -97,7 +97,7 @@ pub enum JournalError {
         holder: String,
     },
     /// A file of another form of journal.
-    #[error("{}: a journal of form {found}, which another version of this program wrote; this one reads form {FORM}; --fresh moves the results aside and begins anew", path.display())]
+    #[error("{}: a journal of form {found}, which another version of this program wrote; this one reads form {FORM}; pontoon run --fresh moves the results aside and begins anew", path.display())]
     Form {
         /// The file.
         path: PathBuf,

@@ -48,19 +48,15 @@ impl HiddenFile {
     /// # Errors
     /// What the system says.
     pub fn begin_among_others(place: &Path) -> io::Result<Self> {
-        Self::named(place, &mut Builder::new())
+        Self::named(place, &Builder::new())
     }
 
-    fn named(place: &Path, builder: &mut Builder<'_, '_>) -> io::Result<Self> {
-        #[cfg(unix)]
-        {
-            // as every new file has it: the library's own choice keeps other people from reading it
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
+    fn named(place: &Path, builder: &Builder<'_, '_>) -> io::Result<Self> {
         let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty());
+        // as every new file is made: the library's own way keeps other people from reading it, and names it in errors
+        let create = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
         Ok(Self {
-            hidden: builder.tempfile_in(folder.unwrap_or(Path::new(".")))?,
+            hidden: builder.make_in(folder.unwrap_or(Path::new(".")), create)?,
             place: place.to_owned(),
         })
     }
@@ -290,6 +286,14 @@ mod tests {
             assert_eq!(mode(&place), mode(&other));
             assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
         }
+    }
+
+    #[test]
+    fn what_the_system_says_is_said_as_it_is() {
+        let dir = tempfile::tempdir().unwrap();
+        let said = HiddenFile::begin_among_others(&dir.path().join("missing/t")).unwrap_err();
+        assert_eq!(said.to_string(), "No such file or directory (os error 2)");
+        assert_eq!(said.raw_os_error(), Some(2));
     }
 
     #[test]

@@ -3,9 +3,8 @@
 //! Knows that what is written reaches the disk within a second, by a thread of its own, and that after a failed write or sync
 //! nothing more is written. Does not know what is read back.
 
-use super::frame;
 use super::progress::{self, Counts};
-use super::{Binding, EXTENSION, Ending, FOLDER, JournalError, RecordKey, Session, fault, kind};
+use super::{Binding, EXTENSION, Ending, FOLDER, JournalError, RecordKey, Session, fault, frame, kind};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, Write};

@@ -156,3 +156,103 @@ fn read_group(file: &mut File, group: &RowGroupMetadata, fields: &[&Field], rows
     });
     Frame::new(columns.collect::<io::Result<_>>()?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polars_arrow::array::{BooleanArray, PrimitiveArray, Utf8ViewArray};
+
+    const ROWS: usize = 15;
+
+    /// Fifteen rows of each type that tables have, some cells missing.
+    fn whole() -> Frame {
+        let there = |row: usize| row % 4 != 1;
+        let numbers = (0..ROWS).map(|row| there(row).then_some(0.1 * row as f64));
+        let counts = (0..ROWS).map(|row| there(row + 1).then_some(row as i64));
+        let words: Vec<String> = (0..ROWS).map(|row| format!("word {}", row % 3)).collect();
+        let words = words
+            .iter()
+            .enumerate()
+            .map(|(row, word)| there(row + 2).then_some(word.as_str()));
+        let flags = (0..ROWS).map(|row| there(row + 3).then_some(row % 2 == 0));
+        Frame::new(vec![
+            (
+                "number".to_owned(),
+                PrimitiveArray::<f64>::from(numbers.collect::<Vec<_>>()).boxed(),
+            ),
+            (
+                "count".to_owned(),
+                PrimitiveArray::<i64>::from(counts.collect::<Vec<_>>()).boxed(),
+            ),
+            (
+                "word".to_owned(),
+                Utf8ViewArray::from_slice(words.collect::<Vec<_>>()).boxed(),
+            ),
+            ("flag".to_owned(), BooleanArray::from(flags.collect::<Vec<_>>()).boxed()),
+        ])
+        .unwrap()
+    }
+
+    /// The frame in three row groups of five.
+    fn written() -> File {
+        let (mut file, frame) = (tempfile::tempfile().unwrap(), whole());
+        let mut writer = FrameWriter::begin(&mut file, &frame).unwrap();
+        for start in [0, 5, 10] {
+            writer.append(&frame, &(start..start + 5)).unwrap();
+        }
+        writer.end(&[("key".to_owned(), "value".to_owned())]).unwrap();
+        file
+    }
+
+    #[test]
+    fn any_rows_of_any_columns_are_read_across_row_groups() {
+        let (mut file, whole) = (written(), whole());
+        for (start, end) in (0..=ROWS).flat_map(|start| (start..=ROWS + 2).map(move |end| (start, end))) {
+            for columns in [None, Some(&["flag", "missing", "number"][..])] {
+                let frames = read(&mut file, columns, &(start..end)).unwrap();
+                let expected = whole.part(&(start..end.min(ROWS)));
+                let names: Vec<&str> =
+                    columns.map_or(vec!["number", "count", "word", "flag"], |_| vec!["flag", "number"]);
+                let mut from = 0;
+                for frame in &frames {
+                    assert_eq!(frame.columns().map(|(name, _)| name).collect::<Vec<_>>(), names);
+                    for (name, found) in frame.columns() {
+                        let at = whole.columns().position(|(known, _)| known == name).unwrap();
+                        assert_eq!(
+                            found,
+                            &*expected[at].sliced(from, frame.rows()),
+                            "{name} in {start}..{end}"
+                        );
+                    }
+                    from += frame.rows();
+                }
+                assert_eq!(from, end.min(ROWS) - start, "{start}..{end}");
+            }
+        }
+    }
+
+    #[test]
+    fn columns_of_different_lengths_are_no_frame() {
+        let column = |length: usize| PrimitiveArray::<f64>::from(vec![Some(0.0); length]).boxed();
+        assert!(Frame::new(vec![("a".to_owned(), column(1)), ("b".to_owned(), column(2))]).is_err());
+    }
+
+    /// The system's own answer, through the library's words.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_told_as_the_system_tells_it() {
+        use pontoon_journal::fault::Watched;
+        let failure = Arc::default();
+        let full = Watched {
+            place: "tables.write",
+            file: File::options().write(true).open("/dev/full").unwrap(),
+            failure: Arc::clone(&failure),
+        };
+        let frame = whole();
+        let mut writer = FrameWriter::begin(full, &frame).unwrap();
+        assert!(writer.append(&frame, &(0..ROWS)).is_err());
+        let (kind, text) = failure.get().unwrap();
+        assert_eq!(*kind, io::ErrorKind::StorageFull);
+        assert!(text.starts_with("No space left on device"), "{text}");
+    }
+}

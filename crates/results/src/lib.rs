@@ -4,19 +4,21 @@
 //! |---|---|
 //! | `record` | all rows of one job |
 //! | `preparation`, `verification`, `outcome` | what a run leaves behind beside its records |
-//! | `columns`, `frames` | which columns each table has |
+//! | `layout` | which columns each table has |
+//! | `columns` | the few types of columns, filled one after the other |
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
 //! | `table`, `results` | tables to read |
 //!
-//! Knows columns, provenance, and how a folder proves to be whole. Does not know how a record came about. The only room that
+//! Knows columns, provenance, and how a folder proves to be whole. Does not know how a record came about. The only crate that
 //! knows the table library. Tables hold nothing that changes from run to run; the manifest does.
 
 mod columns;
 mod files;
 mod frame;
-mod frames;
+mod layout;
+
 mod manifest;
 mod moment;
 mod outcome;
@@ -30,7 +32,7 @@ mod verification;
 mod writer;
 
 pub use files::{OwnFiles, PAGE};
-pub use frames::axis_names;
+pub use layout::axis_names;
 pub use manifest::{Manifest, SessionNote, check_own};
 pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome, words_of_reason};
@@ -38,7 +40,7 @@ pub use parquet::Provenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
 pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PositionRow, Summary};
 pub use results::{Results, ResultsError};
-pub use summary::{Cell, SummaryTable};
+pub use summary::{Cell, PEAKS, SummaryTable};
 pub use table::{Kind, Table, TableName};
 pub use verification::Verification;
 pub use writer::Writer;

@@ -5,12 +5,11 @@
 
 use super::files::MANIFEST;
 use super::frame::read;
-use super::frames::{FIRST_OUTCOMES, Layout};
+use super::layout::{FIRST_OUTCOMES, Layout};
 use super::table::{Table, TableName};
 use crate::JobRecord;
 use pontoon_journal::place::hash_of;
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::text_and_hash;
+use pontoon_plan::input::{Refusal, text_and_hash};
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
 use serde_json::Value;

@@ -3,7 +3,7 @@
 //! Knows the order of rows and how a cell is written. Keeps of a job what its row holds beside the axes, which the job has.
 //! Does not know terminals.
 
-use super::frames::axis_names;
+use super::layout::axis_names;
 use crate::JobRecord;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
@@ -34,7 +34,8 @@ enum Outcomes {
     Modes(Vec<(usize, usize, f64, String)>),
 }
 
-const PEAKS: [&str; 4] = [
+/// The peaks of a summary of crossings or static cases, in the order of its columns.
+pub const PEAKS: [&str; 4] = [
     "peak_deflection_m",
     "peak_uplift_m",
     "peak_compression_n",

@@ -3,7 +3,7 @@
 //! Knows in which order files come into place. Keeps no record: what is kept of a job is its line of the summary.
 
 use super::files::{MANIFEST, SUMMARY};
-use super::frames::Layout;
+use super::layout::Layout;
 use super::manifest::{self, Manifest};
 use super::parquet::{Provenance, TableFile, metadata};
 use super::summary::{Lines, SummaryTable};

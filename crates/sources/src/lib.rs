@@ -22,7 +22,10 @@ pub const RECORDS: &[&str] = &[
     "study/src",
 ];
 
-/// Libraries that numbers hang on; those that they are built on count too.
+/// Crates whose libraries numbers hang on.
+const OWN: &[&str] = &["pontoon-core", "pontoon-plan"];
+
+/// Their libraries that numbers hang on; those that they are built on count too.
 const LIBRARIES: &[&str] = &["faer", "nalgebra", "pulp", "rand_pcg", "sobol", "sobol_burley"];
 
 /// The key of all sources and manifests below some paths of the folder `crates`, and of the libraries' versions in the lock
@@ -99,9 +102,11 @@ fn locked(lock: &str) -> BTreeSet<(String, String)> {
             .push((field("version = "), below));
     }
     let mut seen = BTreeSet::new();
-    let mut open: Vec<String> = LIBRARIES.iter().map(|name| (*name).to_owned()).collect();
+    let own = OWN.iter().filter_map(|name| versions.get(*name)).flatten();
+    let mut open: Vec<String> = own.flat_map(|(_, below)| below).cloned().collect();
+    // `name`, or `name version` where there are several
+    open.retain(|asked| LIBRARIES.contains(&asked.split(' ').next().unwrap_or_default()));
     while let Some(asked) = open.pop() {
-        // `name`, or `name version` where there are several
         let (name, version) = asked.split_once(' ').unwrap_or((&asked, ""));
         for (found, below) in versions.get(name).into_iter().flatten() {
             let meant = version.is_empty() || version.split(' ').next() == Some(found);

@@ -175,6 +175,10 @@ fn a_journal_of_another_form_or_program_is_refused_by_name() {
     finish(&stage, "r");
     rebound(&stage, "r", "\"numerics\":\"", "\"numerics\":\"0.0.9 ");
     is_refused(&run(&stage, "r", &[]), &["the program's numerics: 0.0.9 ", "--fresh"]);
+    // of a form that this program cannot read, too
+    rebound(&stage, "r", "\"form\":2", "\"form\":1");
+    let output = run(&stage, "r", &["--fresh"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
 #[test]

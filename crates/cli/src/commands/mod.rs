@@ -1,4 +1,4 @@
-//! A file a command: what it asks of the study's rooms and how it answers.
+//! A file a command: what it asks of the other crates and how it answers.
 
 pub(crate) mod calibrate;
 pub(crate) mod compare;

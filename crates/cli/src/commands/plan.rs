@@ -42,7 +42,11 @@ fn text(study: &Study, forecast: &Forecast, out: &str, look: Look) -> String {
     let line = |name: &str, told: &str| {
         // beside each other where there is room
         let indent = if 2 * names > width { 4 } else { names };
-        words::wrapped(&words::printable(&format!("{name:<names$}{told}")), width, indent)
+        words::wrapped(
+            &words::printable(&(words::padded(name, names, false) + told)),
+            width,
+            indent,
+        )
     };
     let merged = match plan.points - plan.jobs {
         0 => String::new(),

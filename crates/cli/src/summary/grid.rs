@@ -3,7 +3,7 @@
 //! Knows widths, alignment and what stands in for names that are too long. Does not know what the values are.
 
 use crate::terminal::{HEAD, Look};
-use crate::words::listed;
+use crate::words::{listed, padded};
 use anstyle::Style;
 use std::ops::Range;
 use unicode_width::UnicodeWidthStr;
@@ -52,12 +52,12 @@ fn aligned(texts: &[String]) -> Vec<String> {
     }
     let behind = |text: &str| text.find('.').map_or(0, |point| text.len() - point);
     let most = texts.iter().map(|text| behind(text)).max().unwrap_or(0);
-    let padded: Vec<String> = texts
+    let beside: Vec<String> = texts
         .iter()
         .map(|text| text.clone() + &" ".repeat(most - behind(text)))
         .collect();
-    let width = longest(padded.iter());
-    padded.iter().map(|text| format!("{text:>width$}")).collect()
+    let width = longest(beside.iter());
+    beside.iter().map(|text| padded(text, width, true)).collect()
 }
 
 fn longest<'a>(texts: impl Iterator<Item = &'a String>) -> usize {
@@ -180,11 +180,7 @@ impl Grid {
                     .iter()
                     .all(|row| row.trim() == "-" || row.trim().parse::<f64>().is_ok());
                 let written = line(names);
-                if numbers {
-                    format!("{written:>width$}")
-                } else {
-                    format!("{written:<width$}")
-                }
+                padded(&written, width, numbers)
             };
             names.iter().map(column).collect::<Vec<_>>().join(&" ".repeat(GAP)) + &" ".repeat(apart)
         };
@@ -198,7 +194,7 @@ impl Grid {
             let mut head = named(&|names| at(&names.head, line));
             for column in columns.clone() {
                 let value = self.value(column) + self.gap;
-                head += &format!("{:>value$}", at(&self.heads[column], line));
+                head += &padded(&at(&self.heads[column], line), value, true);
             }
             if !head.trim().is_empty() {
                 *text += &look.painted(HEAD, head.trim_end());

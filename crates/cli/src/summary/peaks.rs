@@ -5,10 +5,11 @@
 
 use super::grid::{Cell, Grid, Names};
 use super::label::{axis, heads, label, peak, told};
-use super::survey::{PEAKS, Row, Survey, hash};
+use super::survey::{Row, Survey, hash};
 use crate::terminal::{BAD, FAINT, Look, NOTABLE};
 use crate::words::{listed, wrapped};
 use anstyle::Style;
+use pontoon_results::PEAKS;
 use serde_json::Value;
 use std::collections::HashMap;
 

@@ -2,20 +2,13 @@
 //!
 //! Knows rows as they come, a million of them at no more than a few bytes each. Does not know how any of it is written.
 
+use pontoon_results::PEAKS;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A row of a summary.
 pub(super) type Row = Vec<Value>;
-
-/// The peaks of a summary, in the order in which they are told.
-pub(super) const PEAKS: [&str; 4] = [
-    "peak_deflection_m",
-    "peak_uplift_m",
-    "peak_compression_n",
-    "peak_tension_n",
-];
 
 /// Axes that one may look along, the best first.
 const ALONG: [&str; 3] = ["speed_m_s", "load_position", "load_x_m"];

@@ -1,7 +1,8 @@
 //! The bridge operator: what never changes between the crossings of one bridge, taken out of the loop.
 //!
 //! Knows the modes of the connector-free bridge, the flexibility that they leave out, and how many crossings step through
-//! them side by side, one a SIMD lane. Does not know when a crossing begins or ends, nor what it reports.
+//! them side by side, one a SIMD lane. Does not know when a crossing begins or ends; what is kept of
+//! one is for `watch`.
 //!
 //! `u = Phi q + K^-1 (what the modes leave out)`: the modes obey `q'' + (a omega^2 + b) q' + omega^2 q = Phi^T f`, the
 //! rest answers without mass, `K (u + a u') = f`, which leaves residual flexibilities R between connectors B, deck L and

@@ -5,9 +5,7 @@
 use super::parameters::Parameters;
 use super::quantities::QUANTITIES;
 use pontoon_core::bridge::BridgeDesign;
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::to_value;
-use pontoon_plan::input::{DocumentPath, typed};
+use pontoon_plan::input::{DocumentPath, Refusal, to_value, typed};
 use pontoon_plan::study_file::BridgeFile;
 use serde_json::{Value, json};
 

@@ -6,8 +6,7 @@ use super::candidate::Candidate;
 use super::fit::{Bound, Fit, Purpose};
 use super::model::Model;
 use pontoon_core::bridge::{BridgeDesign, Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
-use pontoon_plan::input::canonical_text;
-use pontoon_plan::input::to_value;
+use pontoon_plan::input::{canonical_text, to_value};
 use serde::Serialize;
 use serde_json::Value;
 

@@ -4,9 +4,7 @@
 
 use super::fit::{Parameter, Settings};
 use super::quantities::{FOLLOWS, QUANTITIES, quantity};
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::to_value;
-use pontoon_plan::input::{DocumentPath, leaves, read, typed};
+use pontoon_plan::input::{DocumentPath, Refusal, leaves, read, to_value, typed};
 use pontoon_plan::study_file::BridgeFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

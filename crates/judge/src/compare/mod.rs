@@ -18,8 +18,7 @@ pub use old::against_old;
 pub use tolerances::Tolerances;
 
 use crate::reference::Reference;
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::canonical_text;
+use pontoon_plan::input::{Refusal, canonical_text};
 use pontoon_plan::study_file::Study;
 use pontoon_results::Results;
 

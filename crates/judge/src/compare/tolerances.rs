@@ -3,8 +3,7 @@
 //! Knows the file of tolerances and what holds without one. Does not know results.
 
 use crate::reference::Tolerance;
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::{read, typed};
+use pontoon_plan::input::{Refusal, read, typed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

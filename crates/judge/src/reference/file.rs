@@ -6,8 +6,7 @@
 use super::spec::{
     BoundCheck, CheckKind, CheckSpec, CurveCheck, Quantity, ReferenceSpec, Role, Tolerance, Trend, TrendCheck,
 };
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::{read, typed};
+use pontoon_plan::input::{Refusal, read, typed};
 use pontoon_plan::study_file::Study;
 use std::path::{Path, PathBuf};
 

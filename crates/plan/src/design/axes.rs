@@ -2,8 +2,7 @@
 //!
 //! Knows the names that an axis may have and when two axes contradict each other. Does not know values or points.
 
-use crate::input::DocumentPath;
-use crate::input::Refusal;
+use crate::input::{DocumentPath, Refusal};
 use std::path::Path;
 
 /// Axes that have a name of their own; every other is named by its path.

@@ -2,8 +2,7 @@
 //!
 //! Knows the forms and that ranges hold both ends exactly. Does not know what an axis may be called.
 
-use crate::input::Refusal;
-use crate::input::canonical;
+use crate::input::{Refusal, canonical};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::path::Path;

@@ -3,9 +3,7 @@
 //! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
 
 use crate::design::{AxisName, Point};
-use crate::input::Refusal;
-use crate::input::to_value;
-use crate::input::{canonical_text, typed};
+use crate::input::{Refusal, canonical_text, to_value, typed};
 use crate::study_file::{AnalysisSpec, Study, filled_vehicle};
 use pontoon_core::bridge::{BridgeDesign, Supports};
 use pontoon_core::input::InvalidInput;

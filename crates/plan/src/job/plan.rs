@@ -1,6 +1,7 @@
 //! What a study would run: jobs, distinct bridges, steps.
 //!
-//! Knows what kinds of work there are. Does not know how long a machine takes for them.
+//! Knows what kinds of work there are. Knows roughly what a step costs, so that shards take equally long.
+//! Does not know this machine.
 
 use super::{Job, Jobs, Task};
 use crate::input::Refusal;

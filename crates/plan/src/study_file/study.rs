@@ -4,8 +4,7 @@
 
 use super::analysis::AnalysisSpec;
 use crate::design::{Block, Design, SHORT_NAMES};
-use crate::input::Refusal;
-use crate::input::{leaves, read, text_and_hash, to_value, typed};
+use crate::input::{Refusal, leaves, read, text_and_hash, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::Record;
 use pontoon_core::vehicle::VehicleDesign;

@@ -1,4 +1,7 @@
 //! Crossing jobs to their records: by the operator side by side, or by the reference solver one by one.
+//!
+//! Knows which number of a response fills which field of a record, and when a time step has been halved enough. Does not know
+//! columns, or how a crossing is stepped.
 
 use super::bench::Bench;
 use super::retry::half_step_may_help;

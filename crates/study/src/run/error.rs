@@ -1,4 +1,6 @@
 //! Why a run did not come to its end.
+//!
+//! Knows who ended it. Does not know exit statuses.
 
 use super::pool::PoolError;
 use super::progress::Tally;

@@ -4,8 +4,7 @@
 
 use pontoon_journal::{Book, JournalError, NewRecord, Place, RecordKey, Writer};
 use pontoon_plan::job::Job;
-use pontoon_results::JobRecord;
-use pontoon_results::Preparation;
+use pontoon_results::{JobRecord, Preparation};
 
 /// The journal as a run of some jobs sees it.
 #[derive(Debug)]

@@ -1,7 +1,17 @@
 //! Jobs to records: what jobs share is prepared once, jobs run in parallel, a failed job is a record.
 //!
-//! Knows threads and the clock. Does not know files: a record holds all rows of its job, whatever becomes of it, and is
-//! handed on as soon as its batch is solved.
+//! | module | charter |
+//! |---|---|
+//! | `bench`, `cache` | what jobs share, prepared once; operators on disk |
+//! | `cut`, `batch`, `pool` | which jobs are solved together, and on which threads |
+//! | `crossing`, `statics`, `modes`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
+//! | `verify`, `canary`, `guard` | the reference solver as judge; a crossing whose answer is known; panics made reasons |
+//! | `ledger` | records in the journal, and back |
+//! | `watch`, `progress`, `stop`, `probe` | who is told, who may stop it, how long it will take |
+//! | `error` | why a run did not come to its end |
+//!
+//! Knows threads and the clock. Does not know files of results: a record holds all rows of its job, whatever becomes of it,
+//! and is handed on as soon as its batch is solved.
 
 mod batch;
 mod bench;

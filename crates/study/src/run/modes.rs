@@ -1,4 +1,6 @@
 //! A job that asks for modes to its record.
+//!
+//! Knows which mode fills which row. Does not know columns, or how modes are found.
 
 use super::bench::Bench;
 use crate::modes::rows;

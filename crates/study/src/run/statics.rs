@@ -1,4 +1,6 @@
 //! A static job to its record.
+//!
+//! Knows which number of a response fills which field of a record. Does not know columns, or how a case is solved.
 
 use super::bench::{Bench, static_case};
 use pontoon_core::response::StaticResponse;

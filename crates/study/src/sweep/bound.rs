@@ -5,8 +5,7 @@
 use super::SweepSetting;
 use crate::run::instruction_path;
 use pontoon_journal::{Binding, FORM, Session};
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::to_value;
+use pontoon_plan::input::{Refusal, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
 use pontoon_results::Moment;

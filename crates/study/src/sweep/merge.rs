@@ -16,8 +16,7 @@ use pontoon_journal::{Book, EXTENSION, FOLDER, JournalError, Lock, Writer as Jou
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
-use pontoon_results::JobRecord;
-use pontoon_results::{Manifest, Moment, Provenance, Writer};
+use pontoon_results::{JobRecord, Manifest, Moment, Provenance, Writer};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;

@@ -9,8 +9,7 @@ use pontoon_journal::place::Folder;
 use pontoon_journal::{Binding, Book, Damage, Ending, FOLDER, Lock, Session};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::study_file::Study;
-use pontoon_results::Preparation;
-use pontoon_results::{OwnFiles, SessionNote};
+use pontoon_results::{OwnFiles, Preparation, SessionNote};
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -10,7 +10,7 @@
 //! | `vtk` | the words of the format; here, beside the other files of results, for the program itself writes words to people alone |
 //! | `whole` | a folder that is there whole or not at all |
 //!
-//! Knows what is written and in which units. Does not know mechanics, and prints nothing.
+//! Knows what is written and in which units. Does not know how a solver works, and prints nothing.
 //!
 //! A crossing is solved again by the reference solver on the job's own model, whatever solver its study ran: it has all dofs
 //! of that model at every step, and the super-element's own recovery leads from them to every node without a further

@@ -6,8 +6,7 @@
 use super::ExportError;
 use pontoon_journal::fault::{self, Watched};
 use pontoon_journal::place::FolderError;
-use pontoon_plan::input::Refusal;
-use pontoon_plan::input::pretty;
+use pontoon_plan::input::{Refusal, pretty};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs::{self, File};

@@ -4,8 +4,7 @@
 
 use super::cells::Measure;
 use crate::labels;
-use pontoon_results::words_of_reason;
-use pontoon_results::{Results, Table};
+use pontoon_results::{Results, Table, words_of_reason};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;

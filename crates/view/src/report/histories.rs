@@ -1,6 +1,6 @@
 //! Recorded histories, thinned for a page.
 //!
-//! Knows how a curve keeps its peaks with fewer points. Does not know which jobs matter.
+//! Knows how many histories fit a page with fewer points. Does not know which jobs matter.
 
 use super::packed::Packed;
 use crate::thinning::thinned;

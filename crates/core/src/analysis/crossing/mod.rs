@@ -1,7 +1,7 @@
-//! Crossings by direct integration: the reference solver.
+//! Crossings, by two solvers: `step`, `under_way` and `observe` integrate directly (the reference solver), `operated` goes
+//! through the bridge operator. Both answer a [`Crossing`] with a [`CrossingResponse`].
 //!
-//! Knows one vehicle on one bridge at one time step, on any model. Does not know studies or threads. What a faster solver
-//! must answer is the same [`Crossing`] with the same [`CrossingResponse`].
+//! Knows one vehicle on one bridge at one time step, on any model. Does not know studies or threads.
 
 mod observe;
 mod operated;

@@ -47,7 +47,7 @@ pub(super) fn line_parameters() -> [Parameter; 2] {
     ]
 }
 
-/// Closed form: slope = sxy / sxx, covariance = s^2 [`[1/n + mean^2 / sxx, -mean / sxx]`, [.., 1 / sxx]].
+/// Closed form: slope = sxy / sxx, covariance = `s^2 [[1/n + mean^2 / sxx, -mean / sxx], [.., 1 / sxx]]`.
 #[test]
 fn line_has_its_closed_form_solution_and_covariance() {
     let fit = fit(&line_parameters(), &each(line), &Settings::default()).unwrap();
