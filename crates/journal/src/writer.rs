@@ -324,3 +324,63 @@ fn json(value: &impl Serialize, what: &str) -> Result<Vec<u8>, JournalError> {
         cause: cause.to_string(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Book, FORM};
+    use serde::Serializer;
+    use serde::ser::Error as _;
+    use serde_json::Value;
+
+    /// What nothing can be made of.
+    struct Never;
+
+    impl Serialize for Never {
+        fn serialize<S: Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
+            Err(S::Error::custom("never"))
+        }
+    }
+
+    fn begun(folder: &Path) -> Writer {
+        let binding = Binding {
+            form: FORM,
+            name: "s".to_owned(),
+            numerics: String::new(),
+            instruction_path: String::new(),
+            shard: None,
+            bridge: Value::Null,
+            vehicle: Value::Null,
+            analysis: Value::Null,
+            record: Value::Null,
+        };
+        let session = Session {
+            started: String::new(),
+            host: String::new(),
+            process: 1,
+            version: String::new(),
+            commit: None,
+            threads: 1,
+            jobs: 1,
+            known: 0,
+            apart: false,
+            study: Value::Null,
+            study_blake3: String::new(),
+            bridge: Value::Null,
+        };
+        Writer::begin(folder, &binding, &session, 0).unwrap()
+    }
+
+    #[test]
+    fn what_cannot_be_made_into_bytes_is_an_error_and_leaves_nothing() {
+        let dir = tempfile::tempdir().unwrap();
+        let writer = begun(dir.path());
+        let refused = writer.prepared(&Never).unwrap_err();
+        assert!(matches!(refused, JournalError::NotEncoded { .. }), "{refused}");
+        writer.prepared(&1).unwrap();
+        writer.sync().unwrap();
+        let book = Book::read(dir.path()).unwrap();
+        let prepared: Vec<&Value> = book.files.iter().flat_map(|file| &file.prepared).collect();
+        assert_eq!(prepared, [&Value::from(1)]);
+    }
+}
