@@ -1,7 +1,7 @@
 //! Crossings on the default bridge: through the operator, alone and with every lane full, and by the reference solver.
 //!
 //! Knows the paper's crossing at 15 m/s; the counter's items are its time steps, so that items a second are steps a second.
-//! `cargo bench --profile quick -p pontoon-tests`; no test runs it.
+//! `cargo bench --profile quick --workspace --bench crossings`; no test runs it.
 
 #![allow(missing_docs, clippy::expect_used)]
 

@@ -1,6 +1,6 @@
 //! What is done once for a bridge: finite elements, condensation, assembly, operator, and its full modes.
 //!
-//! Knows the default bridge. Does not know crossings. `cargo bench --profile quick -p pontoon-tests`; no test runs it.
+//! Knows the default bridge. Does not know crossings. `cargo bench --profile quick --workspace --bench offline`; no test runs it.
 
 #![allow(missing_docs, clippy::expect_used)]
 

@@ -1,6 +1,6 @@
 //! A thousand crossings of a grid gap x gap x speed x load through the operator, on one thread and on two.
 //!
-//! Knows that threads share nothing but the solver. `cargo bench --profile quick -p pontoon-tests`; no test runs it.
+//! Knows that threads share nothing but the solver. `cargo bench --profile quick --workspace --bench sweep`; no test runs it.
 
 #![allow(missing_docs)]
 
