@@ -2,7 +2,9 @@
 //!
 //! Knows matrices and a list of masters. Does not know what the masters are for.
 
-use crate::fem::{Factor, FemError, SymmetricMatrix, allowed, diagonal, hold, lowest_modes, pattern, residual, sizes};
+use crate::fem::{
+    EigenPairs, Factor, FemError, SymmetricMatrix, allowed, diagonal, hold, lowest_modes, pattern, residual, sizes,
+};
 use faer::{Accum, ColRef, Mat, MatRef, Par, linalg::matmul::matmul};
 
 /// `k' = T^T k T`, `m' = T^T m T` with `T = [I 0; -k22^-1 k21  Phi]` (masters 1, slaves 2) [36-44].
@@ -35,53 +37,23 @@ impl SuperElement {
         masters: &[usize],
         modes: usize,
     ) -> Result<Self, FemError> {
-        let n = k.order();
-        let mut master = vec![None; n];
-        for (place, &dof) in masters.iter().enumerate() {
-            master[dof] = Some(place);
-        }
-        let slaves: Vec<usize> = (0..n).filter(|&i| master[i].is_none()).collect();
-        let mut slave = vec![None; n];
-        for (place, &dof) in slaves.iter().enumerate() {
-            slave[dof] = Some(place);
-        }
-        let (n1, n2) = (masters.len(), slaves.len());
-        let modes = modes.min(n2);
-        let k22 = restrict(k, &slave, n2)?;
-        let mut x = Mat::<f64>::zeros(n2, n1);
-        for (j, &dof) in masters.iter().enumerate() {
-            for (i, value) in k.column(dof) {
-                if let Some(i) = slave[i] {
-                    x[(i, j)] = -value;
-                }
-            }
-        }
-        Factor::new("stiffness of a module's slaves", &k22)?.solve_columns(x.as_mut());
-        let mut transformation = Mat::<f64>::zeros(n, n1 + modes);
-        for (j, &dof) in masters.iter().enumerate() {
-            transformation[(dof, j)] = 1.0;
-        }
-        for (i, &dof) in slaves.iter().enumerate() {
-            for j in 0..n1 {
-                transformation[(dof, j)] = x[(i, j)];
-            }
-        }
-        let mut lambda = Vec::new();
-        if modes > 0 {
-            let m22 = restrict(m, &slave, n2)?;
-            let fixed = lowest_modes(&k22, &m22, modes, SHIFT)?;
-            for (i, &dof) in slaves.iter().enumerate() {
-                for j in 0..modes {
-                    transformation[(dof, n1 + j)] = fixed.shapes[(i, j)];
-                }
-            }
-            lambda = fixed.lambda;
-        }
+        let parts = Parts::new(k.order(), masters);
+        let n1 = masters.len();
+        let modes = modes.min(parts.slaves.len());
+        let k22 = parts.among_slaves(k)?;
+        let following = parts.following(k, &k22)?;
+        let fixed = if modes > 0 {
+            Some(lowest_modes(&k22, &parts.among_slaves(m)?, modes, SHIFT)?)
+        } else {
+            None
+        };
+        let transformation = parts.transformation(following.as_ref(), fixed.as_ref(), modes);
         // k' has no coupling between masters and modes, and the modes' own block is diagonal: written, not computed.
         let static_part = transformation.as_ref().subcols(0, n1);
         let k11 = congruence(k, static_part);
         let mut entries = dense_entries(k11.as_ref());
-        entries.extend(lambda.iter().enumerate().map(|(j, &l)| (n1 + j, n1 + j, l)));
+        let lambda = fixed.iter().flat_map(|pairs| &pairs.lambda);
+        entries.extend(lambda.enumerate().map(|(j, &l)| (n1 + j, n1 + j, l)));
         let condensed_k = SymmetricMatrix::from_entries(n1 + modes, &entries)?;
         let condensed_m = congruence(m, transformation.as_ref());
         let condensed_m = SymmetricMatrix::from_entries(n1 + modes, &dense_entries(condensed_m.as_ref()))?;
@@ -132,6 +104,71 @@ impl SuperElement {
         let error = residual(&self.m, &own, &z, &felt);
         let mass = hold("condensed mass", n, error, allowed(n))?;
         Ok(stiffness.max(mass))
+    }
+}
+
+/// The dofs of a module in two parts: masters, which are kept, and slaves, which follow them.
+struct Parts<'a> {
+    masters: &'a [usize],
+    slaves: Vec<usize>,
+    /// For each dof its place among the slaves, where it is one.
+    slave: Vec<Option<usize>>,
+}
+
+impl<'a> Parts<'a> {
+    /// Parts `n` dofs into the masters and the rest.
+    fn new(n: usize, masters: &'a [usize]) -> Self {
+        let mut is_master = vec![false; n];
+        for &dof in masters {
+            is_master[dof] = true;
+        }
+        let slaves: Vec<usize> = (0..n).filter(|&i| !is_master[i]).collect();
+        let mut slave = vec![None; n];
+        for (place, &dof) in slaves.iter().enumerate() {
+            slave[dof] = Some(place);
+        }
+        Self { masters, slaves, slave }
+    }
+
+    /// Gives the part of a matrix among the slaves.
+    fn among_slaves(&self, a: &SymmetricMatrix) -> Result<SymmetricMatrix, FemError> {
+        restrict(a, &self.slave, self.slaves.len())
+    }
+
+    /// Solves for the slaves' motion under a unit motion of each master, `-k22^-1 k21`: a row a slave, a column a master.
+    fn following(&self, k: &SymmetricMatrix, k22: &SymmetricMatrix) -> Result<Mat<f64>, FemError> {
+        let mut x = Mat::<f64>::zeros(self.slaves.len(), self.masters.len());
+        for (j, &dof) in self.masters.iter().enumerate() {
+            for (i, value) in k.column(dof) {
+                if let Some(i) = self.slave[i] {
+                    x[(i, j)] = -value;
+                }
+            }
+        }
+        Factor::new("stiffness of a module's slaves", k22)?.solve_columns(x.as_mut());
+        Ok(x)
+    }
+
+    /// Writes T from the slaves' motion under the masters and the first `modes` shapes of the fixed-master modes.
+    fn transformation(&self, following: MatRef<'_, f64>, fixed: Option<&EigenPairs>, modes: usize) -> Mat<f64> {
+        let n1 = self.masters.len();
+        let mut transformation = Mat::<f64>::zeros(self.slave.len(), n1 + modes);
+        for (j, &dof) in self.masters.iter().enumerate() {
+            transformation[(dof, j)] = 1.0;
+        }
+        for (i, &dof) in self.slaves.iter().enumerate() {
+            for j in 0..n1 {
+                transformation[(dof, j)] = following[(i, j)];
+            }
+        }
+        if let Some(fixed) = fixed {
+            for (i, &dof) in self.slaves.iter().enumerate() {
+                for j in 0..modes {
+                    transformation[(dof, n1 + j)] = fixed.shapes[(i, j)];
+                }
+            }
+        }
+        transformation
     }
 }
 

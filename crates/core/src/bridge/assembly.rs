@@ -8,6 +8,7 @@ use super::product::ModuleProduct;
 use super::row::{HeldDof, Row};
 use super::{BridgeDesign, BridgeError, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
+use crate::module::Grid;
 
 /// One connector: where it is and the row of B that gives its elongation.
 #[derive(Debug, Clone)]
@@ -74,125 +75,37 @@ impl Bridge {
     pub fn new(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Result<Self, BridgeError> {
         check_fit(design, &module.grid)?;
         let row = Row::number(design, module, ends);
-        let k = SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.k))?;
-        let m = SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.m))?;
-        let grid = &module.grid;
-        let (nx, ny, l) = (grid.x.len(), grid.y.len(), design.module.length_m);
-        let of = |j: usize, node: NodeId, direction: usize| row.global(j, &module.row(node, direction));
-        let centre = |j: usize, ix: usize| {
-            let rows: Vec<(f64, SparseRow)> = grid
-                .centre()
-                .into_iter()
-                .map(|(weight, iy)| (weight, of(j, grid.bottom(ix, iy), Z)))
-                .collect();
-            SparseRow::combine(&rows.iter().map(|(w, row)| (*w, row)).collect::<Vec<_>>())
+        let places = Places {
+            design,
+            module,
+            row: &row,
         };
-        let ends_of = |j: usize| [(j, Side::Left), (j, Side::Right)];
-        let all_ends = || {
-            (0..design.modules)
-                .flat_map(ends_of)
-                .map(|(j, side)| (j, module.end_line(side)))
-        };
-        let hinge_lines_y: Vec<usize> = design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y)).collect();
-
-        let mut connectors = Vec::new();
-        for j in 1..design.modules {
-            for &y_m in &design.connectors.y_m {
-                if let Some(iy) = grid.y_line(y_m) {
-                    let (left, right) = (of(j - 1, grid.deck(nx - 1, iy), X), of(j, grid.deck(0, iy), X));
-                    connectors.push(ConnectorPlace {
-                        joint: j + 1,
-                        y_m,
-                        row: SparseRow::combine(&[(-1.0, &left), (1.0, &right)]),
-                    });
-                }
-            }
-        }
-        let mut positions: Vec<SparseRow> = (0..design.modules).map(|j| centre(j, 0)).collect();
-        positions.push(centre(design.modules - 1, nx - 1));
-        let stations = || (0..design.modules).flat_map(|j| (0..nx).map(move |ix| (j, ix)));
-        let centre_line = stations()
-            .map(|(j, ix)| (j as f64 * l + grid.x[ix], centre(j, ix)))
-            .collect();
-        let edges = stations()
-            .flat_map(|s| [(s, 0), (s, ny - 1)])
-            .map(|((j, ix), iy)| of(j, grid.deck(ix, iy), Z))
-            .collect();
-        let corner = |deck: bool| -> Vec<SparseRow> {
-            all_ends()
-                .flat_map(|end| [(end, 0), (end, ny - 1)])
-                .map(|((j, ix), iy)| of(j, if deck { grid.deck(ix, iy) } else { grid.bottom(ix, iy) }, Z))
-                .collect()
-        };
-        let corners = (0..design.modules)
-            .flat_map(|j| {
-                let around = [(0, 0), (nx - 1, 0), (nx - 1, ny - 1), (0, ny - 1)];
-                let bottom = around.map(|(ix, iy)| grid.bottom(ix, iy));
-                let deck = around.map(|(ix, iy)| grid.deck(ix, iy));
-                bottom.into_iter().chain(deck).map(move |node| (j, node))
-            })
-            .map(|(j, node)| [X, Y, Z].map(|direction| of(j, node, direction)))
-            .collect();
-        let rolls = all_ends()
-            .map(|(j, ix)| {
-                let (right, left) = (of(j, grid.deck(ix, 0), Z), of(j, grid.deck(ix, ny - 1), Z));
-                let per = 1.0 / design.module.breadth_m;
-                SparseRow::combine(&[(-per, &right), (per, &left)])
-            })
-            .collect();
-        let sections = stations()
-            .map(|(j, ix)| {
-                let across = (0..ny).map(|iy| (grid.y[iy], of(j, grid.deck(ix, iy), Z))).collect();
-                (j as f64 * l + grid.x[ix], across)
-            })
-            .collect();
-        let hinge_lines = all_ends()
-            .map(|(j, ix)| {
-                let mean = |direction: usize| {
-                    let rows: Vec<SparseRow> = hinge_lines_y
-                        .iter()
-                        .map(|&iy| of(j, grid.bottom(ix, iy), direction))
-                        .collect();
-                    let share = 1.0 / rows.len() as f64;
-                    SparseRow::combine(&rows.iter().map(|r| (share, r)).collect::<Vec<_>>())
-                };
-                (j as f64 * l + grid.x[ix], mean(X), mean(Y))
-            })
-            .collect();
-        let water = std::array::from_fn(|which| row.water_resultant(module, which, l));
-        let deck_z = (0..design.modules)
-            .map(|j| {
-                let line = |ix: usize| (0..ny).map(|iy| row.direct(j, module, grid.deck(ix, iy), Z)).collect();
-                (0..nx).map(line).collect()
-            })
-            .collect();
-        let held = row.held(module, l);
-        let horizontal_rigid = row.horizontal_rigid(module, l);
+        let l = design.module.length_m;
         Ok(Self {
             design: design.clone(),
             model: module.model,
-            k,
-            m,
+            k: SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.k))?,
+            m: SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.m))?,
             times_k: ModuleProduct::new(&module.k, &row.map, row.dofs),
             times_m: ModuleProduct::new(&module.m, &row.map, row.dofs),
-            connectors,
-            positions,
-            centre_line,
-            edges,
-            deck_corners: corner(true),
-            bottom_corners: corner(false),
-            corners,
-            rolls,
-            sections,
-            hinge_lines,
-            water,
-            held,
-            horizontal_rigid,
+            connectors: places.connectors(),
+            positions: places.positions(),
+            centre_line: places.centre_line(),
+            edges: places.edges(),
+            deck_corners: places.end_corners(Grid::deck),
+            bottom_corners: places.end_corners(Grid::bottom),
+            corners: places.corners(),
+            rolls: places.rolls(),
+            sections: places.sections(),
+            hinge_lines: places.hinge_lines(),
+            water: std::array::from_fn(|which| row.water_resultant(module, which, l)),
+            held: row.held(module, l),
+            horizontal_rigid: row.horizontal_rigid(module, l),
             structural_mass_kg_m: module.structural_mass_kg() / l,
             roll_inertia_kg_m: module.roll_inertia_kg_m2() / l,
-            deck_z,
-            lines_x: grid.x.clone(),
-            lines_y: grid.y.clone(),
+            deck_z: places.deck_z(),
+            lines_x: module.grid.x.clone(),
+            lines_y: module.grid.y.clone(),
         })
     }
 
@@ -209,5 +122,171 @@ impl Bridge {
     /// Degrees of freedom.
     pub fn dofs(&self) -> usize {
         self.k.order()
+    }
+}
+
+/// Where a numbered row of modules is loaded and read: makes the rows of the bridge's dofs for places along it.
+///
+/// A station is a module with one of its lines along, `(j, ix)`.
+struct Places<'a> {
+    design: &'a BridgeDesign,
+    module: &'a PreparedModule,
+    row: &'a Row<'a>,
+}
+
+impl Places<'_> {
+    /// Gives a node's translation in module `j` in terms of the bridge's dofs.
+    fn of(&self, j: usize, node: NodeId, direction: usize) -> SparseRow {
+        self.row.global(j, &self.module.row(node, direction))
+    }
+
+    /// Gives z at the bottom's centre line of a station.
+    fn centre(&self, j: usize, ix: usize) -> SparseRow {
+        let grid = &self.module.grid;
+        let rows: Vec<(f64, SparseRow)> = grid
+            .centre()
+            .into_iter()
+            .map(|(weight, iy)| (weight, self.of(j, grid.bottom(ix, iy), Z)))
+            .collect();
+        SparseRow::combine(&rows.iter().map(|(w, row)| (*w, row)).collect::<Vec<_>>())
+    }
+
+    /// Lists the stations, module after module.
+    fn stations(&self) -> impl Iterator<Item = (usize, usize)> {
+        let nx = self.module.grid.x.len();
+        (0..self.design.modules).flat_map(move |j| (0..nx).map(move |ix| (j, ix)))
+    }
+
+    /// Lists the stations at the modules' ends, each module's left one first.
+    fn ends(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..self.design.modules)
+            .flat_map(|j| [(j, Side::Left), (j, Side::Right)])
+            .map(|(j, side)| (j, self.module.end_line(side)))
+    }
+
+    /// Gives the place of a station along the bridge `[m]`.
+    fn x_m(&self, j: usize, ix: usize) -> f64 {
+        j as f64 * self.design.module.length_m + self.module.grid.x[ix]
+    }
+
+    /// Makes the connectors, joint after joint.
+    fn connectors(&self) -> Vec<ConnectorPlace> {
+        let grid = &self.module.grid;
+        let mut connectors = Vec::new();
+        for j in 1..self.design.modules {
+            for &y_m in &self.design.connectors.y_m {
+                if let Some(iy) = grid.y_line(y_m) {
+                    let left = self.of(j - 1, grid.deck(grid.x.len() - 1, iy), X);
+                    let right = self.of(j, grid.deck(0, iy), X);
+                    connectors.push(ConnectorPlace {
+                        joint: j + 1,
+                        y_m,
+                        row: SparseRow::combine(&[(-1.0, &left), (1.0, &right)]),
+                    });
+                }
+            }
+        }
+        connectors
+    }
+
+    /// Makes the rows of [`Bridge::positions`]: the left end of each module, and the right end of the last.
+    fn positions(&self) -> Vec<SparseRow> {
+        let mut positions: Vec<SparseRow> = (0..self.design.modules).map(|j| self.centre(j, 0)).collect();
+        positions.push(self.centre(self.design.modules - 1, self.module.grid.x.len() - 1));
+        positions
+    }
+
+    /// Makes the rows of [`Bridge::centre_line`], each with its place along `[m]`.
+    fn centre_line(&self) -> Vec<(f64, SparseRow)> {
+        self.stations()
+            .map(|(j, ix)| (self.x_m(j, ix), self.centre(j, ix)))
+            .collect()
+    }
+
+    /// Makes the rows of [`Bridge::edges`], station after station, the edge at the lowest y first.
+    fn edges(&self) -> Vec<SparseRow> {
+        let grid = &self.module.grid;
+        self.stations()
+            .flat_map(|station| [(station, 0), (station, grid.y.len() - 1)])
+            .map(|((j, ix), iy)| self.of(j, grid.deck(ix, iy), Z))
+            .collect()
+    }
+
+    /// Makes the rows of z at the corners of the modules' ends; `node` is [`Grid::deck`] or [`Grid::bottom`].
+    fn end_corners(&self, node: fn(&Grid, usize, usize) -> NodeId) -> Vec<SparseRow> {
+        let grid = &self.module.grid;
+        self.ends()
+            .flat_map(|end| [(end, 0), (end, grid.y.len() - 1)])
+            .map(|((j, ix), iy)| self.of(j, node(grid, ix, iy), Z))
+            .collect()
+    }
+
+    /// Makes the rows of [`Bridge::corners`]: of each module the four at the bottom, then the four at the deck, each time
+    /// around.
+    fn corners(&self) -> Vec<[SparseRow; 3]> {
+        let grid = &self.module.grid;
+        let (nx, ny) = (grid.x.len(), grid.y.len());
+        (0..self.design.modules)
+            .flat_map(|j| {
+                let around = [(0, 0), (nx - 1, 0), (nx - 1, ny - 1), (0, ny - 1)];
+                let bottom = around.map(|(ix, iy)| grid.bottom(ix, iy));
+                let deck = around.map(|(ix, iy)| grid.deck(ix, iy));
+                bottom.into_iter().chain(deck).map(move |node| (j, node))
+            })
+            .map(|(j, node)| [X, Y, Z].map(|direction| self.of(j, node, direction)))
+            .collect()
+    }
+
+    /// Makes the rows of [`Bridge::rolls`]: z of the deck's two edges over the breadth.
+    fn rolls(&self) -> Vec<SparseRow> {
+        let grid = &self.module.grid;
+        self.ends()
+            .map(|(j, ix)| {
+                let right = self.of(j, grid.deck(ix, 0), Z);
+                let left = self.of(j, grid.deck(ix, grid.y.len() - 1), Z);
+                let per = 1.0 / self.design.module.breadth_m;
+                SparseRow::combine(&[(-per, &right), (per, &left)])
+            })
+            .collect()
+    }
+
+    /// Makes the rows of [`Bridge::sections`], each with its place along and across `[m]`.
+    fn sections(&self) -> Vec<(f64, Vec<(f64, SparseRow)>)> {
+        let grid = &self.module.grid;
+        self.stations()
+            .map(|(j, ix)| {
+                let row = |iy: usize| (grid.y[iy], self.of(j, grid.deck(ix, iy), Z));
+                (self.x_m(j, ix), (0..grid.y.len()).map(row).collect())
+            })
+            .collect()
+    }
+
+    /// Makes the rows of [`Bridge::hinge_lines`], each pair with its place along `[m]`.
+    fn hinge_lines(&self) -> Vec<(f64, SparseRow, SparseRow)> {
+        let grid = &self.module.grid;
+        let hinges: Vec<usize> = self.design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y)).collect();
+        self.ends()
+            .map(|(j, ix)| {
+                let mean = |direction: usize| {
+                    let rows: Vec<SparseRow> = hinges
+                        .iter()
+                        .map(|&iy| self.of(j, grid.bottom(ix, iy), direction))
+                        .collect();
+                    let share = 1.0 / rows.len() as f64;
+                    SparseRow::combine(&rows.iter().map(|r| (share, r)).collect::<Vec<_>>())
+                };
+                (self.x_m(j, ix), mean(X), mean(Y))
+            })
+            .collect()
+    }
+
+    /// Lists the dofs of the deck's z, `[module][ix][iy]`.
+    fn deck_z(&self) -> Vec<Vec<Vec<usize>>> {
+        let grid = &self.module.grid;
+        let node = |j: usize, ix: usize, iy: usize| self.row.direct(j, self.module, grid.deck(ix, iy), Z);
+        let line = |j: usize, ix: usize| (0..grid.y.len()).map(|iy| node(j, ix, iy)).collect();
+        (0..self.design.modules)
+            .map(|j| (0..grid.x.len()).map(|ix| line(j, ix)).collect())
+            .collect()
     }
 }

@@ -4,7 +4,7 @@
 
 use super::fit::check_fit;
 use super::{BridgeDesign, BridgeError, Model};
-use crate::fem::{MassKind, Mesh, NodeId, SparseRow, SymmetricMatrix, assemble};
+use crate::fem::{FemError, MassKind, Mesh, NodeId, SparseRow, SymmetricMatrix, assemble};
 use crate::module::{Grid, ModuleMesh, mesh_module};
 use crate::superelement::SuperElement;
 use crate::water::spread;
@@ -76,79 +76,26 @@ impl PreparedModule {
         check_fit(design, &meshed.grid)?;
         let (grid, mesh) = (meshed.grid, meshed.mesh);
         let (structure, mass) = assemble(&mesh, MassKind::Consistent)?;
-        let heave: Vec<f64> = (0..mesh.dofs()).map(|i| if i % 6 == Z { 1.0 } else { 0.0 }).collect();
+        let heave = heave(&mesh);
         let structural_mass_kg = mass.form(&heave, &heave);
-
-        let n = mesh.dofs();
-        let m_a_area = design.m_a() / design.module.breadth_m;
-        let on_z = |entries: Vec<(NodeId, NodeId, f64)>| {
-            let entries: Vec<_> = entries.iter().map(|(a, b, v)| (a.dof(Z), b.dof(Z), *v)).collect();
-            SymmetricMatrix::from_entries(n, &entries)
-        };
-        let k_b = on_z(spread(&grid, design.p_b(), design.water_distribution))?;
-        let m_b = on_z(spread(&grid, m_a_area, design.water_distribution))?;
-        let k = SymmetricMatrix::combine(&[(1.0, &structure), (1.0, &k_b)])?;
-        let m = SymmetricMatrix::combine(&[(1.0, &mass), (1.0, &m_b)])?;
-        let roll: Vec<f64> = (0..n)
-            .map(|i| match (mesh.nodes[i / 6], i % 6) {
-                (p, Z) => p.y,
-                (p, Y) => 0.5 * design.module.depth_m - p.z,
-                (_, 3) => 1.0,
-                _ => 0.0,
-            })
-            .collect();
+        let water = Water::under(design, &grid, mesh.dofs())?;
+        let k = SymmetricMatrix::combine(&[(1.0, &structure), (1.0, &water.k)])?;
+        let m = SymmetricMatrix::combine(&[(1.0, &mass), (1.0, &water.m)])?;
+        let roll = roll(&mesh, design.module.depth_m);
         let roll_inertia_kg_m2 = m.form(&roll, &roll);
-        // water pushes down on a module that rises: force -k_b u at each node
-        let full_water = [|_: f64, _: f64| 1.0, |_, y| y, |x: f64, _| -x].map(|arm: fn(f64, f64) -> f64| {
-            let mut total = vec![0.0; n];
-            for (i, j, v) in k_b.entries() {
-                let place = mesh.nodes[i / 6];
-                total[j] -= v * arm(place.x, place.y);
-            }
-            total
-        });
-
-        let full_rigid = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|[surge, sway, yaw]| -> Vec<f64> {
-            (0..n)
-                .map(|i| match (mesh.nodes[i / 6], i % 6) {
-                    (p, X) => surge - yaw * p.y,
-                    (p, Y) => sway + yaw * p.x,
-                    (_, 5) => yaw,
-                    _ => 0.0,
-                })
-                .collect()
-        });
-
-        let (condensed, direct, k, m) = match model {
-            Model::Full => (None, (0..n).map(Some).collect(), k, m),
-            Model::SuperElement => {
-                let masters = masters(design, &grid);
-                let condensed = SuperElement::condense(&k, &m, &masters, design.condensation.fixed_master_modes)?;
-                let mut direct = vec![None; n];
-                for (place, &dof) in condensed.masters.iter().enumerate() {
-                    direct[dof] = Some(place);
-                }
-                let (k, m) = (condensed.k.clone(), condensed.m.clone());
-                (Some(condensed), direct, k, m)
-            }
+        let reduced = match model {
+            Model::Full => Reduced::not_at_all(k, m),
+            Model::SuperElement => Reduced::to_masters(design, &grid, &k, &m)?,
         };
-        let water = full_water.map(|total| match &condensed {
-            None => SparseRow(total.into_iter().enumerate().filter(|e| e.1 != 0.0).collect()),
-            Some(c) => {
-                let t = &c.transformation;
-                let column = |j: usize| total.iter().enumerate().map(|(i, v)| v * t[(i, j)]).sum::<f64>();
-                SparseRow((0..t.ncols()).map(|j| (j, column(j))).collect())
-            }
-        });
-        let horizontal_rigid = full_rigid.map(|motion| {
-            let mut own = vec![0.0; k.order()];
-            for (i, place) in direct.iter().enumerate() {
-                if let Some(place) = *place {
-                    own[place] = motion[i];
-                }
-            }
-            own
-        });
+        let full_dofs = mesh.dofs();
+        let water = water.resultants(&mesh).map(|total| reduced.force(total));
+        let horizontal_rigid = horizontal_rigid(&mesh).map(|motion| reduced.motion(&motion));
+        let Reduced {
+            k,
+            m,
+            direct,
+            condensed,
+        } = reduced;
         Ok(Self {
             model,
             grid,
@@ -161,7 +108,7 @@ impl PreparedModule {
             horizontal_rigid,
             structural_mass_kg,
             roll_inertia_kg_m2,
-            full_dofs: n,
+            full_dofs,
         })
     }
 
@@ -218,6 +165,138 @@ impl PreparedModule {
             Side::Right => self.grid.x.len() - 1,
         }
     }
+}
+
+/// What the water adds to a module's matrices: it acts on z of the bottom alone.
+struct Water {
+    /// `k_b` `[N/m]`.
+    k: SymmetricMatrix,
+    /// `m_a` `[kg]`.
+    m: SymmetricMatrix,
+}
+
+impl Water {
+    /// Spreads the design's p_b and m_a over the bottom of a module of `n` dofs.
+    fn under(design: &BridgeDesign, grid: &Grid, n: usize) -> Result<Self, FemError> {
+        let m_a_area = design.m_a() / design.module.breadth_m;
+        let on_z = |entries: Vec<(NodeId, NodeId, f64)>| {
+            let entries: Vec<_> = entries.iter().map(|(a, b, v)| (a.dof(Z), b.dof(Z), *v)).collect();
+            SymmetricMatrix::from_entries(n, &entries)
+        };
+        Ok(Self {
+            k: on_z(spread(grid, design.p_b(), design.water_distribution))?,
+            m: on_z(spread(grid, m_a_area, design.water_distribution))?,
+        })
+    }
+
+    /// Gives the resultants of [`PreparedModule::water`] by the dofs of the full module.
+    fn resultants(&self, mesh: &Mesh) -> [Vec<f64>; 3] {
+        // water pushes down on a module that rises: force -k_b u at each node
+        [|_: f64, _: f64| 1.0, |_, y| y, |x: f64, _| -x].map(|arm: fn(f64, f64) -> f64| {
+            let mut total = vec![0.0; mesh.dofs()];
+            for (i, j, v) in self.k.entries() {
+                let place = mesh.nodes[i / 6];
+                total[j] -= v * arm(place.x, place.y);
+            }
+            total
+        })
+    }
+}
+
+/// The matrices that a module contributes, and how they lie among the dofs of the full module.
+struct Reduced {
+    k: SymmetricMatrix,
+    m: SymmetricMatrix,
+    /// See [`PreparedModule::direct`].
+    direct: Vec<Option<usize>>,
+    condensed: Option<SuperElement>,
+}
+
+impl Reduced {
+    /// Keeps every dof.
+    fn not_at_all(k: SymmetricMatrix, m: SymmetricMatrix) -> Self {
+        Self {
+            direct: (0..k.order()).map(Some).collect(),
+            condensed: None,
+            k,
+            m,
+        }
+    }
+
+    /// Condenses a module to its masters and the design's fixed-master modes.
+    fn to_masters(
+        design: &BridgeDesign,
+        grid: &Grid,
+        k: &SymmetricMatrix,
+        m: &SymmetricMatrix,
+    ) -> Result<Self, FemError> {
+        let masters = masters(design, grid);
+        let condensed = SuperElement::condense(k, m, &masters, design.condensation.fixed_master_modes)?;
+        let mut direct = vec![None; k.order()];
+        for (place, &dof) in condensed.masters.iter().enumerate() {
+            direct[dof] = Some(place);
+        }
+        Ok(Self {
+            k: condensed.k.clone(),
+            m: condensed.m.clone(),
+            direct,
+            condensed: Some(condensed),
+        })
+    }
+
+    /// Takes a force by the dofs of the full module over to those that are kept.
+    fn force(&self, total: Vec<f64>) -> SparseRow {
+        match &self.condensed {
+            None => SparseRow(total.into_iter().enumerate().filter(|e| e.1 != 0.0).collect()),
+            Some(c) => {
+                let t = &c.transformation;
+                let column = |j: usize| total.iter().enumerate().map(|(i, v)| v * t[(i, j)]).sum::<f64>();
+                SparseRow((0..t.ncols()).map(|j| (j, column(j))).collect())
+            }
+        }
+    }
+
+    /// Takes a motion of the full module over to the dofs that are kept; fixed-master modes rest.
+    fn motion(&self, motion: &[f64]) -> Vec<f64> {
+        let mut own = vec![0.0; self.k.order()];
+        for (i, place) in self.direct.iter().enumerate() {
+            if let Some(place) = *place {
+                own[place] = motion[i];
+            }
+        }
+        own
+    }
+}
+
+/// Gives a unit heave of all nodes.
+fn heave(mesh: &Mesh) -> Vec<f64> {
+    (0..mesh.dofs()).map(|i| if i % 6 == Z { 1.0 } else { 0.0 }).collect()
+}
+
+/// Gives a unit roll of all nodes about the axis at mid-depth.
+fn roll(mesh: &Mesh, depth_m: f64) -> Vec<f64> {
+    (0..mesh.dofs())
+        .map(|i| match (mesh.nodes[i / 6], i % 6) {
+            (p, Z) => p.y,
+            (p, Y) => 0.5 * depth_m - p.z,
+            (_, 3) => 1.0,
+            _ => 0.0,
+        })
+        .collect()
+}
+
+/// Gives unit surge, sway and yaw of all nodes about the left end's centre.
+fn horizontal_rigid(mesh: &Mesh) -> [Vec<f64>; 3] {
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|[surge, sway, yaw]| {
+        (0..mesh.dofs())
+            .map(|i| match (mesh.nodes[i / 6], i % 6) {
+                (p, X) => surge - yaw * p.y,
+                (p, Y) => sway + yaw * p.x,
+                (_, 5) => yaw,
+                _ => 0.0,
+            })
+            .collect()
+    })
 }
 
 /// Masters of a module: hinges, connectors, the deck's z, z of the ends' bottom edges, and where asked of all bottom nodes.
