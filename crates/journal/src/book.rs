@@ -2,7 +2,7 @@
 //!
 //! Knows the kinds of frames and keeps of a record its key and place alone. Does not write.
 
-use super::frame::{Damage, Frames, read_at};
+use super::frame::{Damage, Frame, Frames, read_at};
 use super::{Binding, EXTENSION, Ending, FOLDER, FORM, JournalError, RecordKey, Session, kind};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,6 +52,57 @@ pub struct Written {
     pub begun: BTreeSet<RecordKey>,
     /// What jobs share, as it was prepared.
     pub prepared: Vec<Value>,
+}
+
+impl Written {
+    /// Makes a file of which nothing has been read.
+    fn empty(path: PathBuf) -> Self {
+        Self {
+            path,
+            binding: None,
+            session: None,
+            ending: None,
+            records: 0,
+            damages: Vec::new(),
+            begun: BTreeSet::new(),
+            prepared: Vec::new(),
+        }
+    }
+
+    /// Counts a record and gives its entry; `file` is the number of this file in the book.
+    fn take_record(&mut self, frame: &Frame<'_>, file: u32) -> Option<Entry> {
+        let (key, failed) = record_head(frame.payload)?;
+        self.records += 1;
+        self.begun.remove(&key);
+        Some(Entry {
+            key,
+            failed,
+            place: Place {
+                file,
+                length: u32::try_from(frame.payload.len()).unwrap_or(u32::MAX),
+                at: frame.at,
+            },
+        })
+    }
+
+    /// Keeps what a frame says that is neither a binding nor a record.
+    fn take_other(&mut self, frame: &Frame<'_>) {
+        match frame.kind {
+            kind::SESSION => {
+                let session = serde_json::from_slice(frame.payload).ok();
+                self.session = self.session.take().or(session);
+            }
+            kind::STARTED => self
+                .begun
+                .extend(frame.payload.as_chunks().0.iter().map(|key| RecordKey(*key))),
+            kind::ENDING => self.ending = serde_json::from_slice(frame.payload).ok(),
+            kind::PREPARED => self
+                .prepared
+                .extend(serde_json::from_slice::<Value>(frame.payload).ok()),
+            // of a later minor form, which this one need not know
+            _ => {}
+        }
+    }
 }
 
 /// What a record's frame says beside what the job left.
@@ -106,64 +157,27 @@ impl Book {
         Ok(book)
     }
 
+    /// Takes in a file of the journal, with the entries of its records.
     fn take(&mut self, path: PathBuf) -> Result<(), JournalError> {
         let error = |cause| JournalError::io(&path, cause);
         let number = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let mut frames = Frames::open(&path, 0).map_err(error)?;
-        let mut written = Written {
-            path: path.clone(),
-            binding: None,
-            session: None,
-            ending: None,
-            records: 0,
-            damages: Vec::new(),
-            begun: BTreeSet::new(),
-            prepared: Vec::new(),
-        };
+        let mut written = Written::empty(path.clone());
         let mut recorded = false;
         while let Some(frame) = frames.next().map_err(error)? {
             // it stands there twice, so that a file outlives damage to its beginning
             if frame.kind == kind::BINDING && written.binding.is_none() && !recorded {
-                let document: Value = serde_json::from_slice(frame.payload).unwrap_or_default();
-                match document["form"].as_u64() {
-                    Some(found) if found != u64::from(FORM) => return Err(JournalError::Form { path, found }),
-                    _ => written.binding = serde_json::from_value(document).ok(),
-                }
+                written.binding = read_binding(&path, frame.payload)?;
             }
             recorded |= frame.kind == kind::RECORD;
             if written.binding.is_none() {
                 // bound to who knows what: its jobs run again
                 continue;
             }
-            match frame.kind {
-                kind::SESSION => {
-                    let session = serde_json::from_slice(frame.payload).ok();
-                    written.session = written.session.take().or(session);
-                }
-                kind::RECORD => {
-                    if let Some((key, failed)) = record_head(frame.payload) {
-                        written.records += 1;
-                        written.begun.remove(&key);
-                        self.entries.push(Entry {
-                            key,
-                            failed,
-                            place: Place {
-                                file: number,
-                                length: u32::try_from(frame.payload.len()).unwrap_or(u32::MAX),
-                                at: frame.at,
-                            },
-                        });
-                    }
-                }
-                kind::STARTED => written
-                    .begun
-                    .extend(frame.payload.as_chunks().0.iter().map(|key| RecordKey(*key))),
-                kind::ENDING => written.ending = serde_json::from_slice(frame.payload).ok(),
-                kind::PREPARED => written
-                    .prepared
-                    .extend(serde_json::from_slice::<Value>(frame.payload).ok()),
-                // of a later minor form, which this one need not know
-                _ => {}
+            if frame.kind == kind::RECORD {
+                self.entries.extend(written.take_record(&frame, number));
+            } else {
+                written.take_other(&frame);
             }
         }
         written.damages = frames.damages;
@@ -284,6 +298,18 @@ impl Book {
         self.files
             .iter()
             .flat_map(|written| written.damages.iter().map(|damage| (written.path.as_path(), damage)))
+    }
+}
+
+/// Reads what the records of a file are bound to, none where the frame is no binding, and refuses a file of another form.
+fn read_binding(path: &Path, payload: &[u8]) -> Result<Option<Binding>, JournalError> {
+    let document: Value = serde_json::from_slice(payload).unwrap_or_default();
+    match document["form"].as_u64() {
+        Some(found) if found != u64::from(FORM) => Err(JournalError::Form {
+            path: path.to_owned(),
+            found,
+        }),
+        _ => Ok(serde_json::from_value(document).ok()),
     }
 }
 

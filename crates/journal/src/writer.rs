@@ -64,46 +64,16 @@ impl Writer {
     /// # Errors
     /// [`JournalError`].
     pub fn begin(folder: &Path, binding: &Binding, session: &Session, failed: usize) -> Result<Self, JournalError> {
-        let journal = folder.join(FOLDER);
-        let error = |cause| JournalError::io(&journal, cause);
-        fs::create_dir_all(&journal).map_err(error)?;
-        let files = fs::read_dir(&journal).map_err(error)?.count();
-        let (path, file) = create(&journal)?;
-        let mut bytes = Vec::new();
-        for _ in 0..2 {
-            frame::append(&mut bytes, kind::BINDING, &json(binding, "what records are bound to")?);
-            frame::append(&mut bytes, kind::SESSION, &json(session, "who writes")?);
-        }
-        let begun = fault::write_all("journal.begin", &file, &bytes)
-            .and_then(|()| fault::at("journal.begin.sync"))
-            .and_then(|()| file.sync_all())
-            .and_then(|()| File::open(&journal)?.sync_all())
-            .and_then(|()| File::open(folder)?.sync_all())
-            .and_then(|()| fault::at("journal.begun"));
-        begun.map_err(|cause| JournalError::io(&path, cause))?;
-        let counts = Counts {
-            study: binding.name.clone(),
-            shard: binding.shard.clone(),
-            jobs: session.jobs,
-            done: session.known,
-            failed,
-            file: path
-                .file_name()
-                .map(|name| name.to_string_lossy().into_owned())
-                .unwrap_or_default(),
-            bytes: bytes.len() as u64,
-            files: files + 1,
-            study_blake3: session.study_blake3.clone(),
-            ended: None,
-        };
+        let begun = Begun::on_disk(folder, binding, session)?;
+        let counts = begun.counts(binding, session, failed);
         if !session.apart {
             progress::replace(folder, &counts);
         }
         let shared = Arc::new(Shared {
             folder: folder.to_owned(),
-            path,
+            path: begun.path,
             state: Mutex::new(State {
-                file,
+                file: begun.file,
                 synced: counts.bytes,
                 told: counts.clone(),
                 counts,
@@ -213,6 +183,61 @@ impl Drop for Writer {
     }
 }
 
+/// A file of the journal with its beginning: what it is bound to and who writes.
+struct Begun {
+    path: PathBuf,
+    file: File,
+    /// Bytes of the beginning.
+    bytes: u64,
+    /// Files that the journal has with this one.
+    files: usize,
+}
+
+impl Begun {
+    /// Creates a file in the journal of a folder of results, and brings its beginning and its name to the disk.
+    fn on_disk(folder: &Path, binding: &Binding, session: &Session) -> Result<Self, JournalError> {
+        let journal = folder.join(FOLDER);
+        let error = |cause| JournalError::io(&journal, cause);
+        fs::create_dir_all(&journal).map_err(error)?;
+        let files = fs::read_dir(&journal).map_err(error)?.count();
+        let (path, file) = create(&journal)?;
+        let bytes = beginning(binding, session)?;
+        let begun = fault::write_all("journal.begin", &file, &bytes)
+            .and_then(|()| fault::at("journal.begin.sync"))
+            .and_then(|()| file.sync_all())
+            .and_then(|()| File::open(&journal)?.sync_all())
+            .and_then(|()| File::open(folder)?.sync_all())
+            .and_then(|()| fault::at("journal.begun"));
+        begun.map_err(|cause| JournalError::io(&path, cause))?;
+        Ok(Self {
+            path,
+            file,
+            bytes: bytes.len() as u64,
+            files: files + 1,
+        })
+    }
+
+    /// Counts the jobs as they stand before any is solved; `failed` of those known failed.
+    fn counts(&self, binding: &Binding, session: &Session, failed: usize) -> Counts {
+        Counts {
+            study: binding.name.clone(),
+            shard: binding.shard.clone(),
+            jobs: session.jobs,
+            done: session.known,
+            failed,
+            file: self
+                .path
+                .file_name()
+                .map(|name| name.to_string_lossy().into_owned())
+                .unwrap_or_default(),
+            bytes: self.bytes,
+            files: self.files,
+            study_blake3: session.study_blake3.clone(),
+            ended: None,
+        }
+    }
+}
+
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -286,6 +311,16 @@ impl Shared {
         drop(state);
         self.sync();
     }
+}
+
+/// Makes the frames that a file begins with: binding and session, twice, so that it outlives damage to one of them.
+fn beginning(binding: &Binding, session: &Session) -> Result<Vec<u8>, JournalError> {
+    let mut bytes = Vec::new();
+    for _ in 0..2 {
+        frame::append(&mut bytes, kind::BINDING, &json(binding, "what records are bound to")?);
+        frame::append(&mut bytes, kind::SESSION, &json(session, "who writes")?);
+    }
+    Ok(bytes)
 }
 
 /// A new file whose name sorts after those of files begun before.
