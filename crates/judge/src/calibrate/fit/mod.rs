@@ -42,6 +42,8 @@ pub use evaluation::{FailedPoint, Purpose};
 pub use input::{Differences, FitError, Parameter, Settings};
 use problem::{PULL, outward_cosine};
 pub use search::Ending;
+use search::Found;
+use statistics::Statistics;
 pub use statistics::{Component, Direction, ErrorScale};
 
 /// The model: a batch of points, each with one value a parameter, to as many answers, each with the scaled residuals
@@ -127,14 +129,7 @@ pub fn fit(parameters: &[Parameter], model: &Model<'_>, settings: &Settings) -> 
         .zip(&found.best.point)
         .map(|(parameter, &x)| variable::bound_at(parameter, x))
         .collect();
-    // On a bound and pushed there: held fixed. On a bound with no push: free like any other.
-    let is_held = |k: usize| {
-        let (x, column) = (found.best.point[k], found.columns[k].as_deref());
-        at_bound[k].is_some() && outward_cosine(&parameters[k], x, column, &found.best.residuals) > PULL
-    };
-    let free: Vec<usize> = (0..parameters.len())
-        .filter(|&k| found.columns[k].is_some() && !is_held(k))
-        .collect();
+    let free = free(parameters, &found, &at_bound);
     let columns: Vec<&[f64]> = free.iter().filter_map(|&k| found.columns[k].as_deref()).collect();
     let sum_of_squares_best = sum_of_squares(&found.best.residuals);
     let statistics = statistics::statistics(
@@ -144,20 +139,7 @@ pub fn fit(parameters: &[Parameter], model: &Model<'_>, settings: &Settings) -> 
         sum_of_squares_best,
         settings.undetermined_share,
     );
-
-    let mut standard_errors = vec![None; parameters.len()];
-    let mut correlation = vec![vec![None; parameters.len()]; parameters.len()];
-    for (i, &k) in free.iter().enumerate() {
-        standard_errors[k] = statistics.standard_errors[i].map(|error| error * parameters[k].width());
-        for (j, &l) in free.iter().enumerate() {
-            correlation[k][l] = statistics.correlation[i][j];
-        }
-    }
-    let slope = |row: usize, k: usize| {
-        found.columns[k]
-            .as_ref()
-            .map_or(0.0, |c| c[row] / parameters[k].width())
-    };
+    let standard_errors = standard_errors(parameters, &free, &statistics);
     Ok(Fit {
         parameters: (0..parameters.len())
             .map(|k| FittedParameter {
@@ -169,21 +151,63 @@ pub fn fit(parameters: &[Parameter], model: &Model<'_>, settings: &Settings) -> 
                 has_derivative: found.columns[k].is_some(),
             })
             .collect(),
-        jacobian: (0..found.best.residuals.len())
-            .map(|row| (0..parameters.len()).map(|k| slope(row, k)).collect())
-            .collect(),
+        jacobian: jacobian(parameters, &found),
+        correlation: correlation(parameters.len(), &free, &statistics),
         sum_of_squares_start: sum_of_squares(&found.start.residuals),
         sum_of_squares_best,
         residuals_start: found.start.residuals,
         residuals_best: found.best.residuals,
         evaluations: evaluator.evaluations,
         ending: found.ending,
-        correlation,
         error_scale: statistics.error_scale,
         singular_values: statistics.singular_values,
         undetermined: statistics.undetermined,
         failed: evaluator.failed,
     })
+}
+
+/// Lists the parameters that the statistics are of: those with a derivative that are not held at a bound.
+fn free(parameters: &[Parameter], found: &Found, at_bound: &[Option<Bound>]) -> Vec<usize> {
+    // On a bound and pushed there: held fixed. On a bound with no push: free like any other.
+    let is_held = |k: usize| {
+        let (x, column) = (found.best.point[k], found.columns[k].as_deref());
+        at_bound[k].is_some() && outward_cosine(&parameters[k], x, column, &found.best.residuals) > PULL
+    };
+    (0..parameters.len())
+        .filter(|&k| found.columns[k].is_some() && !is_held(k))
+        .collect()
+}
+
+/// Gives the standard errors of all parameters in their own units, from those of the free ones in widths between bounds.
+fn standard_errors(parameters: &[Parameter], free: &[usize], statistics: &Statistics) -> Vec<Option<f64>> {
+    let mut standard_errors = vec![None; parameters.len()];
+    for (i, &k) in free.iter().enumerate() {
+        standard_errors[k] = statistics.standard_errors[i].map(|error| error * parameters[k].width());
+    }
+    standard_errors
+}
+
+/// Gives the correlation of all `count` parameters from that of the free ones.
+fn correlation(count: usize, free: &[usize], statistics: &Statistics) -> Vec<Vec<Option<f64>>> {
+    let mut correlation = vec![vec![None; count]; count];
+    for (i, &k) in free.iter().enumerate() {
+        for (j, &l) in free.iter().enumerate() {
+            correlation[k][l] = statistics.correlation[i][j];
+        }
+    }
+    correlation
+}
+
+/// Gives [`Fit::jacobian`] from the columns by widths between bounds.
+fn jacobian(parameters: &[Parameter], found: &Found) -> Vec<Vec<f64>> {
+    let slope = |row: usize, k: usize| {
+        found.columns[k]
+            .as_ref()
+            .map_or(0.0, |c| c[row] / parameters[k].width())
+    };
+    (0..found.best.residuals.len())
+        .map(|row| (0..parameters.len()).map(|k| slope(row, k)).collect())
+        .collect()
 }
 
 /// Sum of the squares, in the order given.

@@ -94,32 +94,8 @@ pub(super) struct Found {
 /// Searches from the start of the parameters.
 pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Result<Found, FitError> {
     let parameters = evaluator.parameters;
-    let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
-    let moved: Vec<f64> = parameters
-        .iter()
-        .map(|parameter| nudged(parameter, parameter.start))
-        .collect();
-    let points = if moved == start {
-        vec![start]
-    } else {
-        vec![start, moved]
-    };
-    let mut answers = evaluate_start(evaluator, points)?;
-    let mut from = answers.pop().ok_or(FitError::NoResiduals)?;
-    let start = answers.pop().unwrap_or_else(|| from.clone());
-    if start.residuals.is_empty() {
-        return Err(FitError::NoResiduals);
-    }
-
-    let optimiser = LevenbergMarquardt::new()
-        .with_ftol(settings.tolerance)
-        .with_xtol(settings.tolerance)
-        .with_gtol(settings.tolerance)
-        .with_stepbound(STEP_BOUND)
-        // The bounds are the scale: an undetermined parameter then stays near its start.
-        .with_scale_diag(false)
-        // The limit is kept by the problem; patience is that many evaluations for each parameter.
-        .with_patience(settings.evaluations_limit.min(1_000_000));
+    let (start, mut from) = starts(evaluator)?;
+    let optimiser = optimiser(settings);
     let mut best = if start.is_no_worse_than(&from) {
         start.clone()
     } else {
@@ -138,15 +114,7 @@ pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Resu
         };
         let pulled = pulled_inside(parameters, &best, &columns);
         let ending = ending(&report.termination, &notes, &columns, !pulled.is_empty());
-        let is_short_of_bound = parameters
-            .iter()
-            .zip(&best.point)
-            .zip(&columns)
-            .any(|((parameter, &x), column)| {
-                let share = parameter.share_from_bound(x);
-                let outward = || outward_cosine(parameter, x, column.as_deref(), &best.residuals);
-                share > 0.0 && share < left_alone_share && outward() > PULL
-            });
+        let is_short_of_bound = is_short_of_bound(parameters, &best, &columns, left_alone_share);
         if is_short_of_bound {
             left_alone_share *= CLOSER;
         }
@@ -172,6 +140,56 @@ pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Resu
             }
         }
     }
+}
+
+/// Asks the model at the start as given, and at the start with parameters on a bound moved inside, from which the first
+/// round goes.
+fn starts(evaluator: &mut Evaluator<'_>) -> Result<(Answer, Answer), FitError> {
+    let parameters = evaluator.parameters;
+    let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
+    let moved: Vec<f64> = parameters
+        .iter()
+        .map(|parameter| nudged(parameter, parameter.start))
+        .collect();
+    let points = if moved == start {
+        vec![start]
+    } else {
+        vec![start, moved]
+    };
+    let mut answers = evaluate_start(evaluator, points)?;
+    let from = answers.pop().ok_or(FitError::NoResiduals)?;
+    let start = answers.pop().unwrap_or_else(|| from.clone());
+    if start.residuals.is_empty() {
+        return Err(FitError::NoResiduals);
+    }
+    Ok((start, from))
+}
+
+/// Sets up the optimiser of every round.
+fn optimiser(settings: &Settings) -> LevenbergMarquardt<f64> {
+    LevenbergMarquardt::new()
+        .with_ftol(settings.tolerance)
+        .with_xtol(settings.tolerance)
+        .with_gtol(settings.tolerance)
+        .with_stepbound(STEP_BOUND)
+        // The bounds are the scale: an undetermined parameter then stays near its start.
+        .with_scale_diag(false)
+        // The limit is kept by the problem; patience is that many evaluations for each parameter.
+        .with_patience(settings.evaluations_limit.min(1_000_000))
+}
+
+/// Tells whether the search left a parameter alone short of its bound: off it by less than `left_alone_share` of the width,
+/// and pushed outwards.
+fn is_short_of_bound(parameters: &[Parameter], best: &Answer, columns: &Columns, left_alone_share: f64) -> bool {
+    parameters
+        .iter()
+        .zip(&best.point)
+        .zip(columns)
+        .any(|((parameter, &x), column)| {
+            let share = parameter.share_from_bound(x);
+            let outward = || outward_cosine(parameter, x, column.as_deref(), &best.residuals);
+            share > 0.0 && share < left_alone_share && outward() > PULL
+        })
 }
 
 /// Parameters on or next to a bound that would lower the sum of squares by going inside.

@@ -36,6 +36,17 @@ pub enum ErrorScale {
 }
 
 impl ErrorScale {
+    /// Takes s^2 from the sum of squares of `count` residuals and the number of free parameters.
+    fn of(count: usize, free: usize, sum_of_squares: f64) -> Self {
+        match count.checked_sub(free) {
+            None | Some(0) => Self::Assumed,
+            Some(degrees_of_freedom) => Self::Estimated {
+                variance: sum_of_squares / degrees_of_freedom as f64,
+                degrees_of_freedom,
+            },
+        }
+    }
+
     /// s^2.
     pub fn variance(self) -> f64 {
         match self {
@@ -89,58 +100,88 @@ pub(super) fn statistics(
     undetermined_share: f64,
 ) -> Statistics {
     let free = columns.len();
-    let error_scale = match count.checked_sub(free) {
-        None | Some(0) => ErrorScale::Assumed,
-        Some(degrees_of_freedom) => ErrorScale::Estimated {
-            variance: sum_of_squares / degrees_of_freedom as f64,
-            degrees_of_freedom,
-        },
-    };
+    let error_scale = ErrorScale::of(count, free, sum_of_squares);
     let (singular_values, directions) = decomposition(columns, count);
     let largest = singular_values.first().copied().unwrap_or(0.0);
     let deviation = error_scale.variance().sqrt();
 
-    let mut covariance = vec![vec![0.0; free]; free];
-    let mut has_error = vec![true; free];
+    let mut covariance = Covariance::zero(free);
     let mut undetermined = Vec::new();
     for (&w, v) in singular_values.iter().zip(&directions) {
         let part: Vec<usize> = (0..free).filter(|&k| v[k].abs() >= PART).collect();
         let is_null = w <= undetermined_share * largest;
         if is_null {
-            part.iter().for_each(|&k| has_error[k] = false);
+            covariance.leave_out(&part);
+        } else {
+            covariance.add(w, v, deviation);
         }
         if is_null || deviation > w {
             undetermined.push(direction(w, largest, v, part, indices));
         }
-        if !is_null {
-            for i in 0..free {
-                for j in 0..free {
-                    covariance[i][j] += (deviation * v[i] / w) * (deviation * v[j] / w);
-                }
-            }
-        }
     }
-    let standard_errors: Vec<Option<f64>> = (0..free)
-        .map(|k| Some(covariance[k][k].sqrt()).filter(|error| has_error[k] && *error <= 1.0))
-        .collect();
-    let correlation = |i: usize, j: usize| {
-        let product = standard_errors[i]? * standard_errors[j]?;
-        (product > 0.0).then(|| {
-            if i == j {
-                1.0
-            } else {
-                (covariance[i][j] / product).clamp(-1.0, 1.0)
-            }
-        })
-    };
+    let standard_errors = covariance.standard_errors();
     Statistics {
-        correlation: (0..free)
-            .map(|i| (0..free).map(|j| correlation(i, j)).collect())
-            .collect(),
+        correlation: covariance.correlation(&standard_errors),
         standard_errors,
         error_scale,
         singular_values,
         undetermined,
+    }
+}
+
+/// Covariance of the free parameters, summed over directions.
+struct Covariance {
+    sum: Vec<Vec<f64>>,
+    /// False for a parameter with a part in a direction that was left out.
+    has_error: Vec<bool>,
+}
+
+impl Covariance {
+    /// Begins the sum for as many free parameters.
+    fn zero(free: usize) -> Self {
+        Self {
+            sum: vec![vec![0.0; free]; free],
+            has_error: vec![true; free],
+        }
+    }
+
+    /// Adds the direction `v` of singular value `w`; `deviation` is s.
+    fn add(&mut self, w: f64, v: &[f64], deviation: f64) {
+        for (i, row) in self.sum.iter_mut().enumerate() {
+            for (j, sum) in row.iter_mut().enumerate() {
+                *sum += (deviation * v[i] / w) * (deviation * v[j] / w);
+            }
+        }
+    }
+
+    /// Leaves out a direction that the parameters of `part` have a part in.
+    fn leave_out(&mut self, part: &[usize]) {
+        part.iter().for_each(|&k| self.has_error[k] = false);
+    }
+
+    /// Gives [`Statistics::standard_errors`].
+    fn standard_errors(&self) -> Vec<Option<f64>> {
+        (0..self.sum.len())
+            .map(|k| Some(self.sum[k][k].sqrt()).filter(|error| self.has_error[k] && *error <= 1.0))
+            .collect()
+    }
+
+    /// Gives [`Statistics::correlation`].
+    fn correlation(&self, standard_errors: &[Option<f64>]) -> Vec<Vec<Option<f64>>> {
+        let correlation = |i: usize, j: usize| {
+            let product = standard_errors[i]? * standard_errors[j]?;
+            (product > 0.0).then(|| {
+                if i == j {
+                    1.0
+                } else {
+                    (self.sum[i][j] / product).clamp(-1.0, 1.0)
+                }
+            })
+        };
+        let free = self.sum.len();
+        (0..free)
+            .map(|i| (0..free).map(|j| correlation(i, j)).collect())
+            .collect()
     }
 }
 
