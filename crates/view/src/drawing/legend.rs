@@ -24,78 +24,28 @@ enum Sample {
     Bar,
 }
 
+/// What, its words, and where it begins: across and in which row.
+type Entry = (Sample, String, f64, usize);
+
 /// A legend laid out.
 pub(super) struct Legend {
-    /// What, its words, and where it begins: across and in which row.
-    entries: Vec<(Sample, String, f64, usize)>,
+    entries: Vec<Entry>,
 }
 
 impl Legend {
     /// The legend of a figure between two places across.
     pub(super) fn new(figure: &Figure, letters: &Letters, left: f64, right: f64) -> Self {
-        let mut wanted: Vec<(Sample, String)> = Vec::new();
-        let mut want = |entry: (Sample, String)| {
-            if !wanted.contains(&entry) {
-                wanted.push(entry);
-            }
+        let room = right - left;
+        let fitted = wanted(figure)
+            .into_iter()
+            .map(|(sample, words)| Fitted::new(sample, &words, letters, room));
+        let fitted: Vec<Fitted> = fitted.collect();
+        let whole: f64 = fitted.iter().map(|entry| entry.width).sum();
+        let entries = if whole - APART <= room {
+            in_one_row(fitted, left)
+        } else {
+            in_columns(fitted, left, room)
         };
-        for line in figure.panels.iter().flat_map(|panel| &panel.lines) {
-            let sample = Sample::Line {
-                style: line.style,
-                joined: line.joined,
-            };
-            want((sample, line.label.clone()));
-        }
-        for panel in &figure.panels {
-            for mark in &panel.marks {
-                let bar = !panel.y.words.is_empty();
-                let sample = if bar { Sample::Bar } else { Sample::Mark(mark.origin) };
-                want((sample, mark.label.clone()));
-            }
-        }
-        wanted.sort_by_key(|(sample, _)| match sample {
-            Sample::None => 0,
-            Sample::Line { style: 0, .. } => usize::MAX - 1,
-            Sample::Line { style, .. } => *style,
-            Sample::Mark(_) | Sample::Bar => usize::MAX,
-        });
-        if !figure.legend.is_empty() {
-            wanted.insert(0, (Sample::None, format!("{}:", capital(&figure.legend))));
-        }
-        let fitted = wanted.into_iter().map(|(sample, words)| {
-            let words = letters.fitting(&words, SMALL, right - left - sample.width());
-            let width = sample.width() + letters.width(&words, SMALL) + APART;
-            (sample, words, width)
-        });
-        let fitted: Vec<(Sample, String, f64)> = fitted.collect();
-        let whole: f64 = fitted.iter().map(|(.., width)| width).sum();
-        let in_row = whole - APART <= right - left;
-        // entries that need several rows stand below each other
-        let widest = fitted.iter().map(|(.., width)| *width).fold(1.0, f64::max);
-        let columns = (((right - left + APART) / widest).floor() as usize).max(1);
-        // what the words are values of stands above them then
-        let above = usize::from(!in_row && fitted.first().is_some_and(|(sample, ..)| *sample == Sample::None));
-        let (mut entries, mut x) = (Vec::new(), left);
-        for (i, (sample, words, width)) in fitted.into_iter().enumerate() {
-            if in_row {
-                entries.push((sample, words, x, 0));
-                x += if sample == Sample::None {
-                    width - 0.5 * APART
-                } else {
-                    width
-                };
-            } else if i < above {
-                entries.push((sample, words, left, 0));
-            } else {
-                let place = i - above;
-                entries.push((
-                    sample,
-                    words,
-                    left + widest * (place % columns) as f64,
-                    above + place / columns,
-                ));
-            }
-        }
         Self { entries }
     }
 
@@ -123,7 +73,101 @@ impl Legend {
     }
 }
 
+/// An entry that is to have its place.
+struct Fitted {
+    sample: Sample,
+    words: String,
+    /// From its beginning to that of the next `[pt]`.
+    width: f64,
+}
+
+impl Fitted {
+    /// Cuts the words of an entry to the room that there is across `[pt]`.
+    fn new(sample: Sample, words: &str, letters: &Letters, room: f64) -> Self {
+        let words = letters.fitting(words, SMALL, room - sample.width());
+        let width = sample.width() + letters.width(&words, SMALL) + APART;
+        Self { sample, words, width }
+    }
+}
+
+/// Lists what the legend of a figure says, each once: what the lines' words are values of, the lines by their style, the
+/// marks.
+fn wanted(figure: &Figure) -> Vec<(Sample, String)> {
+    let mut wanted: Vec<(Sample, String)> = Vec::new();
+    let mut want = |entry: (Sample, String)| {
+        if !wanted.contains(&entry) {
+            wanted.push(entry);
+        }
+    };
+    for line in figure.panels.iter().flat_map(|panel| &panel.lines) {
+        let sample = Sample::Line {
+            style: line.style,
+            joined: line.joined,
+        };
+        want((sample, line.label.clone()));
+    }
+    for panel in &figure.panels {
+        for mark in &panel.marks {
+            let bar = !panel.y.words.is_empty();
+            let sample = if bar { Sample::Bar } else { Sample::Mark(mark.origin) };
+            want((sample, mark.label.clone()));
+        }
+    }
+    wanted.sort_by_key(|(sample, _)| sample.rank());
+    if !figure.legend.is_empty() {
+        wanted.insert(0, (Sample::None, format!("{}:", capital(&figure.legend))));
+    }
+    wanted
+}
+
+/// Places entries one behind the other from `left` `[pt]` on.
+fn in_one_row(fitted: Vec<Fitted>, left: f64) -> Vec<Entry> {
+    let (mut entries, mut x) = (Vec::new(), left);
+    for Fitted { sample, words, width } in fitted {
+        entries.push((sample, words, x, 0));
+        x += if sample == Sample::None {
+            width - 0.5 * APART
+        } else {
+            width
+        };
+    }
+    entries
+}
+
+/// Places entries that need several rows below each other, in as many columns as the room across takes `[pt]`.
+fn in_columns(fitted: Vec<Fitted>, left: f64, room: f64) -> Vec<Entry> {
+    let widest = fitted.iter().map(|entry| entry.width).fold(1.0, f64::max);
+    let columns = (((room + APART) / widest).floor() as usize).max(1);
+    // what the words are values of stands above them
+    let above = usize::from(fitted.first().is_some_and(|entry| entry.sample == Sample::None));
+    let mut entries = Vec::new();
+    for (i, Fitted { sample, words, .. }) in fitted.into_iter().enumerate() {
+        if i < above {
+            entries.push((sample, words, left, 0));
+        } else {
+            let place = i - above;
+            entries.push((
+                sample,
+                words,
+                left + widest * (place % columns) as f64,
+                above + place / columns,
+            ));
+        }
+    }
+    entries
+}
+
 impl Sample {
+    /// Gives its place in the order of the legend: what lines are compared with comes last of the lines.
+    fn rank(self) -> usize {
+        match self {
+            Self::None => 0,
+            Self::Line { style: 0, .. } => usize::MAX - 1,
+            Self::Line { style, .. } => style,
+            Self::Mark(_) | Self::Bar => usize::MAX,
+        }
+    }
+
     fn width(self) -> f64 {
         match self {
             Self::None => 0.0,

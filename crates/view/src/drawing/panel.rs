@@ -126,12 +126,9 @@ pub(super) fn words(axis: &Axis) -> String {
 
 /// Draws a panel.
 pub(super) fn draw(pen: &mut Pen, panel: &Panel, scales: &Scales, frame: &Frame) -> io::Result<()> {
-    let at = |[x, y]: [f64; 2]| {
-        let up = scales.y.share(y);
-        let down = if panel.y.down { up } else { 1.0 - up };
-        [frame.x + frame.width * scales.x.share(x), frame.y + frame.height * down]
-    };
-    axes(pen, panel, scales, frame, &at)?;
+    let placed = Placed { panel, scales, frame };
+    let at = |point| placed.at(point);
+    placed.axes(pen)?;
     pen.clipped(&frame.id, [frame.x, frame.y, frame.width, frame.height])?;
     for line in panel.lines.iter().filter(|line| line.joined && line.points.len() > 1) {
         let style = style::of(line.style);
@@ -204,79 +201,129 @@ const MOMENT: Stroke<'static> = Stroke {
     dashes: "2 1.5",
 };
 
-fn axes(
-    pen: &mut Pen,
-    panel: &Panel,
-    scales: &Scales,
-    frame: &Frame,
-    at: &dyn Fn([f64; 2]) -> [f64; 2],
-) -> io::Result<()> {
-    let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
-    pen.group("axes")?;
-    if panel.y.words.is_empty() {
-        let zero = at([scales.x.from, 0.0])[1];
-        if zero > frame.y + 0.5 && zero < bottom - 0.5 {
-            pen.line(&[[frame.x, zero], [right, zero]], FAINT)?;
+/// A panel in its place on paper.
+struct Placed<'a> {
+    panel: &'a Panel,
+    scales: &'a Scales,
+    frame: &'a Frame,
+}
+
+impl Placed<'_> {
+    /// Gives the place on paper of a point of the panel `[pt]`.
+    fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let Self { panel, scales, frame } = self;
+        let up = scales.y.share(y);
+        let down = if panel.y.down { up } else { 1.0 - up };
+        [frame.x + frame.width * scales.x.share(x), frame.y + frame.height * down]
+    }
+
+    /// Gives the right edge of the frame `[pt]`.
+    fn right(&self) -> f64 {
+        self.frame.x + self.frame.width
+    }
+
+    /// Gives the lower edge of the frame `[pt]`.
+    fn bottom(&self) -> f64 {
+        self.frame.y + self.frame.height
+    }
+
+    /// Draws all that stands around the lines: zero, moments, the frame, both axes.
+    fn axes(&self, pen: &mut Pen) -> io::Result<()> {
+        let frame = self.frame;
+        pen.group("axes")?;
+        if self.panel.y.words.is_empty() {
+            self.zero(pen)?;
         }
+        self.moments(pen)?;
+        pen.frame([frame.x, frame.y, frame.width, frame.height], AXIS)?;
+        self.axis_across(pen)?;
+        self.axis_up(pen)?;
+        pen.end_group()
     }
-    for moment in panel
-        .moments
-        .iter()
-        .filter(|moment| (0.0..=1.0).contains(&scales.x.share(moment.x)))
-    {
-        let x = at([moment.x, scales.y.from])[0];
-        pen.line(&[[x, frame.y], [x, bottom]], MOMENT)?;
-        let (place, anchor) = if x < frame.x + 0.6 * frame.width {
-            (x + 2.5, Anchor::Start)
-        } else {
-            (x - 2.5, Anchor::End)
-        };
-        let down = if panel.y.down { bottom - 3.5 } else { frame.y + 8.0 };
-        pen.text([place, down], SMALL, anchor, "#555555", &moment.label)?;
+
+    /// Draws the line at zero where it is not the frame.
+    fn zero(&self, pen: &mut Pen) -> io::Result<()> {
+        let zero = self.at([self.scales.x.from, 0.0])[1];
+        if zero > self.frame.y + 0.5 && zero < self.bottom() - 0.5 {
+            pen.line(&[[self.frame.x, zero], [self.right(), zero]], FAINT)?;
+        }
+        Ok(())
     }
-    pen.frame([frame.x, frame.y, frame.width, frame.height], AXIS)?;
-    for tick in scales.x.ticks() {
-        let x = at([tick, scales.y.from])[0];
-        pen.line(&[[x, bottom], [x, bottom + TICK]], AXIS)?;
+
+    /// Draws the moments that lie on the axis across, each with its words on the side that has room.
+    fn moments(&self, pen: &mut Pen) -> io::Result<()> {
+        let Self { panel, scales, frame } = self;
+        let bottom = self.bottom();
+        for moment in panel
+            .moments
+            .iter()
+            .filter(|moment| (0.0..=1.0).contains(&scales.x.share(moment.x)))
+        {
+            let x = self.at([moment.x, scales.y.from])[0];
+            pen.line(&[[x, frame.y], [x, bottom]], MOMENT)?;
+            let (place, anchor) = if x < frame.x + 0.6 * frame.width {
+                (x + 2.5, Anchor::Start)
+            } else {
+                (x - 2.5, Anchor::End)
+            };
+            let down = if panel.y.down { bottom - 3.5 } else { frame.y + 8.0 };
+            pen.text([place, down], SMALL, anchor, "#555555", &moment.label)?;
+        }
+        Ok(())
+    }
+
+    /// Draws ticks and words of the axis across.
+    fn axis_across(&self, pen: &mut Pen) -> io::Result<()> {
+        let Self { panel, scales, frame } = self;
+        let bottom = self.bottom();
+        for tick in scales.x.ticks() {
+            let x = self.at([tick, scales.y.from])[0];
+            pen.line(&[[x, bottom], [x, bottom + TICK]], AXIS)?;
+            pen.text(
+                [x, bottom + TICK + 7.5],
+                SMALL,
+                Anchor::Middle,
+                "#000000",
+                &scales.x.text(tick),
+            )?;
+        }
         pen.text(
-            [x, bottom + TICK + 7.5],
-            SMALL,
+            [frame.x + 0.5 * frame.width, bottom + 21.0],
+            LARGE,
             Anchor::Middle,
             "#000000",
-            &scales.x.text(tick),
-        )?;
+            &words(&panel.x),
+        )
     }
-    pen.text(
-        [frame.x + 0.5 * frame.width, bottom + 21.0],
-        LARGE,
-        Anchor::Middle,
-        "#000000",
-        &words(&panel.x),
-    )?;
-    let ticks: Vec<(f64, String)> = if panel.y.words.is_empty() {
-        scales
-            .y
-            .ticks()
-            .into_iter()
-            .map(|tick| (tick, scales.y.text(tick)))
-            .collect()
-    } else {
-        (0..).map(f64::from).zip(panel.y.words.iter().cloned()).collect()
-    };
-    let mut widest = 0;
-    for (tick, text) in ticks {
-        let y = at([scales.x.from, tick])[1];
-        pen.line(&[[frame.x - TICK, y], [frame.x, y]], AXIS)?;
-        if !panel.y.words.is_empty() {
-            pen.line(&[[frame.x, y], [right, y]], FAINT)?;
+
+    /// Draws ticks and words of the axis up.
+    fn axis_up(&self, pen: &mut Pen) -> io::Result<()> {
+        let Self { panel, scales, frame } = self;
+        let mut widest = 0;
+        for (tick, text) in self.ticks_up() {
+            let y = self.at([scales.x.from, tick])[1];
+            pen.line(&[[frame.x - TICK, y], [frame.x, y]], AXIS)?;
+            if !panel.y.words.is_empty() {
+                pen.line(&[[frame.x, y], [self.right(), y]], FAINT)?;
+            }
+            pen.text([frame.x - TICK - 2.0, y + 2.5], SMALL, Anchor::End, "#000000", &text)?;
+            widest = widest.max(text.chars().count());
         }
-        pen.text([frame.x - TICK - 2.0, y + 2.5], SMALL, Anchor::End, "#000000", &text)?;
-        widest = widest.max(text.chars().count());
+        if !panel.y.label.is_empty() {
+            // a digit is 0.556 em wide
+            let x = frame.x - TICK - 5.5 - 0.556 * SMALL * widest as f64;
+            pen.upward([x, frame.y + 0.5 * frame.height], LARGE, &words(&panel.y))?;
+        }
+        Ok(())
     }
-    if !panel.y.label.is_empty() {
-        // a digit is 0.556 em wide
-        let x = frame.x - TICK - 5.5 - 0.556 * SMALL * widest as f64;
-        pen.upward([x, frame.y + 0.5 * frame.height], LARGE, &words(&panel.y))?;
+
+    /// Lists the ticks of the axis up with their words: numbers, or the words of the axis.
+    fn ticks_up(&self) -> Vec<(f64, String)> {
+        let (words, scale) = (&self.panel.y.words, &self.scales.y);
+        if words.is_empty() {
+            scale.ticks().into_iter().map(|tick| (tick, scale.text(tick))).collect()
+        } else {
+            (0..).map(f64::from).zip(words.iter().cloned()).collect()
+        }
     }
-    pen.end_group()
 }
