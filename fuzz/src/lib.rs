@@ -6,7 +6,7 @@
 
 use pontoon_journal::{Book, FOLDER};
 use pontoon_judge::reference::Reference;
-use pontoon_plan::input::read;
+use pontoon_plan::input::Document;
 use pontoon_plan::job::Jobs;
 use pontoon_plan::study_file::Study;
 use pontoon_study::sweep::{explain, standings};
@@ -59,9 +59,6 @@ pub fn reference(folder: &Path, bytes: &[u8]) {
     match Reference::open(&file) {
         Ok(reference) => {
             let _ = reference.study();
-            for check in &reference.spec.checks {
-                let _ = check.expected_and_tolerance();
-            }
         }
         Err(refusal) => drop(refusal.to_string()),
     }
@@ -87,8 +84,8 @@ fn opened(folder: &Path, study: &[u8], bridge: &[u8]) {
     let (study_file, bridge_file) = (folder.join("study.json"), folder.join("bridge.json"));
     written(&study_file, study);
     written(&bridge_file, bridge);
-    if let (Ok(study), Ok(bridge)) = (read(&study_file), read(&bridge_file))
-        && has_many_points(folder, &study, &bridge)
+    if let (Ok(study), Ok(bridge)) = (Document::read(&study_file), Document::read(&bridge_file))
+        && has_many_points(folder, &study, bridge)
     {
         return;
     }
@@ -99,20 +96,25 @@ fn opened(folder: &Path, study: &[u8], bridge: &[u8]) {
 }
 
 /// Whether conditions would be tried on more points than there is time for.
-fn has_many_points(file: &Path, study: &Value, bridge: &Value) -> bool {
-    let mut study = study.clone();
+fn has_many_points(file: &Path, study: &Document, bridge: Document) -> bool {
+    let mut study = study.value();
     let designs = study.get_mut("design").and_then(Value::as_array_mut);
     let conditions = designs.into_iter().flatten().filter_map(|design| {
         let design = design.as_object_mut()?;
         design.remove("where")
     });
     let conditions = conditions.count();
-    conditions > 0 && Study::of_documents(file, study, bridge.clone()).is_ok_and(|study| study.points() > MOST_POINTS)
+    conditions > 0
+        && Study::of_documents(file, Document::from(&study), bridge).is_ok_and(|study| study.points() > MOST_POINTS)
 }
 
 /// The first jobs of a study and what they are known by.
 fn planned(study: &Study) {
-    let _ = (study.path_axes(), study.text_and_hash(), study.bridge_text_and_hash());
+    let _ = (
+        study.axis_columns(),
+        study.document.hash(),
+        study.bridge.document.hash(),
+    );
     if study.points() > MOST_POINTS {
         return;
     }
@@ -140,10 +142,11 @@ fn explained(folder: &Path, book: &Book, any: usize) {
     let Some(session) = book.files.iter().find_map(|written| written.session.as_ref()) else {
         return;
     };
-    if has_many_points(folder, &session.study, &session.bridge) {
+    let [study, bridge] = [&session.study, &session.bridge].map(Document::from);
+    if has_many_points(folder, &study, bridge.clone()) {
         return;
     }
-    if let Ok(study) = Study::of_documents(folder, session.study.clone(), session.bridge.clone())
+    if let Ok(study) = Study::of_documents(folder, study, bridge)
         && (1..=MOST_POINTS).contains(&study.points())
     {
         let _ = explain(folder, any % study.points());

@@ -57,6 +57,7 @@ fn the_key_hangs_on_all_that_decides_a_number_and_on_nothing_else() {
         ("crates/plan/src/job/mod.rs", "time_step_s", "step_s"),
         ("crates/study/src/run/retry.rs", "0.5", "0.25"),
         ("crates/results/src/record.rs", "peak_deflection_m", "deflection_m"),
+        ("crates/results/src/failure.rs", "not_finite", "infinite"),
         ("crates/core/Cargo.toml", "faer", "nalgebra"),
         (
             "Cargo.lock",
@@ -74,7 +75,7 @@ fn the_key_hangs_on_all_that_decides_a_number_and_on_nothing_else() {
     }
     for (file, from, to) in [
         ("crates/results/src/summary.rs", "speed_m_s", "speed"),
-        ("crates/view/src/labels.rs", "tension gap", "gap"),
+        ("crates/results/src/labels.rs", "tension gap", "gap"),
         (
             "Cargo.lock",
             "name = \"clap\"\nversion = \"4",

@@ -254,12 +254,18 @@ pub(crate) fn one_message(told: &str) -> &str {
     message
 }
 
+/// Whether a message says what is missing, or what was found and what is allowed.
+pub(crate) fn says_what_is_wrong(message: &str) -> bool {
+    message.contains(": missing key `") || message.contains("found ") && message.contains("allowed: ")
+}
+
 /// An end with status 2 and one message that holds all parts; nothing on standard output.
 pub(crate) fn is_refused(output: &Output, parts: &[&str]) {
     let told = stderr(output);
     assert_eq!(output.status.code(), Some(2), "{parts:?}: {told}{}", stdout(output));
     let message = one_message(&told);
-    for part in [&["found ", "allowed: "], parts].concat() {
+    assert!(says_what_is_wrong(message), "{message}");
+    for part in parts {
         assert!(message.contains(part), "no '{part}' in: {message}");
     }
     assert_eq!(stdout(output), "", "{message}");

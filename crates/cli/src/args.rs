@@ -5,6 +5,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::ModelSpec;
+use std::fmt;
 use std::path::PathBuf;
 
 /// Parametric studies of the hydroelastic response of floating ribbon bridges.
@@ -171,13 +172,22 @@ pub(crate) struct RunArguments {
 }
 
 /// Hash of a study and numbers of its jobs.
-fn apart(text: &str) -> Result<(String, Vec<usize>), String> {
-    let parts = text.split_once(':').ok_or("HASH:JOB,...")?;
-    let numbers = parts
-        .1
-        .split(',')
-        .map(|number| number.parse().map_err(|_| "HASH:JOB,..."));
-    Ok((parts.0.to_owned(), numbers.collect::<Result<_, _>>()?))
+fn apart(text: &str) -> Result<(String, Vec<usize>), NotApart> {
+    let (hash, jobs) = text.split_once(':').ok_or(NotApart)?;
+    let jobs: Result<_, _> = jobs.split(',').map(str::parse).collect();
+    Ok((hash.to_owned(), jobs.map_err(|_| NotApart)?))
+}
+
+/// A text that names no jobs of a study.
+#[derive(Debug)]
+struct NotApart;
+
+impl std::error::Error for NotApart {}
+
+impl fmt::Display for NotApart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("HASH:JOB,...")
+    }
 }
 
 /// What `status` takes.

@@ -3,8 +3,8 @@
 //! Knows designs as points. Does not know what the points lead to.
 
 use crate::summary::told;
+use pontoon_plan::input::Cell;
 use pontoon_plan::study_file::Study;
-use serde_json::Value;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -12,10 +12,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 const MOST_TOLD: usize = 6;
 
 /// What is seen of an axis.
-struct Seen {
+struct Values {
     name: String,
     /// The first of its values.
-    first: Vec<Value>,
+    first: Vec<Cell<'static>>,
     /// A number for each value.
     known: HashSet<u64>,
     /// The least and the largest, where all are numbers.
@@ -24,7 +24,7 @@ struct Seen {
 
 /// Each axis and its values, in the order of their first point.
 pub(crate) fn of(study: &Study) -> Vec<(String, String)> {
-    let mut axes: Vec<Seen> = Vec::new();
+    let mut axes: Vec<Values> = Vec::new();
     for block in &study.blocks {
         let places: Vec<usize> = block.axes.iter().map(|axis| place(&mut axes, &axis.name)).collect();
         for point in block.points() {
@@ -34,12 +34,12 @@ pub(crate) fn of(study: &Study) -> Vec<(String, String)> {
                 .for_each(|(&i, (_, value))| axes[i].see(value));
         }
     }
-    axes.iter().map(|seen| (seen.name.clone(), seen.told())).collect()
+    axes.iter().map(|values| (values.name.clone(), values.told())).collect()
 }
 
-fn place(axes: &mut Vec<Seen>, name: &str) -> usize {
-    axes.iter().position(|seen| seen.name == name).unwrap_or_else(|| {
-        axes.push(Seen {
+fn place(axes: &mut Vec<Values>, name: &str) -> usize {
+    axes.iter().position(|values| values.name == name).unwrap_or_else(|| {
+        axes.push(Values {
             name: name.to_owned(),
             first: Vec::new(),
             known: HashSet::new(),
@@ -49,19 +49,16 @@ fn place(axes: &mut Vec<Seen>, name: &str) -> usize {
     })
 }
 
-impl Seen {
-    fn see(&mut self, value: &Value) {
-        let number = value.as_f64();
+impl Values {
+    fn see(&mut self, value: &Cell<'_>) {
+        let number = value.number();
         let mut hasher = DefaultHasher::new();
-        match number {
-            Some(x) => x.to_bits().hash(&mut hasher),
-            None => value.to_string().hash(&mut hasher),
-        }
+        value.hash(&mut hasher);
         if !self.known.insert(hasher.finish()) {
             return;
         }
         if self.first.len() < MOST_TOLD {
-            self.first.push(value.clone());
+            self.first.push(value.owned());
         }
         let range = self.range.zip(number);
         self.range = range.map(|((from, to), x)| (from.min(x), to.max(x)));
@@ -72,7 +69,7 @@ impl Seen {
         let left = self.known.len() - first.len();
         match self.range {
             Some((from, to)) if left > 0 => {
-                let [from, to] = [from, to].map(|x| told(&x.into()));
+                let [from, to] = [from, to].map(|x| told(&Cell::written(x)));
                 return format!("{from} to {to}, {} values", self.known.len());
             }
             Some(_) => first.sort_by(|a, b| f64::total_cmp(&number(a), &number(b))),
@@ -87,6 +84,6 @@ impl Seen {
     }
 }
 
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_default()
+fn number(value: &Cell<'_>) -> f64 {
+    value.number().unwrap_or_default()
 }

@@ -8,6 +8,7 @@ use crate::words;
 use anstyle::Style;
 use anyhow::Result;
 use pontoon_judge::compare::{Comparison, Line, Verdict};
+use pontoon_plan::input::Cell;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
@@ -87,8 +88,8 @@ fn verdict_first(line: &Line) -> Vec<String> {
     vec![verdict, check, expected, got, deviation, margin, remark]
 }
 
-/// Rows as values, some columns to the right.
-fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec<Value>> {
+/// Rows as cells, some columns to the right.
+fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec<Cell<'static>>> {
     let width = |i: usize| {
         let longest = rows.iter().map(|row| row[i].width()).max().unwrap_or(0);
         longest.max(heads[i].width())
@@ -96,9 +97,9 @@ fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec
     let widths: Vec<usize> = (0..heads.len()).map(width).collect();
     let cell = |(i, text): (usize, String)| {
         if columns.contains(&i) {
-            words::padded(&text, widths[i], true).into()
+            Cell::Word(words::padded(&text, widths[i], true).into())
         } else {
-            text.into()
+            Cell::Word(text.into())
         }
     };
     rows.into_iter()

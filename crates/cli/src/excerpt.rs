@@ -4,8 +4,8 @@
 
 use crate::terminal::Look;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, renderer::DecorStyle};
-use pontoon_plan::input::{Refusal, Spot, SpotKind, spot};
-use pontoon_view::labels::printable;
+use pontoon_plan::input::{Mark, MarkKind, Refusal, RefusalKind, mark};
+use pontoon_results::labels::printable;
 use std::fs;
 use std::ops::Range;
 use std::path::Path;
@@ -20,12 +20,12 @@ const WIDTH: usize = 120;
 /// The place that a refusal is about, where it is one of a file that a person wrote. Ends in a line end.
 pub(crate) fn excerpt(refusal: &Refusal, look: Look) -> Option<String> {
     let text = text_of(&refusal.file)?;
-    let spot = spot(&text, &refusal.key, &refusal.found)?;
+    let mark = mark(&text, refusal)?;
     Some(shown(
         &refusal.file.display().to_string(),
         &text,
-        &spot,
-        &label(refusal, &spot.kind),
+        &mark,
+        &label(refusal, &mark.kind),
         look,
     ))
 }
@@ -41,18 +41,20 @@ fn text_of(file: &Path) -> Option<String> {
 }
 
 /// What is said at the place.
-fn label(refusal: &Refusal, kind: &SpotKind) -> String {
-    let allowed = || format!("allowed: {}", refusal.allowed);
+fn label(refusal: &Refusal, kind: &MarkKind) -> String {
+    let allowed = || match refusal.allowed.as_str() {
+        "" => "not allowed".to_owned(),
+        allowed => format!("allowed: {allowed}"),
+    };
     let label = match kind {
-        SpotKind::Fault(message) if refusal.allowed == "JSON" => message.clone(),
-        SpotKind::Fault(_) => allowed(),
-        SpotKind::Twice(_) => "again here".to_owned(),
-        SpotKind::Around if refusal.found == "nothing" => {
-            let name = refusal.key.rsplit('.').next().unwrap_or_default();
-            format!("{name} is missing")
+        MarkKind::Fault(Some(message)) => message.clone(),
+        MarkKind::Fault(None) => allowed(),
+        MarkKind::Twice(_) => "again here".to_owned(),
+        MarkKind::Around if refusal.kind == RefusalKind::Missing && refusal.found.is_nothing() => {
+            format!("{} is missing", refusal.name())
         }
-        SpotKind::Around => refusal.found.clone(),
-        SpotKind::Key | SpotKind::Value => match &refusal.nearest {
+        MarkKind::Around => refusal.found.text(),
+        MarkKind::Key | MarkKind::Value => match &refusal.nearest {
             Some(nearest) => format!("nearest known: {nearest}"),
             None => allowed(),
         },
@@ -62,28 +64,28 @@ fn label(refusal: &Refusal, kind: &SpotKind) -> String {
         return label;
     }
     match kind {
-        SpotKind::Key | SpotKind::Value => "not allowed".to_owned(),
+        MarkKind::Key | MarkKind::Value => "not allowed".to_owned(),
         _ => label.chars().take(LONGEST_LABEL - 3).collect::<String>() + "...",
     }
 }
 
 /// A place of a text.
-fn shown(file: &str, text: &str, spot: &Spot, label: &str, look: Look) -> String {
-    let first = match &spot.kind {
-        SpotKind::Twice(first) => Some(first.clone()),
+fn shown(file: &str, text: &str, mark: &Mark, label: &str, look: Look) -> String {
+    let first = match &mark.kind {
+        MarkKind::Twice(first) => Some(first.clone()),
         _ => None,
     };
     // the lines from the first mark to the last
-    let begin = first.as_ref().map_or(spot.bytes.start, |first| first.start);
+    let begin = first.as_ref().map_or(mark.bytes.start, |first| first.start);
     let from = text[..begin].rfind('\n').map_or(0, |end| end + 1);
-    let to = text[spot.bytes.end..]
+    let to = text[mark.bytes.end..]
         .find('\n')
-        .map_or(text.len(), |end| spot.bytes.end + end);
+        .map_or(text.len(), |end| mark.bytes.end + end);
     let within = |bytes: &Range<usize>| bytes.start - from..bytes.end - from;
     let mut snippet = Snippet::source(text[from..to].trim_end_matches('\r'))
         .line_start(1 + text[..from].matches('\n').count())
         .path(file)
-        .annotation(AnnotationKind::Primary.span(within(&spot.bytes)).label(label));
+        .annotation(AnnotationKind::Primary.span(within(&mark.bytes)).label(label));
     if let Some(first) = &first {
         snippet = snippet.annotation(AnnotationKind::Context.span(within(first)).label("first here"));
     }

@@ -2,8 +2,9 @@
 //!
 //! Knows text. Does not know what it says.
 
-pub(crate) use pontoon_view::labels::printable;
-use serde_json::Value;
+use pontoon_plan::input::Cell;
+use pontoon_results::labels;
+pub(crate) use pontoon_results::labels::printable;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use unicode_width::UnicodeWidthStr;
 
@@ -35,10 +36,16 @@ pub(crate) fn note(line: &str) {
 }
 
 /// A table with its columns aligned, numbers to the right; a last line end.
-pub(crate) fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
+pub(crate) fn table(columns: &[String], rows: &[Vec<Cell<'_>>]) -> String {
     let cells: Vec<Vec<String>> = rows
         .iter()
-        .map(|row| columns.iter().zip(row).map(|(c, v)| cell(c, v)).collect())
+        .map(|row| {
+            columns
+                .iter()
+                .zip(row)
+                .map(|(name, cell)| labels::listed(name, cell))
+                .collect()
+        })
         .collect();
     let width = |i: usize| {
         let longest = cells.iter().map(|row| row[i].width()).max().unwrap_or(0);
@@ -46,7 +53,7 @@ pub(crate) fn table(columns: &[String], rows: &[Vec<Value>]) -> String {
     };
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();
     let numbers: Vec<bool> = (0..columns.len())
-        .map(|i| rows.iter().all(|row| !row[i].is_string()))
+        .map(|i| rows.iter().all(|row| row[i].word().is_none()))
         .collect();
     let line = |row: &[String]| {
         let mut text = String::new();
@@ -107,32 +114,6 @@ pub(crate) fn listed(
     wrapped(&format!("{begin}{}", entries.join(", ")), width, indent).replace(KEPT, " ")
 }
 
-/// How a cell is written for people: axes as they are, computed lengths to a tenth of a millimetre, forces to a newton.
-fn cell(column: &str, value: &Value) -> String {
-    match value {
-        Value::Null => "-".to_owned(),
-        Value::String(word) => printable(word),
-        Value::Number(n) => match n.as_f64() {
-            Some(x) if column.starts_with("peak_") && column.ends_with("_m") => format!("{x:.4}"),
-            Some(x) if column.starts_with("peak_") && column.ends_with("_n") => format!("{x:.0}"),
-            Some(x) if column == "frequency_hz" => format!("{x:.5}"),
-            Some(x) if column.ends_with("_share") => format!("{x:.4}"),
-            _ => n.to_string(),
-        },
-        other => other.to_string(),
-    }
-}
-
-/// A number with six digits.
-pub(crate) fn significant(x: f64) -> String {
-    if x != 0.0 && (x.abs() < 1e-4 || x.abs() >= 1e7) {
-        return format!("{x:.5e}");
-    }
-    let digits = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
-    let decimals = usize::try_from(5 - digits).unwrap_or(0);
-    format!("{x:.decimals$}")
-}
-
 /// A count with its thousands apart.
 pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
@@ -164,14 +145,13 @@ pub(crate) fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     #[test]
     fn numbers_stand_to_the_right_and_nothing_is_a_dash() {
         let columns = ["connection", "speed_m_s", "peak_deflection_m"].map(str::to_owned);
         let rows = [
-            vec![json!("linear"), json!(3), json!(0.14)],
-            vec![json!("nonlinear"), json!(6.09), json!(null)],
+            vec![Cell::from("linear"), Cell::Whole(3), Cell::Number(0.14)],
+            vec![Cell::from("nonlinear"), Cell::Number(6.09), Cell::Nothing],
         ];
         let expected = "connection  speed_m_s  peak_deflection_m\n\
                         linear              3             0.1400\n\

@@ -3,30 +3,110 @@
 //! Knows how to say which key was wrong, what was found and what is allowed. Does not know files: the caller adds
 //! the file's name.
 
+use std::fmt;
 use thiserror::Error;
 
-/// An input that was refused: the key's path, what was found, what is allowed.
+/// What is wrong with a value of an input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Problem {
+    /// There is no value where one is required.
+    Missing,
+    /// The value is out of its range: a number, a count, the length of a list.
+    NotAllowed,
+    /// The key has no place here: another key that excludes it is given.
+    Misplaced,
+    /// The value is given twice.
+    Repeated,
+    /// The value contradicts another value.
+    Conflict,
+}
+
+impl Problem {
+    /// What follows the value found in a message.
+    pub fn words_after_found(self) -> &'static str {
+        match self {
+            Self::Repeated => " twice",
+            Self::Missing | Self::NotAllowed | Self::Misplaced | Self::Conflict => "",
+        }
+    }
+}
+
+/// What stands in the place of an allowed value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Found {
+    /// Nothing.
+    Nothing,
+    /// A number, as the input has it.
+    Number(f64),
+    /// What no single value of the input is, in words: `a sum of 0.9`.
+    Words(String),
+}
+
+impl From<f64> for Found {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<usize> for Found {
+    fn from(count: usize) -> Self {
+        Self::Number(count as f64)
+    }
+}
+
+impl From<&str> for Found {
+    fn from(words: &str) -> Self {
+        Self::Words(words.to_owned())
+    }
+}
+
+impl From<String> for Found {
+    fn from(words: String) -> Self {
+        Self::Words(words)
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nothing => f.write_str("nothing"),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Words(words) => f.write_str(words),
+        }
+    }
+}
+
+/// An input that was refused: the key's path, what is wrong with it, what was found, what is allowed.
 ///
 /// `key` is relative to the document that was checked (`module.length_m`, `axles[1].share`).
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{key}: found {found}, allowed: {allowed}")]
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{key}: found {found}{}, allowed: {allowed}", problem.words_after_found())]
 pub struct InvalidInput {
     /// Path of the key inside its document, segments joined by dots, list places in brackets.
     pub key: String,
-    /// The value found, as text.
-    pub found: String,
+    /// What is wrong.
+    pub problem: Problem,
+    /// What was found.
+    pub found: Found,
     /// The values allowed, as text.
     pub allowed: String,
 }
 
 impl InvalidInput {
-    /// An error on `key` with what was found and what is allowed.
-    pub fn new(key: impl Into<String>, found: impl ToString, allowed: impl Into<String>) -> Self {
+    /// An error on `key` whose value is not allowed, with what was found and what is allowed.
+    pub fn new(key: impl Into<String>, found: impl Into<Found>, allowed: impl Into<String>) -> Self {
         Self {
             key: key.into(),
-            found: found.to_string(),
+            problem: Problem::NotAllowed,
+            found: found.into(),
             allowed: allowed.into(),
         }
+    }
+
+    /// The same error with another problem.
+    #[must_use]
+    pub fn because(self, problem: Problem) -> Self {
+        Self { problem, ..self }
     }
 
     /// The same error with `prefix` put before its key.
@@ -87,8 +167,8 @@ pub(crate) const SAME_PLACE_M: f64 = 1e-6;
 pub(crate) fn apart(key: &str, places: &[f64]) -> Result<(), InvalidInput> {
     for (i, &place) in places.iter().enumerate() {
         if places[..i].iter().any(|&other| (other - place).abs() <= SAME_PLACE_M) {
-            let found = format!("{place} twice");
-            return Err(InvalidInput::new(format!("{key}[{i}]"), found, "each place once"));
+            let refused = InvalidInput::new(format!("{key}[{i}]"), place, "each place once");
+            return Err(refused.because(Problem::Repeated));
         }
     }
     Ok(())

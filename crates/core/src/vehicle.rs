@@ -3,7 +3,7 @@
 //! Knows axles, patches and where their points stand for a given place of the vehicle. Does not know the bridge: what
 //! a point does to the deck is the track's business.
 
-use crate::input::{InvalidInput, not_negative, positive, within};
+use crate::input::{InvalidInput, Problem, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -134,14 +134,16 @@ impl VehicleDesign {
                         "footprint_length_m",
                         "both a footprint and axles",
                         "one of the two",
-                    ));
+                    )
+                    .because(Problem::Misplaced));
                 }
                 if self.track_y_m.is_some() {
                     return Err(InvalidInput::new(
                         "track_y_m",
                         "both a footprint's tracks and axles",
                         "one of the two",
-                    ));
+                    )
+                    .because(Problem::Misplaced));
                 }
                 Ok(axles.clone())
             }
@@ -189,11 +191,10 @@ impl VehicleDesign {
             not_negative(&key(k, "patch_length_m"), axle.patch_length_m)?;
             not_negative(&key(k, "patch_width_m"), axle.patch_width_m)?;
             if self.inertia == Inertia::Convective && axle.patch_length_m == 0.0 {
-                return Err(InvalidInput::new(
-                    key(k, "patch_length_m"),
-                    0.0,
-                    "above 0 with convective inertia",
-                ));
+                return Err(
+                    InvalidInput::new(key(k, "patch_length_m"), 0.0, "above 0 with convective inertia")
+                        .because(Problem::Conflict),
+                );
             }
             if axle.track_y_m.is_empty() {
                 return Err(InvalidInput::new(

@@ -3,9 +3,13 @@
 //! | module | charter |
 //! |---|---|
 //! | `record` | all rows of one job |
+//! | `failure` | why a job failed |
 //! | `preparation`, `verification`, `outcome` | what a run leaves behind beside its records |
-//! | `layout` | which columns each table has |
-//! | `columns` | the few types of columns, filled one after the other |
+//! | `registry` | the columns of all tables, one entry each |
+//! | [`labels`] | what columns are called, and the digits of a number |
+//! | `varying` | which axes vary |
+//! | `layout` | which tables a study leaves, and their rows from records |
+//! | `arrays` | the few types of columns, filled one after the other |
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
@@ -14,34 +18,40 @@
 //! Knows columns, provenance, and how a folder proves to be whole. Does not know how a record came about. The only crate that
 //! knows the table library. Tables hold nothing that changes from run to run; the manifest does.
 
-mod columns;
+mod arrays;
+mod failure;
 mod files;
 mod frame;
+pub mod labels;
 mod layout;
-
 mod manifest;
 mod moment;
 mod outcome;
 mod parquet;
 mod preparation;
 mod record;
+mod registry;
 mod results;
 mod summary;
 mod table;
+mod varying;
 mod verification;
 mod writer;
 
+pub use arrays::CellKind;
+pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE};
-pub use layout::axis_names;
 pub use manifest::{Manifest, SessionNote, check_own};
 pub use moment::Moment;
-pub use outcome::{Cause, Failures, Outcome, words_of_reason};
+pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::Provenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
 pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PositionRow, Summary};
+pub use registry::{COLUMNS, Card, Column, Curve, Digits, QUANTITIES, Role, SpeedFigure, When};
 pub use results::{Results, ResultsError};
-pub use summary::{Cell, PEAKS, SummaryTable};
+pub use summary::SummaryTable;
 pub use table::{Kind, Table, TableName};
+pub use varying::Seen;
 pub use verification::Verification;
 pub use writer::Writer;
 

@@ -108,18 +108,16 @@ impl Manifest {
         provenance: &Provenance,
     ) -> Self {
         let preparation = &outcome.preparation;
-        let condensed = jobs
-            .iter()
-            .filter(|job| job.analysis.spec.model == ModelSpec::SuperElement);
+        let condensed = jobs.iter().filter(|job| job.model() == ModelSpec::SuperElement);
         Self {
             version: crate::VERSION,
             commit: provenance.commit.clone(),
-            name: study.spec.name.clone(),
-            study: study.document.clone(),
-            study_blake3: study.text_and_hash().1,
-            bridge: study.bridge.document.clone(),
-            bridge_blake3: study.bridge_text_and_hash().1,
-            seeds: study.seeds(),
+            name: study.name.clone(),
+            study: study.document.value(),
+            study_blake3: study.document.hash(),
+            bridge: study.bridge.document.value(),
+            bridge_blake3: study.bridge.document.hash(),
+            seeds: study.seeds.clone(),
             jobs: jobs.len(),
             failed: outcome.failures.count,
             merged: study.points() - jobs.len(),
@@ -162,8 +160,8 @@ pub(super) fn is_whole(folder: &Path, study: &Study, jobs: usize, tables: &[Stri
         ("version", crate::VERSION.into()),
         ("commit", provenance.commit.clone().into()),
         ("instruction_path", provenance.instruction_paths.join("; ").into()),
-        ("study_blake3", study.text_and_hash().1.into()),
-        ("bridge_blake3", study.bridge_text_and_hash().1.into()),
+        ("study_blake3", study.document.hash().into()),
+        ("bridge_blake3", study.bridge.document.hash().into()),
         ("jobs", Value::from(jobs)),
     ];
     let hashes = told["tables"].as_object();
@@ -186,12 +184,8 @@ pub fn check_own(folder: &Path, name: &str) -> Result<(), Refusal> {
     match manifest.as_ref().and_then(|manifest| manifest["name"].as_str()) {
         Some(other) if other != name => {
             let allowed = format!("a folder without results, or with those of '{name}'; --fresh moves them aside");
-            Err(Refusal::new(
-                &file,
-                "name",
-                format!("results of the study '{other}'"),
-                allowed,
-            ))
+            let found = format!("results of the study '{other}'");
+            Err(Refusal::new(&file, "name", found, allowed))
         }
         _ => Ok(()),
     }

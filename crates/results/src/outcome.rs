@@ -2,12 +2,10 @@
 //!
 //! Knows counts, times and the first reasons of failure. Keeps no record.
 
+use super::failure::FailureKind;
 use super::preparation::Preparation;
 use super::record::JobRecord;
 use super::verification::Verification;
-
-/// Causes that are told apart.
-const CAUSES_KEPT: usize = 100;
 
 /// Reasons that are kept of jobs that failed; all are in the table of jobs.
 const FAILURES_KEPT: usize = 10;
@@ -44,82 +42,66 @@ pub struct Failures {
     pub causes: Vec<Cause>,
 }
 
-/// Jobs that failed for the same cause: their reasons differ in numbers alone.
+/// Jobs that failed for one cause: failures of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cause {
+    /// The kind.
+    pub kind: FailureKind,
     /// How many.
     pub count: usize,
     /// The first of them.
     pub job: usize,
-    /// Its reason.
+    /// Why that one did.
     pub reason: String,
-    words: String,
 }
 
 impl Failures {
     /// Counts those among the next records.
     pub fn take(&mut self, records: &[JobRecord]) {
         for record in records {
-            let Some(reason) = &record.reason else { continue };
+            let Some(failure) = &record.failure else { continue };
             self.count += 1;
             if self.first.len() < FAILURES_KEPT {
-                self.first.push((record.job, reason.clone()));
+                self.first.push((record.job, failure.text.clone()));
             }
-            let words = words_of_reason(reason);
-            match self.causes.iter().position(|cause| cause.words == words) {
-                Some(known) => self.causes[known].count += 1,
-                None if self.causes.len() < CAUSES_KEPT => self.causes.push(Cause {
+            match self.causes.iter_mut().find(|cause| cause.kind == failure.kind) {
+                Some(known) => known.count += 1,
+                None => self.causes.push(Cause {
+                    kind: failure.kind,
                     count: 1,
                     job: record.job,
-                    reason: reason.clone(),
-                    words,
+                    reason: failure.text.clone(),
                 }),
-                None => {}
             }
         }
         self.causes.sort_by_key(|cause| std::cmp::Reverse(cause.count));
     }
 }
 
-/// A reason without its numbers: what is the same for all jobs that fail for it.
-pub fn words_of_reason(reason: &str) -> String {
-    let numeric = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
-    let mut words = String::new();
-    for word in reason.split_whitespace() {
-        let word = word.trim_matches(|c: char| matches!(c, '(' | ')' | ',' | ';' | ':'));
-        // 0.1, -3, 1.5e-7
-        if !word.starts_with(numeric) {
-            words.push_str(word);
-            words.push(' ');
-        }
-    }
-    words
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Failure;
 
     #[test]
-    fn reasons_that_differ_in_numbers_are_one_cause() {
-        let record = |job, reason: &str| JobRecord {
+    fn failures_of_one_kind_are_one_cause_whatever_their_numbers_and_words() {
+        let record = |job, kind, text: &str, time_s| JobRecord {
             job,
-            reason: Some(reason.to_owned()),
+            failure: Some(Failure::new(kind, text).with("time_s", time_s)),
             ..JobRecord::default()
         };
         let mut failures = Failures::default();
         failures.take(&[
-            record(1, "response not finite at t = 1.250000 s"),
-            record(
-                2,
-                "contact not settled at t = 0.5 s in connector 3 (joint 2, y = -1.4 m) after 6 bisections",
-            ),
-            record(
-                3,
-                "contact not settled at t = 1.5e-3 s in connector 11 (joint 8, y = 1.4 m) after 6 bisections",
-            ),
+            record(1, FailureKind::NotFinite, "a", 1.25),
+            record(2, FailureKind::ContactNotSettled, "a", 0.5),
+            record(3, FailureKind::ContactNotSettled, "b", 1.5e-3),
         ]);
-        let causes: Vec<(usize, usize)> = failures.causes.iter().map(|c| (c.count, c.job)).collect();
-        assert_eq!((failures.count, causes), (3, vec![(2, 2), (1, 1)]));
+        let causes: Vec<(FailureKind, usize, usize)> =
+            failures.causes.iter().map(|c| (c.kind, c.count, c.job)).collect();
+        assert_eq!(failures.count, 3);
+        assert_eq!(
+            causes,
+            [(FailureKind::ContactNotSettled, 2, 2), (FailureKind::NotFinite, 1, 1)]
+        );
     }
 }

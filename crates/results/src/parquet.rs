@@ -23,8 +23,9 @@ pub struct Provenance {
 
 /// What every table of a study carries: nothing of it changes from run to run.
 pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> Vec<(String, String)> {
-    let (study_text, study_hash) = study.text_and_hash();
-    let (bridge_text, bridge_hash) = study.bridge_text_and_hash();
+    let (study_text, study_hash) = (study.document.text().to_owned(), study.document.hash());
+    let bridge = &study.bridge.document;
+    let (bridge_text, bridge_hash) = (bridge.text().to_owned(), bridge.hash());
     let mut hashes: Vec<&str> = Vec::new();
     let mut seen = std::collections::HashSet::new();
     for job in jobs {
@@ -32,7 +33,7 @@ pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> Vec<(Str
             hashes.push(&job.bridge.hash);
         }
     }
-    let seeds: Vec<String> = study.seeds().iter().map(ToString::to_string).collect();
+    let seeds: Vec<String> = study.seeds.iter().map(ToString::to_string).collect();
     let pairs = [
         ("pontoon.version", crate::VERSION.to_owned()),
         ("pontoon.commit", of.commit.clone().unwrap_or_default()),

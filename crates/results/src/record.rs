@@ -3,6 +3,7 @@
 //! Knows which numbers a job leaves and that a number is either there or null. Does not know tables. A record can be
 //! written and read back without loss, so that a journal can stand between the jobs and the tables.
 
+use super::failure::Failure;
 use pontoon_plan::job::Job;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,9 @@ pub struct JobRecord {
     #[serde(skip)]
     pub job: usize,
     /// Why it failed; null where it did not.
-    pub reason: Option<String>,
+    pub failure: Option<Failure>,
+    /// Why it failed at its own time step, of a job that came to its end at half of it.
+    pub retried: Option<Failure>,
     /// Its row of the table of jobs; all null where it failed.
     pub summary: Summary,
     /// Its rows of the table of positions.
@@ -70,8 +73,6 @@ pub struct Summary {
     pub min_contact_force_n: Option<f64>,
     /// Time step that the program has found for the job, where it was to find one `[s]`.
     pub time_step_s: Option<f64>,
-    /// Why it failed at its own time step, of a job that came to its end at half of it.
-    pub retried: Option<String>,
     /// Time steps.
     pub steps: Option<usize>,
     /// Newton solutions.
@@ -204,7 +205,7 @@ impl HistoryRows {
 
 impl JobRecord {
     /// The record of a job that failed: the rows of a job that did not, their numbers null.
-    pub fn failed(job: &Job, reason: String) -> Self {
+    pub fn failed(job: &Job, failure: Failure) -> Self {
         let design = &job.bridge.design;
         let none = Extreme::default();
         let positions = (1..=design.positions()).map(|position| PositionRow {
@@ -226,7 +227,8 @@ impl JobRecord {
         });
         Self {
             job: job.number,
-            reason: Some(reason),
+            failure: Some(failure),
+            retried: None,
             summary: Summary::default(),
             positions: positions.collect(),
             connectors: connectors.collect(),
@@ -274,6 +276,7 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::FailureKind;
 
     fn row(joint: usize, y_m: Option<f64>, force_n: f64) -> ConnectorRow {
         ConnectorRow::force(joint, y_m, force_n)
@@ -314,7 +317,8 @@ mod tests {
         };
         let record = JobRecord {
             job: 0,
-            reason: None,
+            failure: Some(Failure::new(FailureKind::NotFinite, "why").with("time_s", 0.1)),
+            retried: None,
             summary: Summary {
                 peak_deflection_m: Some(1e-300),
                 ..Summary::default()

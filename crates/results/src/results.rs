@@ -5,16 +5,18 @@
 
 use super::files::MANIFEST;
 use super::frame::read;
-use super::layout::{FIRST_OUTCOMES, Layout};
+use super::layout::Layout;
+use super::registry::Column;
 use super::table::{Table, TableName};
 use crate::JobRecord;
 use pontoon_journal::place::hash_of;
-use pontoon_plan::input::{Refusal, text_and_hash};
+use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
 use serde_json::Value;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs::File;
+use std::io;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -96,7 +98,7 @@ impl Results {
             .as_object()
             .ok_or_else(|| damaged(&file, "no hashes of its tables, as an earlier version left none"))?;
         for document in ["study", "bridge"] {
-            let (_, hash) = text_and_hash(&manifest[document]);
+            let hash = Document::from(&manifest[document]).hash();
             if manifest[format!("{document}_blake3")].as_str() != Some(&hash) {
                 return Err(damaged(&file, &format!("a {document} that is not the one of its hash")));
             }
@@ -117,7 +119,8 @@ impl Results {
                         return Err(damaged(&path, "not the bytes that the manifest names"));
                     }
                     if table == TableName::Jobs || wanted.contains(&table) {
-                        tables.insert(table, read_table(&path).map_err(|found| damaged(&path, &found))?);
+                        let read = read_table(&path).map_err(|e| damaged(&path, &e.to_string()))?;
+                        tables.insert(table, read);
                     } else {
                         on_disk.insert(table, path);
                     }
@@ -138,61 +141,43 @@ impl Results {
                 &format!("{} rows of jobs where {count:?} ran", jobs.rows()),
             ));
         }
-        let documents = (manifest["study"].clone(), manifest["bridge"].clone());
-        let results = Self::new(name, folder, documents, jobs, tables);
-        let mut results = results.map_err(|found| damaged(&jobs_file, &found))?;
-        (results.manifest, results.on_disk) = (manifest, on_disk);
-        Ok(results)
-    }
-
-    /// The tables of a run that has just ended.
-    ///
-    /// # Errors
-    /// The table library's words.
-    pub fn of_run(study: &Study, jobs: &[Job], records: &[JobRecord], place: &Path) -> Result<Self, String> {
-        let layout = Layout::new(study, jobs);
-        let mut tables = BTreeMap::new();
-        for name in layout.tables() {
-            let frame = layout.frame(name, jobs, records);
-            let table = frame
-                .and_then(|f| Table::from_frames(&[f]))
-                .map_err(|e| e.to_string())?;
-            tables.insert(name, table);
-        }
-        let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
-        let documents = (study.document.clone(), study.bridge.document.clone());
-        Self::new(&study.spec.name, place, documents, job_table, tables)
-    }
-
-    fn new(
-        name: &str,
-        place: &Path,
-        (study, bridge): (Value, Value),
-        jobs: Table,
-        tables: BTreeMap<TableName, Table>,
-    ) -> Result<Self, String> {
-        let whole = |row| {
-            let number = jobs.number("job", row).filter(|n| *n >= 0.0 && n.fract() == 0.0);
-            number.map(|n| n as u64)
-        };
-        let numbers: Option<Vec<u64>> = (0..jobs.rows()).map(whole).collect();
-        let row_of = |numbers: &Vec<u64>| numbers.iter().enumerate().map(|(row, n)| (*n, row)).collect();
-        let row_of_job: HashMap<u64, usize> = numbers.as_ref().map(row_of).unwrap_or_default();
-        let Some(numbers) = numbers.filter(|numbers| numbers.len() == row_of_job.len()) else {
-            return Err("job numbers that are not whole or not unique".to_owned());
-        };
+        let numbers =
+            numbers_of(&jobs).ok_or_else(|| damaged(&jobs_file, "job numbers that are not whole or not unique"))?;
         Ok(Self {
             name: name.to_owned(),
+            place: folder.to_owned(),
+            study: manifest["study"].clone(),
+            bridge: manifest["bridge"].clone(),
+            manifest: manifest.clone(),
+            tables,
+            on_disk,
+            jobs,
+            row_of_job: numbers.iter().enumerate().map(|(row, n)| (*n, row)).collect(),
+            numbers,
+        })
+    }
+
+    /// The tables of records, without a file or a data frame: of a run that has just ended, or is not done.
+    pub fn of_records(study: &Study, jobs: &[Job], records: &[JobRecord], place: &Path) -> Self {
+        let layout = Layout::new(study, jobs);
+        let mut tables: BTreeMap<TableName, Table> = layout
+            .tables()
+            .map(|name| (name, layout.table(name, jobs, records)))
+            .collect();
+        let job_table = tables.remove(&TableName::Jobs).unwrap_or_default();
+        let numbers: Vec<u64> = records.iter().map(|record| record.job as u64).collect();
+        Self {
+            name: study.name.clone(),
             place: place.to_owned(),
-            study,
-            bridge,
+            study: study.document.value(),
+            bridge: study.bridge.document.value(),
             manifest: Value::Null,
             on_disk: BTreeMap::new(),
             tables,
-            jobs,
+            jobs: job_table,
+            row_of_job: numbers.iter().enumerate().map(|(row, n)| (*n, row)).collect(),
             numbers,
-            row_of_job,
-        })
+        }
     }
 
     /// The table of jobs.
@@ -217,7 +202,7 @@ impl Results {
         loop {
             let part = read_part(path, columns, start).map_err(|found| ResultsError::Damaged {
                 file: path.clone(),
-                found,
+                found: found.to_string(),
             })?;
             if part.rows() == 0 {
                 return Ok(());
@@ -265,29 +250,36 @@ impl Results {
 
     /// The columns of the table of jobs that are axes.
     pub fn axes(&self) -> Vec<String> {
-        let names = self.jobs.names().skip_while(|name| *name != "reason").skip(1);
-        names
-            .take_while(|name| !FIRST_OUTCOMES.contains(name))
-            .map(str::to_owned)
-            .collect()
+        let is_axis = |name: &&str| Column::of(TableName::Jobs, name).is_none();
+        self.jobs.names().filter(is_axis).map(str::to_owned).collect()
     }
 }
 
+/// The number of the job in each row of the table of jobs; none where one is not whole, or stands twice.
+fn numbers_of(jobs: &Table) -> Option<Vec<u64>> {
+    let whole = |row| {
+        let number = jobs.number("job", row).filter(|n| *n >= 0.0 && n.fract() == 0.0);
+        number.map(|n| n as u64)
+    };
+    let numbers: Vec<u64> = (0..jobs.rows()).map(whole).collect::<Option<_>>()?;
+    let distinct: HashSet<&u64> = numbers.iter().collect();
+    (distinct.len() == numbers.len()).then_some(numbers)
+}
+
 /// Reads a Parquet file; that the library panics over it is an error like any other.
-fn read_table(path: &Path) -> Result<Table, String> {
+fn read_table(path: &Path) -> io::Result<Table> {
     guarded(path, None, &(0..usize::MAX))
 }
 
 /// Reads some rows of some columns, of those that the file has.
-fn read_part(path: &Path, columns: &[&str], start: usize) -> Result<Table, String> {
+fn read_part(path: &Path, columns: &[&str], start: usize) -> io::Result<Table> {
     guarded(path, Some(columns), &(start..start.saturating_add(SCANNED)))
 }
 
-fn guarded(path: &Path, columns: Option<&[&str]>, rows: &Range<usize>) -> Result<Table, String> {
+fn guarded(path: &Path, columns: Option<&[&str]>, rows: &Range<usize>) -> io::Result<Table> {
     let read = || {
-        let frames = File::open(path).and_then(|mut file| read(&mut file, columns, rows));
-        let table = frames.and_then(|frames| Table::from_frames(&frames));
-        table.map_err(|e| e.to_string())
+        let frames = read(&mut File::open(path)?, columns, rows)?;
+        Table::from_frames(&frames)
     };
-    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err("no readable Parquet file".to_owned()))
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err(io::Error::other("no readable Parquet file")))
 }

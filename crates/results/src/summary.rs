@@ -3,16 +3,14 @@
 //! Knows the order of rows and how a cell is written. Keeps of a job what its row holds beside the axes, which the job has.
 //! Does not know terminals.
 
-use super::layout::axis_names;
 use crate::JobRecord;
+use crate::registry::{Column, Source};
+use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
-use serde_json::Value;
 use std::collections::HashMap;
+use std::fmt::Write as _;
 use std::io::{self, Write};
-
-/// A cell: a number, a word, or nothing.
-pub type Cell = Value;
 
 /// The summary of a study. Its rows are made as they are asked for: a million of them are no matter.
 #[derive(Debug, Clone)]
@@ -28,19 +26,12 @@ pub struct SummaryTable<'a> {
 /// What the rows hold beside the axes, in the order of jobs.
 #[derive(Debug, Clone)]
 enum Outcomes {
-    /// The peaks of each job; not a number where there is none.
-    Peaks(Vec<[f64; 4]>),
+    /// The peaks of each job, one job after the other; not a number where there is none.
+    Peaks(Vec<f64>),
     /// Of each mode its job, number, frequency `[Hz]` and shape.
     Modes(Vec<(usize, usize, f64, String)>),
 }
 
-/// The peaks of a summary of crossings or static cases, in the order of its columns.
-pub const PEAKS: [&str; 4] = [
-    "peak_deflection_m",
-    "peak_uplift_m",
-    "peak_compression_n",
-    "peak_tension_n",
-];
 const MODES: [&str; 3] = ["number", "frequency_hz", "shape"];
 /// The axis that rows follow within a combination of the others.
 const AGAINST: &str = "speed_m_s";
@@ -58,11 +49,13 @@ impl<'a> Lines<'a> {
     /// Nothing yet of a study with all its jobs.
     pub(super) fn new(study: &Study, jobs: &'a [Job]) -> Self {
         Self {
-            axes: axis_names(study),
+            axes: study.axis_columns(),
             jobs,
-            outcomes: match study.spec.analysis.kind {
+            outcomes: match study.analysis.kind() {
                 Kind::Modes => Outcomes::Modes(Vec::new()),
-                Kind::Crossing | Kind::Static => Outcomes::Peaks(Vec::with_capacity(jobs.len())),
+                Kind::Crossing | Kind::Static => {
+                    Outcomes::Peaks(Vec::with_capacity(jobs.len() * Column::of_summary().count()))
+                }
             },
             taken: 0,
         }
@@ -71,16 +64,15 @@ impl<'a> Lines<'a> {
     /// Takes what it needs of the records of the next jobs.
     pub(super) fn append(&mut self, records: &[JobRecord]) {
         match &mut self.outcomes {
-            Outcomes::Peaks(peaks) => peaks.extend(records.iter().map(|record| {
-                let s = &record.summary;
-                let peaks = [
-                    s.peak_deflection_m,
-                    s.peak_uplift_m,
-                    s.peak_compression_n,
-                    s.peak_tension_n,
-                ];
-                peaks.map(|peak| peak.unwrap_or(f64::NAN))
-            })),
+            Outcomes::Peaks(peaks) => {
+                let of = |record, column: &Column| match column.source {
+                    Source::Job(of) => of(record).number().unwrap_or(f64::NAN),
+                    _ => f64::NAN,
+                };
+                for record in records {
+                    peaks.extend(Column::of_summary().map(|column| of(record, column)));
+                }
+            }
             Outcomes::Modes(modes) => {
                 for (job, record) in (self.taken..).zip(records) {
                     let of_job = record.modes.iter();
@@ -94,14 +86,15 @@ impl<'a> Lines<'a> {
     /// The summary of a run: combinations of the other axes in the order of their first job, speeds increasing; modes as
     /// they are. A job that failed has empty peaks.
     pub(super) fn summary(self) -> SummaryTable<'a> {
-        let (axes, order, more) = match &self.outcomes {
+        let (axes, order, more): (_, _, Vec<&str>) = match &self.outcomes {
             Outcomes::Peaks(peaks) => {
                 let (against, others): (Vec<String>, Vec<String>) =
                     self.axes.into_iter().partition(|name| name == AGAINST);
-                let order = against_speed(&self.jobs[..peaks.len()], &others, &against);
-                ([others, against].concat(), order, &PEAKS[..])
+                let columns: Vec<&str> = Column::of_summary().map(|column| column.name).collect();
+                let order = against_speed(&self.jobs[..peaks.len() / columns.len()], &others, &against);
+                ([others, against].concat(), order, columns)
             }
-            Outcomes::Modes(modes) => (self.axes, (0..modes.len()).collect(), &MODES[..]),
+            Outcomes::Modes(modes) => (self.axes, (0..modes.len()).collect(), MODES.to_vec()),
         };
         let more = more.iter().map(|name| (*name).to_owned());
         SummaryTable {
@@ -119,13 +112,18 @@ fn against_speed(jobs: &[Job], others: &[String], against: &[String]) -> Vec<usi
     // half a hash stands for the combination, which may be long and of which there may be as many as jobs
     let mut groups: HashMap<[u8; 16], u32> = HashMap::new();
     let mut keys: Vec<(u32, f64)> = Vec::with_capacity(jobs.len());
+    let mut text = String::new();
     for job in jobs {
-        let of_group: Vec<Cell> = others.iter().map(|name| job.column(name)).collect();
+        text.clear();
+        for name in others {
+            // to a string, which takes whatever is written
+            let _ = write!(text, "{},", job.column(name));
+        }
         let next = u32::try_from(groups.len()).unwrap_or(u32::MAX);
         let mut hash = [0; 16];
-        hash.copy_from_slice(&blake3::hash(Value::from(of_group).to_string().as_bytes()).as_bytes()[..16]);
+        hash.copy_from_slice(&blake3::hash(text.as_bytes()).as_bytes()[..16]);
         let group = *groups.entry(hash).or_insert(next);
-        let speed = against.first().and_then(|name| job.column(name).as_f64());
+        let speed = against.first().and_then(|name| job.column(name).number());
         keys.push((group, speed.unwrap_or_default()));
     }
     drop(groups);
@@ -154,13 +152,18 @@ impl SummaryTable<'_> {
     }
 
     /// The rows.
-    pub fn rows(&self) -> impl Iterator<Item = Vec<Cell>> {
+    pub fn rows(&self) -> impl Iterator<Item = Vec<Cell<'_>>> {
         self.order.iter().map(|&place| self.row(place))
     }
 
-    fn row(&self, place: usize) -> Vec<Cell> {
-        let (job, outcomes) = match &self.outcomes {
-            Outcomes::Peaks(peaks) => (place, peaks[place].map(Value::from).to_vec()),
+    fn row(&self, place: usize) -> Vec<Cell<'_>> {
+        let (job, outcomes): (usize, Vec<Cell<'_>>) = match &self.outcomes {
+            Outcomes::Peaks(peaks) => {
+                let count = Column::of_summary().count();
+                let own = &peaks[place * count..(place + 1) * count];
+                let cell = |x: &f64| Some(*x).filter(|x| !x.is_nan()).into();
+                (place, own.iter().map(cell).collect())
+            }
             Outcomes::Modes(modes) => {
                 let (job, number, frequency_hz, shape) = &modes[place];
                 (
@@ -181,18 +184,9 @@ impl SummaryTable<'_> {
         let mut to = csv::Writer::from_writer(to);
         to.write_record(&self.columns)?;
         for row in self.rows() {
-            to.write_record(row.iter().map(cell))?;
+            to.write_record(row.iter().map(Cell::text))?;
         }
         to.flush()
-    }
-}
-
-/// A cell as text: nothing of a null, a word as it is, JSON of any other value.
-fn cell(value: &Cell) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(word) => word.clone(),
-        other => other.to_string(),
     }
 }
 
@@ -208,7 +202,9 @@ mod tests {
             [json!("linear"), json!([-1.4, 1.4]), json!(0.25)],
             [json!("linear"), json!([1]), json!(null)],
         ] {
-            lines.write_record(row.iter().map(cell)).unwrap();
+            lines
+                .write_record(row.iter().map(|value| Cell::of(value).text()))
+                .unwrap();
         }
         assert_eq!(
             String::from_utf8(lines.into_inner().unwrap()).unwrap(),

@@ -2,12 +2,13 @@
 //!
 //! Knows cells by column and row. Does not know files or what a column means.
 
+use super::arrays::{self, Columns};
 use super::frame::Frame;
 use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
 use polars_arrow::datatypes::ArrowDataType;
+use pontoon_plan::input::Cell;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::io;
@@ -145,6 +146,26 @@ impl Table {
         })
     }
 
+    /// The table of columns.
+    pub(super) fn from_columns(columns: Columns<'_>) -> Self {
+        let cells = |cells: arrays::Cells<'_>| match cells {
+            arrays::Cells::Numbers(numbers) => Cells::Numbers(numbers),
+            arrays::Cells::Counts(counts) => Cells::Numbers(counts.iter().map(|x| x.map(|x| x as f64)).collect()),
+            arrays::Cells::Flags(flags) => Cells::Flags(flags),
+            arrays::Cells::Words(words) => {
+                let words = words.into_iter();
+                Cells::Words(words.map(|word| word.map(|word| word.into_owned())).collect())
+            }
+        };
+        let columns: Vec<(String, Cells)> = columns.0.into_iter().map(|(name, own)| (name, cells(own))).collect();
+        let rows = columns.first().map_or(0, |(_, cells)| match cells {
+            Cells::Numbers(list) => list.len(),
+            Cells::Words(list) => list.len(),
+            Cells::Flags(list) => list.len(),
+        });
+        Self { rows, columns }
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.rows
@@ -207,12 +228,12 @@ impl Table {
         }
     }
 
-    /// A cell; null where it is empty or not there.
-    pub fn cell(&self, column: &str, row: usize) -> Value {
+    /// A cell; nothing where it is empty or not there.
+    pub fn cell(&self, column: &str, row: usize) -> Cell<'_> {
         let cell = self.cells(column).and_then(|cells| match cells {
-            Cells::Numbers(list) => list.get(row)?.map(Value::from),
-            Cells::Words(list) => list.get(row)?.clone().map(Value::from),
-            Cells::Flags(list) => list.get(row)?.map(Value::from),
+            Cells::Numbers(list) => list.get(row)?.map(Cell::Number),
+            Cells::Words(list) => list.get(row)?.as_deref().map(Cell::from),
+            Cells::Flags(list) => list.get(row)?.map(Cell::Flag),
         });
         cell.unwrap_or_default()
     }

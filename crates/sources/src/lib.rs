@@ -17,6 +17,7 @@ pub const RECORDS: &[&str] = &[
     "core/src",
     "plan/Cargo.toml",
     "plan/src",
+    "results/src/failure.rs",
     "results/src/record.rs",
     "study/Cargo.toml",
     "study/src",

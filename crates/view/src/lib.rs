@@ -2,7 +2,6 @@
 //!
 //! | module | charter |
 //! |---|---|
-//! | [`labels`] | what columns are called, in which unit they are, how a value is written |
 //! | `thinning` | a few places that stand for many |
 //! | [`figures`] | what a paper would draw of results, as numbers, with the points of a reference beside them |
 //! | [`drawing`] | figures as SVG and PNG, with their captions |
@@ -15,7 +14,6 @@
 pub mod drawing;
 pub mod export;
 pub mod figures;
-pub mod labels;
 pub mod page;
 pub mod report;
 pub(crate) mod thinning;

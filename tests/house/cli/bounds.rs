@@ -34,7 +34,7 @@ fn one_module_has_no_bending_modes_to_take_the_damping_from() {
     stage.study["record"] = json!({});
     refused(
         stage.write(),
-        &["study.json: analysis.damping.frequencies_hz: found nothing, allowed: two frequencies"],
+        &["study.json: analysis.damping.frequencies_hz: missing key `frequencies_hz`, allowed: two frequencies"],
     );
     stage.study["analysis"]["damping"] = json!({ "frequencies_hz": [0.3, 0.6] });
     let output = stage.write().pontoon(&["run", "study.json", "--out", "r"]);

@@ -39,15 +39,15 @@ fn parameters_that_the_bridge_does_not_have_or_that_cannot_move() {
         ),
         (
             of(parameter("module.material", 1.0, 2.0)),
-            &["parameters[0].name: found 'module.material', which is no number"],
+            &["parameters[0].name: found \"module.material\", which is no number"],
         ),
         (
             of(parameter("name", 1.0, 2.0)),
-            &["parameters[0].name: found 'name', which is no number"],
+            &["parameters[0].name: found \"name\", which is no number"],
         ),
         (
             of(parameter("hinges.y_m", 1.0, 2.0)),
-            &["found 'hinges.y_m', which is no number"],
+            &["found \"hinges.y_m\", which is no number"],
         ),
         (
             of(parameter("hinges.y_m[9]", 1.0, 2.0)),
@@ -55,7 +55,7 @@ fn parameters_that_the_bridge_does_not_have_or_that_cannot_move() {
         ),
         (
             of(parameter("modules", 2.0, 5.0)),
-            &["parameters[0].name: found 'modules', a whole number"],
+            &["parameters[0].name: found \"modules\", a whole number"],
         ),
         (
             sets(json!({ "module.deck_thicknes_m": 1 })),
@@ -104,7 +104,7 @@ fn bounds_that_are_none() {
         (of(parameter(name, -1e308, 1e308)), &["parameters[0].upper: "]),
         (
             of(json!({ "name": name, "lower": 7000 })),
-            &["parameters[0].upper: found nothing"],
+            &["parameters[0].upper: missing key `upper`"],
         ),
         (
             of(json!({ "name": name, "lower": "a", "upper": 1 })),
@@ -132,7 +132,7 @@ fn numbers_that_two_things_move() {
         (
             json!([plates("a"), plates("a")]),
             json!({}),
-            &["parameters[1].name: found 'a' twice"][..],
+            &["parameters[1].name: found \"a\" twice"][..],
         ),
         (
             json!([plates("a"), plates("b")]),
@@ -147,7 +147,7 @@ fn numbers_that_two_things_move() {
         (
             json!([added, mass]),
             json!({}),
-            &["parameters[0].name: found 'added_mass_kg_m', which follows 'total_mass_kg_m'"],
+            &["parameters[0].name: found \"added_mass_kg_m\", which follows 'total_mass_kg_m'"],
         ),
         (
             json!([added]),
@@ -209,7 +209,7 @@ fn checks_that_cannot_be_fitted() {
     let each = json!({ "id": "each", "each": ["analysis.model"], "mode": mode });
     stage.json("modes.reference.json", &document("modes.json", &[bare, bound, each]));
     for id in ["bare", "bound", "each"] {
-        let found = format!("fit[0]: found '{id}', which is no check of one value with a tolerance");
+        let found = format!("fit[0]: found \"{id}\", which is no check of one value with a tolerance");
         refused(&stage, &with("fit", json!([id])), &[&found]);
     }
 }
@@ -224,7 +224,11 @@ fn references_and_files_that_are_not_there() {
     refused(&stage, &parameters(), &["gone.json: found no readable file"]);
     reference.as_object_mut().unwrap().remove("study");
     stage.json("statics.reference.json", &reference);
-    refused(&stage, &parameters(), &["statics.reference.json: study: found nothing"]);
+    refused(
+        &stage,
+        &parameters(),
+        &["statics.reference.json: study: missing key `study`"],
+    );
     // what a fitted check names is looked for where the first bridge is computed
     for (key, value, parts) in [
         (

@@ -51,13 +51,16 @@ fn names_that_the_results_do_not_have() {
         (
             "r",
             select(json!({ "table": "job", "column": "x_m" })),
-            &["checks[0].value.of.select.table: found 'job'", "nearest known: jobs"][..],
+            &[
+                "checks[0].value.of.select.table: found unknown \"job\"",
+                "nearest known: jobs",
+            ][..],
         ),
         (
             "r",
             select(json!({ "table": "modes", "column": "frequency_hz" })),
             &[
-                "select.table: found 'modes', which the results do not hold",
+                "select.table: found \"modes\", which the results do not hold",
                 "jobs, positions, connectors, histories",
             ],
         ),
@@ -69,7 +72,7 @@ fn names_that_the_results_do_not_have() {
         (
             "r",
             select(json!({ "table": "jobs", "column": "connection" })),
-            &["select.column: found 'connection', a column of words"],
+            &["select.column: found \"connection\", a column of words"],
         ),
         (
             "r",
@@ -85,7 +88,7 @@ fn names_that_the_results_do_not_have() {
             "r",
             json!({ "where": { "connection": "nonlinera" }, "value": value() }),
             &[
-                "checks[0].where.connection: found unknown 'nonlinera'",
+                "checks[0].where.connection: found unknown \"nonlinera\"",
                 "nearest known: nonlinear",
             ],
         ),
@@ -102,7 +105,7 @@ fn names_that_the_results_do_not_have() {
         (
             "r",
             json!({ "where": { "job": 6 }, "value": value() }),
-            &["checks[0].where.job: found no job 6, allowed: 0 to 5"],
+            &["checks[0].where.job: found 6, which is no job, allowed: 0 to 5"],
         ),
         (
             "r",
@@ -122,7 +125,7 @@ fn names_that_the_results_do_not_have() {
         (
             "r",
             json!({ "trend": { "of": of(), "along": "connection", "trend": "rises" } }),
-            &["checks[0].trend.along: found 'connection', a column of words"],
+            &["checks[0].trend.along: found \"connection\", a column of words"],
         ),
         (
             "r",
@@ -147,7 +150,7 @@ fn names_that_the_results_do_not_have() {
         (
             "r",
             json!({ "mode": { "shape": "heave", "expected_hz": 1, "relative_tolerance": 0.1 } }),
-            &["checks[0].mode: found 'modes', which the results do not hold"],
+            &["checks[0].mode: found \"modes\", which the results do not hold"],
         ),
         (
             "m",
@@ -157,7 +160,7 @@ fn names_that_the_results_do_not_have() {
         (
             "m",
             json!({ "bound": { "of": { "history": { "quantity": "force_n", "position": 2, "reduce": "max" } }, "at_least": 0 } }),
-            &["checks[0].bound.of.history: found 'histories', which the results do not hold"],
+            &["checks[0].bound.of.history: found \"histories\", which the results do not hold"],
         ),
     ] {
         check(&stage, results, &made, parts);
@@ -276,7 +279,7 @@ fn what_can_be_no_check_whatever_the_results() {
         ),
         (
             json!({ "value": { "of": of() } }),
-            &["checks[0].value.expected: found nothing"],
+            &["checks[0].value.expected: missing key `expected`"],
         ),
         (
             json!({ "bound": { "of": of(), "at_least": 2, "at_most": 1 } }),
@@ -284,7 +287,7 @@ fn what_can_be_no_check_whatever_the_results() {
         ),
         (
             json!({ "trend": { "of": of(), "along": "speed_m_s", "trend": "flat" } }),
-            &["checks[0].trend.within: found nothing"],
+            &["checks[0].trend.within: missing key `within`"],
         ),
         (
             json!({ "trend": { "of": of(), "along": "speed_m_s", "trend": "rises", "within": 0.1 } }),
@@ -296,7 +299,7 @@ fn what_can_be_no_check_whatever_the_results() {
         ),
         (
             json!({ "measured": { "of": of(), "value": 1 } }),
-            &["checks[0].measured.uncertainty: found nothing"],
+            &["checks[0].measured.uncertainty: missing key `uncertainty`"],
         ),
         (
             json!({ "measured": { "of": of(), "value": 1, "uncertainty": -1 } }),
@@ -329,7 +332,7 @@ fn what_can_be_no_check_whatever_the_results() {
         ),
         (
             json!({ "valeu": value() }),
-            &["checks[0].valeu: found unknown key 'valeu'", "nearest known: value"],
+            &["checks[0].valeu: found unknown key `valeu`", "nearest known: value"],
         ),
         (
             with("expcted", json!(1)),
@@ -341,13 +344,16 @@ fn what_can_be_no_check_whatever_the_results() {
         ),
         (
             with("expected", json!(null)),
-            &["checks[0].value.expected: found nothing"],
+            &["checks[0].value.expected: missing key `expected`"],
         ),
         (with("of", json!(7)), &["checks[0].value.of: found 7"]),
         (with("of", json!({})), &["checks[0].value.of: found an object"]),
         (
             with("of", json!({ "slect": {} })),
-            &["checks[0].value.of: ", "nearest known: select"],
+            &[
+                "checks[0].value.of.slect: found unknown key `slect`",
+                "nearest known: select",
+            ],
         ),
         (
             with("of", json!({ "largest": [] })),
@@ -401,7 +407,10 @@ fn what_can_be_no_check_whatever_the_results() {
                 "of",
                 json!({ "history": { "quantity": "force_n", "position": 2, "reduce": "max", "from": { "centre_past": 1 } } }),
             ),
-            &["checks[0].value.of.history.from: ", "nearest known: centre_past_m"],
+            &[
+                "checks[0].value.of.history.from.centre_past: ",
+                "nearest known: centre_past_m",
+            ],
         ),
     ] {
         check(&stage, "r", &made, parts);
@@ -414,12 +423,15 @@ fn references_as_a_whole() {
     let good = json!({ "id": "a", "value": value() });
     for (document, parts) in [
         (reference(&json!([])), &["checks: found an empty list"][..]),
-        (reference(&json!([good, good])), &["checks[1].id: found 'a' twice"]),
+        (reference(&json!([good, good])), &["checks[1].id: found \"a\" twice"]),
         (reference(&json!({})), &["checks: found an object, allowed: a list"]),
-        (json!({ "name": "x", "checks": [good] }), &["source: found nothing"]),
+        (
+            json!({ "name": "x", "checks": [good] }),
+            &["source: missing key `source`"],
+        ),
         (
             json!({ "name": "x", "source": "y", "checks": [good], "not": 1 }),
-            &["not: found unknown key 'not'"],
+            &["not: found unknown key `not`"],
         ),
         (json!([]), &["found "]),
     ] {
@@ -428,7 +440,10 @@ fn references_as_a_whole() {
     for (text, parts) in [
         ("", "found an empty file"),
         ("not json", "allowed: JSON"),
-        (r#"{"name": "x", "source": "y", "name": "z"}"#, "the key 'name' twice"),
+        (
+            r#"{"name": "x", "source": "y", "name": "z"}"#,
+            "the key `name` twice, at line 1, column 30",
+        ),
         (
             r#"{"name": "x", "source": "y", "checks": [{"id": "a", "value": {"expected": NaN}}]}"#,
             "checks[0].value.expected: found NaN",

@@ -209,12 +209,9 @@ fn samples_that_cannot_be_drawn() {
             "linear or nonlinear, the same for all points",
         );
         // what a point itself may not be
-        bad(
-            form(name, json!(5), json!({ "speed_m_s": [5, 10] })),
-            &format!(".{name}.ranges"),
-            "no load_n",
-            "load_n as one of the axes",
-        );
+        let message = format!("design[0].{name}.ranges.load_n: missing key `load_n` (required)");
+        let of_speed = form(name, json!(5), json!({ "speed_m_s": [5, 10] }));
+        study("", "design", json!([of_speed]), &[&message]);
         bad(
             form(
                 name,
@@ -222,8 +219,8 @@ fn samples_that_cannot_be_drawn() {
                 json!({ "connection": "linaer", "speed_m_s": [5, 10], "load_n": 1e5 }),
             ),
             &format!(".{name}.ranges.connection"),
-            "unknown 'linaer'",
-            "linear, nonlinear; nearest known: linear",
+            "unknown \"linaer\" (nearest known: linear)",
+            "linear, nonlinear",
         );
         study(
             "",
@@ -265,20 +262,20 @@ fn conditions_that_cannot_be_met_or_understood() {
     bad(
         grid(json!({ "sped_m_s": 5 })),
         ".where.sped_m_s",
-        "unknown 'sped_m_s'",
-        "speed_m_s, load_n; nearest known: speed_m_s",
+        "unknown key `sped_m_s` (nearest known: speed_m_s)",
+        "speed_m_s, load_n",
     );
     bad(
         grid(json!({ "speed_m_s": { "below": "load" } })),
         ".where.speed_m_s.below",
-        "unknown 'load'",
-        "speed_m_s, load_n; nearest known: load_n",
+        "unknown \"load\" (nearest known: load_n)",
+        "speed_m_s, load_n",
     );
     bad(
         grid(json!({ "speed_m_s": { "belo": "load_n" } })),
         ".where.speed_m_s.belo",
-        "unknown key 'belo'",
-        "from, to, at_least, at_most, above, below; nearest known: below",
+        "unknown key `belo` (nearest known: below)",
+        "from, to, at_least, at_most, above, below",
     );
     bad(
         grid(json!({ "speed_m_s": { "at_least": 5 } })),

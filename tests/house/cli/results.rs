@@ -17,7 +17,7 @@ fn small() -> Stage {
     stage
 }
 
-const JOBS: &str = "job status reason connection gap_tension_m gap_compression_m speed_m_s load_n peak_deflection_m \
+const JOBS: &str = "job status reason failure connection gap_tension_m gap_compression_m speed_m_s load_n peak_deflection_m \
     peak_deflection_position peak_deflection_time_s peak_uplift_m peak_uplift_position peak_uplift_time_s \
     peak_compression_n peak_compression_joint peak_tension_n peak_tension_joint peak_edge_deflection_m peak_roll_rad \
     static_peak_deflection_m dynamic_amplification influential_length_m bottom_emerged deck_submerged \

@@ -134,7 +134,7 @@ fn what_lacks_a_key_is_marked() {
  --> study.json:7:7
   |
 7 |     { "grid": { "gap_tension_m": [0.028, 0.0], "gap_compression_m": 0.0055,
-  |       ^^^^^^^^^ no speed_m_s
+  |       ^^^^^^^^^ speed_m_s is missing
 "#,
     );
 }

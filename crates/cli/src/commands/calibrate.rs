@@ -5,11 +5,12 @@ use crate::ending::Ending;
 use crate::words;
 use anyhow::{Context, Result};
 use pontoon_journal::place::Folder;
-use pontoon_judge::calibrate::{Calibration, Parameters, Task};
+use pontoon_judge::calibrate::{Calibration, FittedCheck, Identified, Parameters, Task};
 use pontoon_judge::reference::Reference;
-use pontoon_plan::input::{Refusal, pretty};
+use pontoon_plan::input::{Cell, Refusal, pretty};
 use pontoon_plan::study_file::read_bridge;
-use serde_json::{Value, json};
+use pontoon_results::labels;
+use serde_json::json;
 use std::path::Path;
 
 /// Fits, writes the bridge and says what was found.
@@ -72,57 +73,18 @@ fn place(out: &Path) -> Result<(Folder, String)> {
     ))
 }
 
+/// Digits of a number that was fitted.
+const FITTED: usize = 6;
+
+fn number(x: f64) -> Cell<'static> {
+    Cell::Word(labels::all_digits(x, FITTED).into())
+}
+
+fn columns(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
 fn text(found: &Calibration, out: &Path) -> String {
-    let columns = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    let number = |x: f64| Value::from(words::significant(x));
-    let checks: Vec<Vec<Value>> = found
-        .checks
-        .iter()
-        .map(|c| {
-            let share = |x: f64| {
-                let text = if x.abs() < 1e6 {
-                    format!("{x:+.3}")
-                } else {
-                    format!("{x:+.3e}")
-                };
-                Value::from(text)
-            };
-            let numbers = [c.expected, c.before, c.after].map(number);
-            let residuals = [c.residual_before, c.residual_after].map(share);
-            [vec![Value::from(c.id.clone())], numbers.to_vec(), residuals.to_vec()].concat()
-        })
-        .collect();
-    let parameters: Vec<Vec<Value>> = found
-        .parameters
-        .iter()
-        .map(|p| {
-            let error = p.standard_error.map_or(Value::Null, number);
-            let range = format!("{} to {}", words::significant(p.lower), words::significant(p.upper));
-            let remark = p.remark.clone().unwrap_or_default();
-            vec![
-                p.name.clone().into(),
-                number(p.start),
-                number(p.found),
-                error,
-                range.into(),
-                remark.into(),
-            ]
-        })
-        .collect();
-    let names: Vec<String> = (1..=found.parameters.len()).map(|i| format!("({i})")).collect();
-    let correlation: Vec<Vec<Value>> = found
-        .correlation
-        .iter()
-        .zip(&found.parameters)
-        .enumerate()
-        .map(|(i, (row, p))| {
-            let cells = row.iter().map(|r| r.map_or(Value::Null, |r| format!("{r:+.2}").into()));
-            [Value::from(format!("({}) {}", i + 1, p.name))]
-                .into_iter()
-                .chain(cells)
-                .collect()
-        })
-        .collect();
     let all = found.parameters.iter().all(|p| p.standard_error.is_some());
     let undetermined = match found.undetermined.as_slice() {
         [] if all => "the data determine every parameter\n".to_owned(),
@@ -133,15 +95,9 @@ fn text(found: &Calibration, out: &Path) -> String {
     };
     format!(
         "{}\n{}\n{}\n{undetermined}sum of squares {:.4} before, {:.4} after; {} candidates, {} modules condensed, {} candidates failed\n{}: {}\nbridge in {}\n",
-        words::table(
-            &columns(&["check", "expected", "before", "after", "off before", "off after"]),
-            &checks
-        ),
-        words::table(
-            &columns(&["parameter", "start", "found", "standard error", "bounds", "remark"]),
-            &parameters
-        ),
-        words::table(&[vec!["correlation".to_owned()], names].concat(), &correlation),
+        checks(&found.checks),
+        parameters(&found.parameters),
+        correlation(found),
         found.sum_of_squares_start,
         found.sum_of_squares_best,
         found.evaluations,
@@ -151,4 +107,64 @@ fn text(found: &Calibration, out: &Path) -> String {
         found.ending,
         out.display()
     )
+}
+
+/// A row a check: what it is off before and after.
+fn checks(checks: &[FittedCheck]) -> String {
+    let share = |x: f64| {
+        let text = if x.abs() < 1e6 {
+            format!("{x:+.3}")
+        } else {
+            format!("{x:+.3e}")
+        };
+        Cell::Word(text.into())
+    };
+    let row = |check: &FittedCheck| {
+        let numbers = [check.expected, check.before, check.after].map(number);
+        let residuals = [check.residual_before, check.residual_after].map(share);
+        [
+            vec![Cell::Word(check.id.clone().into())],
+            numbers.to_vec(),
+            residuals.to_vec(),
+        ]
+        .concat()
+    };
+    words::table(
+        &columns(&["check", "expected", "before", "after", "off before", "off after"]),
+        &checks.iter().map(row).collect::<Vec<_>>(),
+    )
+}
+
+/// A row a parameter.
+fn parameters(parameters: &[Identified]) -> String {
+    let row = |p: &Identified| {
+        let [lower, upper] = [p.lower, p.upper].map(|x| labels::all_digits(x, FITTED));
+        vec![
+            Cell::Word(p.name.clone().into()),
+            number(p.start),
+            number(p.found),
+            p.standard_error.map_or(Cell::Nothing, number),
+            Cell::Word(format!("{lower} to {upper}").into()),
+            Cell::Word(p.remark.clone().unwrap_or_default().into()),
+        ]
+    };
+    words::table(
+        &columns(&["parameter", "start", "found", "standard error", "bounds", "remark"]),
+        &parameters.iter().map(row).collect::<Vec<_>>(),
+    )
+}
+
+/// How far each two parameters move together.
+fn correlation(found: &Calibration) -> String {
+    let names = (1..=found.parameters.len()).map(|i| format!("({i})"));
+    let heads: Vec<String> = std::iter::once("correlation".to_owned()).chain(names).collect();
+    let rows = found.correlation.iter().zip(&found.parameters).enumerate();
+    let rows = rows.map(|(i, (row, p))| {
+        let cells = row
+            .iter()
+            .map(|r| r.map_or(Cell::Nothing, |r| Cell::Word(format!("{r:+.2}").into())));
+        let name = Cell::Word(format!("({}) {}", i + 1, p.name).into());
+        std::iter::once(name).chain(cells).collect()
+    });
+    words::table(&heads, &rows.collect::<Vec<_>>())
 }

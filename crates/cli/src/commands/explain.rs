@@ -23,6 +23,8 @@ fn text(told: &Explanation) -> String {
         ("state", told.state.to_owned()),
         ("why", told.why.clone()),
     ];
+    let failure = told.failure.as_ref().map(|failure| failure.kind.word().to_owned());
+    lines.extend(failure.map(|kind| ("failure", kind)));
     lines.extend(told.reason.clone().map(|reason| ("reason", reason)));
     lines.extend(told.axes.iter().map(|(name, value)| (name.as_str(), value.to_string())));
     lines.push(("steps", told.steps.to_string()));

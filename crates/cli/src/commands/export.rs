@@ -4,10 +4,10 @@ use crate::args::{Common, ConnectionArgument, ExportArguments, Format};
 use crate::ending::Ending;
 use crate::words;
 use anyhow::Result;
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Cell, Refusal};
 use pontoon_study::modes::BridgeError;
-use pontoon_view::export::{ExportError, Exported, LoadRequest, Request, export as write};
-use serde_json::{Value, json};
+use pontoon_view::export::{ExportError, Exported, LoadRequest, Part, Request, export as write};
+use serde_json::json;
 
 /// Writes what is asked for and says which files to open.
 pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Ending> {
@@ -45,7 +45,15 @@ pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Endi
 
 fn text(exported: &Exported, to: &str) -> String {
     let columns = ["file", "instants", "points", "cells", "shows"].map(str::to_owned);
-    let row = |part: &Value| columns.iter().map(|column| part[column].clone()).collect();
-    let rows: Vec<Vec<Value>> = exported.parts.iter().map(|part| row(&json!(part))).collect();
+    let row = |part: &'_ Part| {
+        vec![
+            Cell::Word(part.file.clone().into()),
+            part.instants.into(),
+            part.points.into(),
+            part.cells.into(),
+            Cell::Word(part.shows.clone().into()),
+        ]
+    };
+    let rows: Vec<Vec<Cell<'_>>> = exported.parts.iter().map(row).collect();
     format!("{}{} files in {to}\n", words::table(&columns, &rows), exported.files)
 }

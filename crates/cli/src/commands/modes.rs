@@ -5,10 +5,11 @@ use crate::ending::Ending;
 use crate::terminal::Look;
 use crate::words;
 use anyhow::Result;
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::study_file::read_bridge;
+use pontoon_results::{Column, TableName};
 use pontoon_study::modes::{ModesError, ModesRequest, modes as find};
-use serde_json::{Value, json};
+use serde_json::json;
 use unicode_width::UnicodeWidthStr;
 
 /// Finds the lowest modes of a bridge file.
@@ -29,25 +30,20 @@ pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(found)),
         _ => {
-            let columns = [
-                "number",
-                "frequency_hz",
-                "shape",
-                "vertical_share",
-                "torsion_share",
-                "horizontal_share",
-                "axial_share",
-            ];
-            let row = |mode: &Value| columns.iter().map(|column| mode[column].clone()).collect();
-            let rows: Vec<Vec<Value>> = found.iter().map(|mode| row(&json!(mode))).collect();
-            fitting(&columns.map(str::to_owned), &rows)
+            // there is one job: its number says nothing
+            let columns: Vec<&Column> = Column::of_table(TableName::Modes)
+                .filter(|column| column.name != "job")
+                .collect();
+            let names: Vec<String> = columns.iter().map(|column| column.name.to_owned()).collect();
+            let row = |mode| columns.iter().map(|column| column.of_mode(mode)).collect();
+            fitting(&names, &found.iter().map(row).collect::<Vec<_>>())
         }
     })?;
     Ok(Ending::Good)
 }
 
 /// The table with as many of its shares as a terminal has room for.
-fn fitting(columns: &[String], rows: &[Vec<Value>]) -> String {
+fn fitting(columns: &[String], rows: &[Vec<Cell<'_>>]) -> String {
     let table = |columns: &[String]| words::table(columns, rows);
     let fits = |table: &String| {
         let width = Look::of_results().width;

@@ -16,7 +16,7 @@ use unicode_width::UnicodeWidthStr;
 pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
     let study = Study::open(&arguments.study)?;
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let default_out = || PathBuf::from("results").join(&study.spec.name);
+    let default_out = || PathBuf::from("results").join(&study.name);
     let out = arguments.out.clone().unwrap_or_else(default_out);
     let forecast = forecast(&study, &out, threads, Cache::of_user().as_ref())?;
     words::result(&match common.format {

@@ -10,14 +10,14 @@ use crate::{comparison, summary, words};
 use anyhow::Result;
 use pontoon_judge::compare::{Comparison, against_reference};
 use pontoon_judge::reference::Reference;
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{Failures, Outcome, Results, SummaryTable};
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{SweepSetting, Swept, run_apart, sweep};
 use serde::ser::{Serialize, Serializer};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     if let Some(reference) = &reference {
         // before anything runs
-        reference.study_of(&study.spec.name, &study.file)?;
+        reference.study_of(&study.name, &study.file)?;
     }
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let setting = setting(arguments, &study);
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
 
 fn setting(arguments: &RunArguments, study: &Study) -> SweepSetting {
     let default_out = || {
-        let whole = PathBuf::from("results").join(&study.spec.name);
+        let whole = PathBuf::from("results").join(&study.name);
         match arguments.shard {
             Some(shard) => whole.join("shards").join(format!("{}-of-{}", shard.number, shard.of)),
             None => whole,
@@ -129,9 +129,15 @@ fn failures(failures: &Failures) {
     if failures.count > failures.first.len() {
         words::note(&format!("{} jobs failed; by cause:", failures.count));
         for cause in &failures.causes {
-            words::note(&format!("  {} like job {}: {}", cause.count, cause.job, cause.reason));
+            words::note(&format!(
+                "  {} of {}, as job {}: {}",
+                cause.count,
+                cause.kind.word(),
+                cause.job,
+                cause.reason
+            ));
         }
-        words::note("see the column reason of jobs.parquet");
+        words::note("see the columns failure and reason of jobs.parquet");
     }
 }
 
@@ -189,8 +195,18 @@ struct Rows<'a>(&'a SummaryTable<'a>);
 impl Serialize for Rows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let columns = self.0.columns();
-        let row = |cells: Vec<Value>| columns.iter().cloned().zip(cells).collect::<Map<_, _>>();
-        serializer.collect_seq(self.0.rows().map(row))
+        serializer.collect_seq(self.0.rows().map(|cells| Row { columns, cells }))
+    }
+}
+
+struct Row<'a> {
+    columns: &'a [String],
+    cells: Vec<Cell<'a>>,
+}
+
+impl Serialize for Row<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.columns.iter().zip(&self.cells))
     }
 }
 
@@ -203,7 +219,7 @@ fn write_object(
 ) -> io::Result<()> {
     let outcome: &Outcome = &swept.outcome;
     let object = Object {
-        study: &study.spec.name,
+        study: &study.name,
         results: out.display().to_string(),
         jobs: outcome.jobs,
         ran: outcome.ran,

@@ -4,6 +4,7 @@ use crate::args::{Common, Format, StatusArguments};
 use crate::ending::Ending;
 use crate::words;
 use anyhow::Result;
+use pontoon_plan::input::Cell;
 use pontoon_study::sweep::{Standings, standings};
 use serde_json::{Value, json};
 
@@ -31,14 +32,14 @@ fn object(all: &Standings) -> Value {
 
 fn text(all: &Standings) -> String {
     let columns = ["folder", "study", "shard", "jobs", "done", "failed", "missing", "state"].map(str::to_owned);
-    let rows: Vec<Vec<Value>> = all
+    let rows: Vec<Vec<Cell<'_>>> = all
         .folders
         .iter()
         .map(|(path, s)| {
             vec![
-                path.display().to_string().into(),
+                Cell::Word(path.to_string_lossy()),
                 s.study.as_str().into(),
-                s.shard.clone().into(),
+                s.shard.as_deref().into(),
                 s.jobs.into(),
                 s.done.into(),
                 s.failed.into(),

@@ -13,7 +13,7 @@ const GAP: usize = 2;
 
 /// A value as it is written, with its style.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Cell {
+pub(super) struct Entry {
     /// The text; numbers end in a blank where others end in a mark.
     pub text: String,
     /// How it is painted.
@@ -39,7 +39,7 @@ pub(super) struct Grid {
     /// Heads of the columns of values, each of as many lines.
     pub heads: Vec<Vec<String>>,
     /// Values, a row of the table each.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<Entry>>,
     /// Blanks before a value: less than elsewhere where values end in one.
     pub gap: usize,
 }

@@ -26,7 +26,7 @@ use survey::Row;
 const WIDTH: usize = 118;
 
 /// The summary for people. `rows` are made as often as they are looked at.
-pub(crate) fn text<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I, look: Look) -> String {
+pub(crate) fn text<'a, I: Iterator<Item = Row<'a>>>(columns: &[String], rows: impl Fn() -> I, look: Look) -> String {
     let width = look.width.unwrap_or(WIDTH);
     if columns.last().is_some_and(|column| column == "shape") {
         modes::modes(columns, rows(), look, width)

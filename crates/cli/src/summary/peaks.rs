@@ -3,14 +3,14 @@
 //!
 //! Knows how many rows a person looks at. Does not know where rows come from.
 
-use super::grid::{Cell, Grid, Names};
-use super::label::{axis, heads, label, peak, told};
-use super::survey::{Row, Survey, hash};
+use super::grid::{Entry, Grid, Names};
+use super::label::{Head, axis, heads};
+use super::survey::{Along, Row, Survey, hash, peaks_among};
 use crate::terminal::{BAD, FAINT, Look, NOTABLE};
 use crate::words::{listed, wrapped};
 use anstyle::Style;
-use pontoon_results::PEAKS;
-use serde_json::Value;
+use pontoon_plan::input::Cell;
+use pontoon_results::labels;
 use std::collections::HashMap;
 
 /// Lines of rows that are written at most, over all pieces of a table.
@@ -22,10 +22,8 @@ const FEWEST_ROWS: usize = 5;
 /// What stands in a cell of a job that failed.
 const FAILED: &str = "failed";
 
-type Head = (String, Option<&'static str>);
-
 /// The peaks of a summary as a table and what is largest.
-pub(super) fn peaks<I: Iterator<Item = Row>>(
+pub(super) fn peaks<'a, I: Iterator<Item = Row<'a>>>(
     columns: &[String],
     rows: impl Fn() -> I,
     look: Look,
@@ -34,24 +32,23 @@ pub(super) fn peaks<I: Iterator<Item = Row>>(
     let survey = Survey::new(columns, &rows);
     let heads = heads(columns);
     let mut text = String::new();
-    if let Some(first) = columns.iter().find(|column| PEAKS.contains(&column.as_str())) {
-        let (name, unit) = label(first);
-        let of = if survey.along.is_some() {
-            format!("{name} [{}]", unit.unwrap_or_default())
-        } else {
-            "peaks".to_owned()
+    if let Some(&first) = peaks_among(columns).first() {
+        let peak = Head::of(&columns[first]);
+        text += &match &survey.along {
+            Some(along) => wrapped(
+                &format!(
+                    "{} [{}] against {}",
+                    peak.name,
+                    peak.unit.unwrap_or_default(),
+                    heads[along.axis].united()
+                ),
+                width,
+                2,
+            ),
+            None => wrapped("peaks", width, 2),
         };
-        let against = survey
-            .along
-            .as_ref()
-            .map_or(String::new(), |(i, _)| format!(" against {}", united(&heads[*i])));
-        text += &wrapped(&format!("{of}{against}"), width, 2);
     }
-    let constant: Vec<String> = survey
-        .constant
-        .iter()
-        .map(|(i, value)| told(&heads[*i], value))
-        .collect();
+    let constant: Vec<String> = survey.constant.iter().map(|(i, value)| heads[*i].told(value)).collect();
     if !constant.is_empty() {
         text += &listed("throughout: ", constant.iter(), width, 2);
     }
@@ -59,30 +56,26 @@ pub(super) fn peaks<I: Iterator<Item = Row>>(
         text.push('\n');
     }
     text += &match &survey.along {
-        Some((along, values)) => against(&survey, (*along, values), &heads, &rows, look, width),
+        Some(along) => against(&survey, along, columns, &heads, &rows, look, width),
         None => list(&survey, columns, &heads, &rows, look, width),
     };
     text + &largest(&survey, columns, &heads, look, width)
 }
 
-fn united((name, unit): &Head) -> String {
-    unit.map_or(name.clone(), |unit| format!("{name} [{unit}]"))
-}
-
 /// Values of the axes that vary, as the names of rows; heads a word a line.
-fn names(axes: &[usize], heads: &[Head], rows: &[Row]) -> Vec<Names> {
+fn names(axes: &[usize], heads: &[Head], rows: &[Row<'_>]) -> Vec<Names> {
     let column = |&i: &usize| {
-        let (name, unit) = &heads[i];
-        let words = name.split(' ').map(str::to_owned);
-        let told = |row: &Row| {
-            if row[i].is_null() {
+        let head = &heads[i];
+        let words = head.name.split(' ').map(str::to_owned);
+        let told = |row: &Row<'_>| {
+            if row[i].is_nothing() {
                 String::new()
             } else {
-                told(&heads[i], &row[i])
+                head.told(&row[i])
             }
         };
         Names {
-            head: words.chain(unit.map(|unit| format!("[{unit}]"))).collect(),
+            head: words.chain(head.unit.map(|unit| format!("[{unit}]"))).collect(),
             rows: rows.iter().map(|row| axis(&row[i])).collect(),
             told: rows.iter().map(told).collect(),
         }
@@ -91,42 +84,42 @@ fn names(axes: &[usize], heads: &[Head], rows: &[Row]) -> Vec<Names> {
 }
 
 /// The largest of its kind ends in a star; all others in a blank, so that their points stay under each other.
-fn cell(text: String, is_largest: bool) -> Cell {
-    if is_largest {
-        Cell {
-            text: text + "*",
-            style: NOTABLE,
-        }
+fn entry(text: String, is_largest: bool) -> Entry {
+    let (mark, style) = if is_largest {
+        ("*", NOTABLE)
     } else {
-        Cell {
-            text: text + " ",
-            style: Style::new(),
-        }
+        (" ", Style::new())
+    };
+    Entry {
+        text: text + mark,
+        style,
     }
 }
 
-fn of_peak(name: &str, value: &Value, is_largest: bool) -> Cell {
-    match value.as_f64() {
-        Some(x) => cell(peak(name, x), is_largest),
-        None => Cell {
+fn of_peak(name: &str, value: &Cell<'_>, is_largest: bool) -> Entry {
+    match value.number() {
+        Some(x) => entry(labels::digits(name, x), is_largest),
+        None => Entry {
             style: BAD,
-            ..cell(FAILED.to_owned(), false)
+            ..entry(FAILED.to_owned(), false)
         },
     }
 }
 
 /// The first peak against an axis.
-fn against<I: Iterator<Item = Row>>(
-    survey: &Survey,
-    (along, values): (usize, &[Value]),
+fn against<'a, I: Iterator<Item = Row<'a>>>(
+    survey: &Survey<'a>,
+    along: &Along<'a>,
+    columns: &[String],
     heads: &[Head],
     rows: &impl Fn() -> I,
     look: Look,
     width: usize,
 ) -> String {
-    let Some((peak_at, name)) = peak_column(survey) else {
+    let Some(peak) = survey.largest.first().map(|largest| largest.column) else {
         return "no job has a peak: all failed\n".to_owned();
     };
+    let values = &along.values;
     let mut grid = Grid {
         heads: values.iter().map(|value| vec![axis(value) + " "]).collect(),
         gap: 1,
@@ -134,7 +127,7 @@ fn against<I: Iterator<Item = Row>>(
     };
     let collect = |most: usize| {
         let mut places: HashMap<u64, usize> = HashMap::new();
-        let (mut first, mut cells): (Vec<Row>, Vec<Vec<Cell>>) = Default::default();
+        let (mut first, mut entries): (Vec<Row<'a>>, Vec<Vec<Entry>>) = Default::default();
         for row in rows() {
             let next = places.len();
             let known = hash(&row, &survey.varying);
@@ -142,23 +135,22 @@ fn against<I: Iterator<Item = Row>>(
                 Some(&place) => place,
                 None if next < most => {
                     places.insert(known, next);
-                    cells.push(vec![Cell::default(); values.len()]);
+                    entries.push(vec![Entry::default(); values.len()]);
                     first.push(row.clone());
                     next
                 }
                 None => continue,
             };
-            let at = values.iter().position(|value| *value == row[along]);
-            let is_largest = is_largest(survey, peak_at, &row);
-            if let Some(cell) = at.and_then(|at| cells[place].get_mut(at)) {
-                *cell = of_peak(name, &row[peak_at], is_largest);
+            let at = values.iter().position(|value| *value == row[along.axis]);
+            if let Some(entry) = at.and_then(|at| entries[place].get_mut(at)) {
+                *entry = of_peak(&columns[peak], &row[peak], is_largest(survey, peak, &row));
             }
         }
-        (first, cells)
+        (first, entries)
     };
-    let (first, cells) = collect(MOST_ROWS);
+    let (first, entries) = collect(MOST_ROWS);
     grid.names = names(&survey.varying, heads, &first);
-    grid.rows = cells;
+    grid.rows = entries;
     let shown = fitting(&mut grid, width);
     grid.written(width, look) + &more(survey.combinations - shown, "combinations", look)
 }
@@ -179,8 +171,8 @@ fn more(left: usize, of: &str, look: Look) -> String {
 }
 
 /// All peaks of jobs: in their order, of more than a person looks at those with the largest deflections.
-fn list<I: Iterator<Item = Row>>(
-    survey: &Survey,
+fn list<'a, I: Iterator<Item = Row<'a>>>(
+    survey: &Survey<'a>,
     columns: &[String],
     heads: &[Head],
     rows: &impl Fn() -> I,
@@ -191,17 +183,17 @@ fn list<I: Iterator<Item = Row>>(
     let Some(&first) = peaks.first() else {
         return "no rows\n".to_owned();
     };
-    let mut shown: Vec<Row> = Vec::new();
+    let mut shown: Vec<Row<'a>> = Vec::new();
     if survey.rows <= MOST_ROWS {
         shown = rows().collect();
     } else {
         let mut order: Vec<(f64, usize)> = rows()
-            .map(|row| row[first].as_f64().unwrap_or(f64::NEG_INFINITY))
+            .map(|row| row[first].number().unwrap_or(f64::NEG_INFINITY))
             .zip(0..)
             .collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let places: HashMap<usize, usize> = order.iter().take(MOST_ROWS).map(|o| o.1).zip(0..).collect();
-        let mut kept: Vec<(usize, Row)> = rows()
+        let mut kept: Vec<(usize, Row<'a>)> = rows()
             .enumerate()
             .filter_map(|(i, row)| places.get(&i).map(|&place| (place, row)))
             .collect();
@@ -214,8 +206,12 @@ fn list<I: Iterator<Item = Row>>(
         heads: peaks
             .iter()
             .map(|&i| {
-                let (name, unit) = label(columns[i].trim_start_matches("peak_"));
-                vec![name + " ", unit.map_or(String::new(), |unit| format!("[{unit}] "))]
+                let Head { name, unit } = Head::of(&columns[i]);
+                let name = name.trim_start_matches("peak ");
+                vec![
+                    format!("{name} "),
+                    unit.map_or(String::new(), |unit| format!("[{unit}] ")),
+                ]
             })
             .collect(),
         rows: shown
@@ -238,21 +234,25 @@ fn list<I: Iterator<Item = Row>>(
 }
 
 /// The largest of each peak and where it is.
-fn largest(survey: &Survey, columns: &[String], heads: &[Head], look: Look, width: usize) -> String {
-    let along = survey.along.iter().map(|(i, _)| *i);
+fn largest(survey: &Survey<'_>, columns: &[String], heads: &[Head], look: Look, width: usize) -> String {
+    let along = survey.along.iter().map(|along| along.axis);
     let axes: Vec<usize> = along.chain(survey.varying.iter().copied()).collect();
     let parts: Vec<(String, String, Vec<String>)> = survey
         .largest
         .iter()
-        .map(|(i, most, row)| {
-            let (name, unit) = label(&columns[*i]);
+        .map(|largest| {
+            let name = &columns[largest.column];
+            let head = Head::of(name);
             let at = axes
                 .iter()
-                .filter(|&&i| !row[i].is_null())
-                .map(|&i| told(&heads[i], &row[i]));
-            let at: Vec<String> = at.collect();
-            let value = format!("{} {}", peak(&columns[*i], *most), unit.unwrap_or_default());
-            (name.trim_start_matches("peak ").to_owned(), value, at)
+                .filter(|&&i| !largest.row[i].is_nothing())
+                .map(|&i| heads[i].told(&largest.row[i]));
+            let value = format!(
+                "{} {}",
+                labels::digits(name, largest.most),
+                head.unit.unwrap_or_default()
+            );
+            (head.name.trim_start_matches("peak ").to_owned(), value, at.collect())
         })
         .collect();
     if parts.is_empty() || survey.rows < 2 {
@@ -271,18 +271,11 @@ fn largest(survey: &Survey, columns: &[String], heads: &[Head], look: Look, widt
 }
 
 /// Whether the peak of a row is the largest, above nothing and not the only one.
-fn is_largest(survey: &Survey, column: usize, row: &Row) -> bool {
-    let mut largest = survey.largest.iter();
-    survey.rows > 1 && largest.any(|(i, most, of)| *i == column && *most > 0.0 && of == row)
-}
-
-/// Places of the columns of peaks.
-fn peaks_among(columns: &[String]) -> Vec<usize> {
-    let place = |name: &&str| columns.iter().position(|column| column == name);
-    PEAKS.iter().filter_map(place).collect()
-}
-
-/// The column of the first peak and its name, where some job has one.
-fn peak_column(survey: &Survey) -> Option<(usize, &'static str)> {
-    survey.largest.first().map(|(i, ..)| (*i, PEAKS[0]))
+fn is_largest(survey: &Survey<'_>, column: usize, row: &Row<'_>) -> bool {
+    let is_row = |of: &Row<'_>| of == row;
+    survey.rows > 1
+        && survey
+            .largest
+            .iter()
+            .any(|largest| largest.column == column && largest.most > 0.0 && is_row(&largest.row))
 }

@@ -2,13 +2,14 @@
 //!
 //! Knows rows as they come, a million of them at no more than a few bytes each. Does not know how any of it is written.
 
-use pontoon_results::PEAKS;
-use serde_json::Value;
+use pontoon_plan::input::Cell;
+use pontoon_results::{Column, Seen};
+use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A row of a summary.
-pub(super) type Row = Vec<Value>;
+pub(super) type Row<'a> = Vec<Cell<'a>>;
 
 /// Axes that one may look along, the best first.
 const ALONG: [&str; 3] = ["speed_m_s", "load_position", "load_x_m"];
@@ -18,143 +19,204 @@ const MOST_VALUES: usize = 400;
 
 /// What a look at all rows has found.
 #[derive(Debug)]
-pub(super) struct Survey {
-    /// Places of the axes that vary, in their order.
+pub(super) struct Survey<'a> {
+    /// Places of the axes that vary, in their order, without the one to look along.
     pub varying: Vec<usize>,
     /// Places of the axes that have one value, and the value.
-    pub constant: Vec<(usize, Value)>,
-    /// The axis to look along and its values, increasing; none where rows have little in common.
-    pub along: Option<(usize, Vec<Value>)>,
+    pub constant: Vec<(usize, Cell<'static>)>,
+    /// The axis to look along; none where rows have little in common.
+    pub along: Option<Along<'a>>,
     /// Combinations of the varying axes but the one to look along.
     pub combinations: usize,
     /// Rows.
     pub rows: usize,
-    /// The peaks that there are: place of the column, largest value, its row.
-    pub largest: Vec<(usize, f64, Row)>,
+    /// The peaks that there are.
+    pub largest: Vec<Largest<'a>>,
 }
 
-/// What is seen of an axis.
-#[derive(Default)]
-struct Seen {
-    first: Option<Value>,
-    varies: bool,
-    nulls: usize,
-    values: Vec<Value>,
+/// An axis to look along.
+#[derive(Debug)]
+pub(super) struct Along<'a> {
+    /// Its place.
+    pub axis: usize,
+    /// Its values, increasing.
+    pub values: Vec<Cell<'a>>,
+}
+
+/// The largest value of a peak.
+#[derive(Debug)]
+pub(super) struct Largest<'a> {
+    /// Place of its column.
+    pub column: usize,
+    /// The value.
+    pub most: f64,
+    /// Its row.
+    pub row: Row<'a>,
+}
+
+/// What all rows have in an axis.
+struct Axis<'a> {
+    place: usize,
+    seen: Seen,
+    values: Vec<Cell<'a>>,
     too_many: bool,
 }
 
-impl Seen {
-    fn see(&mut self, value: &Value) {
-        if value.is_null() {
-            self.nulls += 1;
-            return;
+impl<'a> Axis<'a> {
+    fn new(place: usize) -> Self {
+        Self {
+            place,
+            seen: Seen::default(),
+            values: Vec::new(),
+            too_many: false,
         }
-        self.varies |= self.first.get_or_insert_with(|| value.clone()) != value;
-        if !self.too_many
-            && let Err(at) = self.values.binary_search_by(|known| order(known, value))
+    }
+
+    fn take(&mut self, cell: &Cell<'a>) {
+        self.seen.take(cell);
+        if !cell.is_nothing()
+            && !self.too_many
+            && let Err(at) = self.values.binary_search_by(|known| order(known, cell))
         {
-            self.values.insert(at, value.clone());
+            self.values.insert(at, cell.clone());
             self.too_many = self.values.len() > MOST_VALUES;
         }
     }
 }
 
-fn order(a: &Value, b: &Value) -> std::cmp::Ordering {
-    match (a.as_f64(), b.as_f64()) {
+fn order(a: &Cell<'_>, b: &Cell<'_>) -> Ordering {
+    match (a.number(), b.number()) {
         (Some(a), Some(b)) => a.total_cmp(&b),
         _ => a.to_string().cmp(&b.to_string()),
     }
 }
 
-impl Survey {
-    /// Looks at all rows twice.
-    pub(super) fn new<I: Iterator<Item = Row>>(columns: &[String], rows: impl Fn() -> I) -> Self {
-        let place = |name: &str| columns.iter().position(|column| column == name);
-        let peaks: Vec<usize> = PEAKS.iter().filter_map(|name| place(name)).collect();
-        let axes: Vec<usize> = (0..columns.len()).filter(|i| !peaks.contains(i)).collect();
-        let mut seen: Vec<Seen> = axes.iter().map(|_| Seen::default()).collect();
-        let mut largest: Vec<Option<(f64, Row)>> = vec![None; peaks.len()];
-        let mut count = 0;
-        for row in rows() {
-            count += 1;
-            axes.iter().zip(&mut seen).for_each(|(&i, seen)| seen.see(&row[i]));
-            for (&i, largest) in peaks.iter().zip(&mut largest) {
-                let peak = row[i].as_f64();
-                if let Some(peak) = peak.filter(|peak| largest.as_ref().is_none_or(|(most, _)| peak > most)) {
-                    *largest = Some((peak, row.clone()));
+/// What the first look finds.
+struct Look<'a> {
+    axes: Vec<Axis<'a>>,
+    largest: Vec<Largest<'a>>,
+    rows: usize,
+}
+
+impl<'a> Look<'a> {
+    fn at(columns: &[String], rows: impl Iterator<Item = Row<'a>>) -> Self {
+        let peaks = peaks_among(columns);
+        let axes = (0..columns.len()).filter(|i| !peaks.contains(i)).map(Axis::new);
+        let mut look = Self {
+            axes: axes.collect(),
+            largest: Vec::new(),
+            rows: 0,
+        };
+        let mut largest: Vec<Option<Largest<'a>>> = peaks.iter().map(|_| None).collect();
+        for row in rows {
+            look.rows += 1;
+            look.axes.iter_mut().for_each(|axis| axis.take(&row[axis.place]));
+            for (&column, largest) in peaks.iter().zip(&mut largest) {
+                let peak = row[column].number();
+                if let Some(most) = peak.filter(|peak| largest.as_ref().is_none_or(|known| *peak > known.most)) {
+                    let row = row.clone();
+                    *largest = Some(Largest { column, most, row });
                 }
             }
         }
+        look.largest = largest.into_iter().flatten().collect();
+        look
+    }
+
+    fn axis(&self, columns: &[String], name: &str) -> Option<&Axis<'a>> {
+        self.axes.iter().find(|axis| columns[axis.place] == name)
+    }
+
+    /// Places of the axes that vary, and those of one value with it.
+    fn parted(&self, columns: &[String]) -> (Vec<usize>, Vec<(usize, Cell<'static>)>) {
         // a gap has no meaning where the connection is linear: that is no second value of it
-        let connection = place("connection").and_then(|i| axes.iter().position(|&axis| axis == i));
-        let linear = connection.is_some_and(|i| seen[i].varies);
+        let linear = self
+            .axis(columns, "connection")
+            .is_some_and(|axis| axis.seen.has_several());
         let is_gap = |i: usize| ["gap_tension_m", "gap_compression_m"].contains(&columns[i].as_str());
+        // where the load's position tells its place, the place is not told again
+        let told = self
+            .axis(columns, "load_position")
+            .is_some_and(|axis| axis.seen.is_whole());
         let (mut varying, mut constant) = (Vec::new(), Vec::new());
-        for (&i, seen) in axes.iter().zip(&seen) {
-            let nulls = seen.nulls > 0 && seen.nulls < count && !(linear && is_gap(i));
-            match &seen.first {
-                Some(first) if !seen.varies && !nulls => constant.push((i, first.clone())),
-                Some(_) => varying.push(i),
+        for Axis { place, seen, .. } in &self.axes {
+            let varies = if linear && is_gap(*place) {
+                seen.has_several()
+            } else {
+                seen.varies()
+            };
+            match seen.only() {
+                _ if told && columns[*place] == "load_x_m" => {}
+                _ if varies => varying.push(*place),
+                Some(only) => constant.push((*place, only.clone())),
                 None => {}
             }
         }
-        // where the load's position tells its place, the place is not told again
-        let whole = |name: &str| {
-            let i = place(name)?;
-            let seen = &seen[axes.iter().position(|&axis| axis == i)?];
-            (seen.nulls == 0 && count > 0).then_some(i)
-        };
-        if let (Some(_), Some(x)) = (whole("load_position"), place("load_x_m")) {
-            varying.retain(|&i| i != x);
-            constant.retain(|&(i, _)| i != x);
-        }
-        let along = ALONG
+        (varying, constant)
+    }
+
+    /// The axis to look along: the first of those that have a value in every row, few of them.
+    fn along(&self, columns: &[String], varying: &[usize]) -> Option<Along<'a>> {
+        let mut whole = ALONG
             .iter()
-            .filter_map(|name| whole(name))
-            .find(|i| varying.contains(i));
-        let mut along = along.and_then(|i| {
-            let seen = &seen[axes.iter().position(|&axis| axis == i)?];
-            (!seen.too_many).then(|| (i, seen.values.clone()))
-        });
-        let others = |along: Option<usize>| {
+            .filter_map(|name| self.axis(columns, name))
+            .filter(|axis| axis.seen.is_whole() && varying.contains(&axis.place));
+        whole.next().filter(|axis| !axis.too_many).map(|axis| Along {
+            axis: axis.place,
+            values: axis.values.clone(),
+        })
+    }
+}
+
+impl<'a> Survey<'a> {
+    /// Looks at all rows twice.
+    pub(super) fn new<I: Iterator<Item = Row<'a>>>(columns: &[String], rows: impl Fn() -> I) -> Self {
+        let look = Look::at(columns, rows());
+        let (varying, constant) = look.parted(columns);
+        let mut along = look.along(columns, &varying);
+        let others = |along: &Option<Along<'_>>| {
+            let along = along.as_ref().map(|along| along.axis);
             varying
                 .iter()
                 .copied()
                 .filter(|i| Some(*i) != along)
                 .collect::<Vec<_>>()
         };
-        let mut combinations = combinations(rows(), &others(along.as_ref().map(|(i, _)| *i)));
+        let mut combinations = combinations(rows(), &others(&along));
         // a table that would be empty for the most part says less than a list
         if along
             .as_ref()
-            .is_some_and(|(_, values)| 2 * count < combinations * values.len())
+            .is_some_and(|along| 2 * look.rows < combinations * along.values.len())
         {
             along = None;
-            combinations = count;
+            combinations = look.rows;
         }
-        let largest = peaks.into_iter().zip(largest);
         Self {
-            varying: others(along.as_ref().map(|(i, _)| *i)),
+            varying: others(&along),
             constant,
             along,
             combinations,
-            rows: count,
-            largest: largest
-                .filter_map(|(i, most)| most.map(|(peak, row)| (i, peak, row)))
-                .collect(),
+            rows: look.rows,
+            largest: look.largest,
         }
     }
 }
 
+/// Places of the columns of peaks.
+pub(super) fn peaks_among(columns: &[String]) -> Vec<usize> {
+    let place = |peak: &Column| columns.iter().position(|column| column == peak.name);
+    Column::of_summary().filter_map(place).collect()
+}
+
 /// How many combinations of some axes there are.
-fn combinations(rows: impl Iterator<Item = Row>, axes: &[usize]) -> usize {
+fn combinations<'a>(rows: impl Iterator<Item = Row<'a>>, axes: &[usize]) -> usize {
     let hashes: HashSet<u64> = rows.map(|row| hash(&row, axes)).collect();
     hashes.len()
 }
 
 /// A number for the values of some axes.
-pub(super) fn hash(row: &Row, axes: &[usize]) -> u64 {
+pub(super) fn hash(row: &Row<'_>, axes: &[usize]) -> u64 {
     let mut hasher = DefaultHasher::new();
-    axes.iter().for_each(|&i| row[i].to_string().hash(&mut hasher));
+    axes.iter().for_each(|&i| row[i].hash(&mut hasher));
     hasher.finish()
 }

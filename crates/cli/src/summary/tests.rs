@@ -2,6 +2,7 @@
 
 use super::text;
 use crate::terminal::Look;
+use pontoon_plan::input::Cell;
 use serde_json::{Value, json};
 
 const COLUMNS: &str = "connection gap_tension_m gap_compression_m load_n speed_m_s peak_deflection_m peak_uplift_m peak_compression_n peak_tension_n";
@@ -30,8 +31,16 @@ fn row(axes: Value, deflection_m: Option<f64>) -> Vec<Value> {
     row
 }
 
+fn text_of(names: &str, rows: &[Vec<Value>], look: Look) -> String {
+    text(
+        &columns(names),
+        || rows.iter().map(|row| row.iter().map(Cell::of).collect()),
+        look,
+    )
+}
+
 fn written(names: &str, rows: &[Vec<Value>], look: Look) -> String {
-    let text = text(&columns(names), || rows.iter().cloned(), look);
+    let text = text_of(names, rows, look);
     if let Some(width) = look.width {
         let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
         // the name of a peak and its value are not broken
@@ -366,9 +375,7 @@ fn colours_are_where_they_are_shown_and_move_nothing() {
         colour: true,
         width: Some(118),
     };
-    let rows = crossings();
-    let coloured = text(&columns(COLUMNS), || rows.iter().cloned(), look);
-    let plain = text(&columns(COLUMNS), || rows.iter().cloned(), PLAIN);
+    let [coloured, plain] = [look, PLAIN].map(|look| text_of(COLUMNS, &crossings(), look));
     assert!(coloured.contains("\u{1b}["), "{coloured}");
     let mut bare = String::new();
     let mut rest = coloured.as_str();

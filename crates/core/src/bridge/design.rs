@@ -3,7 +3,7 @@
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
 use super::{Model, Provenance};
-use crate::input::{InvalidInput, apart, not_negative, positive, within};
+use crate::input::{InvalidInput, Problem, apart, not_negative, positive, within};
 use crate::module::{ModuleDesign, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::JsonSchema;
@@ -207,19 +207,19 @@ impl BridgeDesign {
         let single = self.hinges.y_m.len() == 1;
         if single && self.modules > 1 {
             let allowed = "at least two places in a static case: modules turn about a single hinge";
-            return Err(InvalidInput::new("hinges.y_m", "one place", allowed));
+            return Err(InvalidInput::new("hinges.y_m", "one place", allowed).because(Problem::Conflict));
         }
         let Supports { left, right } = &self.supports;
         for (direction, word) in [(Direction::X, "x"), (Direction::Y, "y")] {
             if !(left.contains(&direction) || right.contains(&direction)) {
                 let found = format!("no end that holds {word}");
                 let allowed = "x and y held at an end at least in a static case";
-                return Err(InvalidInput::new("supports", found, allowed));
+                return Err(InvalidInput::new("supports", found, allowed).because(Problem::Missing));
             }
         }
         if single && !(left.contains(&Direction::Y) && right.contains(&Direction::Y)) {
             let allowed = "y held at both ends in a static case of one module with a single hinge place";
-            return Err(InvalidInput::new("supports", "y held at one end", allowed));
+            return Err(InvalidInput::new("supports", "y held at one end", allowed).because(Problem::Conflict));
         }
         Ok(())
     }
@@ -263,20 +263,17 @@ impl BridgeDesign {
             (Some(p_b), None) => positive("hydrostatic_stiffness_pa_m", p_b).map(|_| ())?,
             (None, Some(table)) => table.check().map_err(|e| e.under("draft_buoyancy"))?,
             (found, _) => {
-                let found = if found.is_some() { "both" } else { "neither" };
-                return Err(InvalidInput::new(
-                    "hydrostatic_stiffness_pa_m",
-                    found,
-                    "either this or draft_buoyancy",
-                ));
+                let (found, problem) = both_or_neither(found.is_some());
+                let refused = InvalidInput::new("hydrostatic_stiffness_pa_m", found, "either this or draft_buoyancy");
+                return Err(refused.because(problem));
             }
         }
         match (self.added_mass_kg_m, &self.todd) {
             (Some(m_a), None) => not_negative("added_mass_kg_m", m_a).map(|_| ()),
             (None, Some(todd)) => todd.check().map_err(|e| e.under("todd")),
             (found, _) => {
-                let found = if found.is_some() { "both" } else { "neither" };
-                Err(InvalidInput::new("added_mass_kg_m", found, "either this or todd"))
+                let (found, problem) = both_or_neither(found.is_some());
+                Err(InvalidInput::new("added_mass_kg_m", found, "either this or todd").because(problem))
             }
         }
     }
@@ -406,5 +403,14 @@ impl Todd {
             * self.section_coefficient
             * self.three_dimensional_correction
             * (0.5 * breadth_m).powi(2)
+    }
+}
+
+/// What is wrong where exactly one of two keys is needed and both or neither are given.
+fn both_or_neither(both: bool) -> (&'static str, Problem) {
+    if both {
+        ("both", Problem::Misplaced)
+    } else {
+        ("neither", Problem::Missing)
     }
 }

@@ -3,7 +3,7 @@
 //! Knows lines along and across and the two nodes at each crossing of them. Does not know what joins the nodes.
 
 use crate::fem::{Mesh, NodeId};
-use crate::input::{InvalidInput, SAME_PLACE_M};
+use crate::input::{InvalidInput, Problem, SAME_PLACE_M};
 
 /// The structured grid of deck and bottom: a deck node and a bottom node at every crossing of a line along and a line
 /// across.
@@ -57,8 +57,8 @@ impl Grid {
         nodes.sort_unstable();
         match nodes.windows(2).find(|w| w[0] == w[1]) {
             Some(twice) => {
-                let found = format!("node {} twice", twice[0].0);
-                Err(InvalidInput::new("deck, bottom", found, "each node once"))
+                let found = format!("node {}", twice[0].0);
+                Err(InvalidInput::new("deck, bottom", found, "each node once").because(Problem::Repeated))
             }
             None => Ok(()),
         }

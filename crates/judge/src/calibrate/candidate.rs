@@ -5,9 +5,9 @@
 use super::parameters::Parameters;
 use super::quantities::QUANTITIES;
 use pontoon_core::bridge::BridgeDesign;
-use pontoon_plan::input::{DocumentPath, Refusal, to_value, typed};
+use pontoon_plan::input::{Document, DocumentPath, Found, Refusal, RefusalKind, to_value, typed_value};
 use pontoon_plan::study_file::BridgeFile;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// A bridge at a point of the parameters.
 #[derive(Debug, Clone)]
@@ -22,9 +22,11 @@ impl Candidate {
         let file = &parameters.file;
         let mut document = to_value(&bridge.design);
         let mut set = |at: &str, path: &str, value: f64| {
-            let path = DocumentPath::parse(path).ok_or_else(|| Refusal::new(file, at, path, "a path"))?;
-            path.set(&mut document, json!(value))
-                .map_err(|found| Refusal::new(file, at, found, "the path of a number"))
+            let path = DocumentPath::parse(path).ok_or_else(|| Refusal::new(file, at, Found::value(path), "a path"))?;
+            path.set(&mut document, json!(value)).map_err(|obstacle| {
+                let refused = Refusal::new(file, at, obstacle.to_string(), "the path of a number");
+                refused.because(RefusalKind::Misplaced)
+            })
         };
         let mut masses: Vec<(&str, f64)> = parameters
             .spec
@@ -44,7 +46,7 @@ impl Candidate {
                 }
             }
         }
-        let design: BridgeDesign = typed(file, "", &document)?;
+        let design: BridgeDesign = typed_value(file, "", &document)?;
         let mut candidate = Self { design };
         candidate.design.provenance = None;
         candidate
@@ -74,7 +76,7 @@ impl Candidate {
     }
 
     /// The bridge as a file's document.
-    pub(super) fn document(&self) -> Value {
-        to_value(&self.design)
+    pub(super) fn document(&self) -> Document {
+        Document::from(&to_value(&self.design))
     }
 }

@@ -86,7 +86,7 @@ impl<'a> Task<'a> {
     pub fn fit(&self, threads: usize) -> Result<Calibration, CalibrateError> {
         let residuals = |points: &[Vec<f64>]| self.model.residuals(points);
         let fitted = on_threads(threads, || {
-            fit::fit(&self.starts, &residuals, &self.parameters.settings())
+            fit::fit(&self.starts, &residuals, self.parameters.settings())
         })?;
         let fitted = fitted.map_err(|error| self.explained(error))?;
         let best: Vec<f64> = fitted.parameters.iter().map(|p| p.best).collect();

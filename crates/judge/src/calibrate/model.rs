@@ -3,10 +3,14 @@
 //! Knows which checks are fitted and which jobs they look at. Does not know what moves the parameters.
 
 use super::candidate::Candidate;
+use super::fit::ModelError;
 use super::parameters::Parameters;
+use crate::checks::{Check, Role};
 use crate::compare::Judge;
-use crate::reference::{CheckKind, CheckSpec, Filter, Quantity, Reference, Role};
-use pontoon_plan::input::Refusal;
+use crate::reference::Reference;
+use pontoon_plan::design::Varies;
+use pontoon_plan::input::filter::Filter;
+use pontoon_plan::input::{Found, Refusal, RefusalKind};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::{BridgeFile, Study};
 use pontoon_results::{JobRecord, Results};
@@ -54,61 +58,16 @@ impl<'a> Model<'a> {
         parameters: &'a Parameters,
         told: &'a (dyn Fn(usize, f64) + Sync),
     ) -> Result<Self, Refusal> {
-        for (i, reference) in references.iter().enumerate() {
-            let same = |other: &Reference| other.file.canonicalize().ok() == reference.file.canonicalize().ok();
-            if references[..i].iter().any(same) {
-                return Err(Refusal::new(&reference.file, "", "given twice", "each reference once"));
-            }
-        }
-        let known: Vec<String> = references
-            .iter()
-            .flat_map(|r| &r.spec.checks)
-            .map(|c| c.id.clone())
-            .collect();
-        if let Some(ids) = &parameters.spec.fit {
-            for (i, id) in ids.iter().enumerate() {
-                let key = format!("fit[{i}]");
-                if !known.contains(id) {
-                    return Err(Refusal::unknown(&parameters.file, key, id, &known));
-                }
-                let mut meant = references.iter().flat_map(|r| &r.spec.checks).filter(|c| c.id == *id);
-                if meant.clone().count() > 1 {
-                    let found = format!("'{id}', which several references have");
-                    return Err(Refusal::new(
-                        &parameters.file,
-                        key,
-                        found,
-                        "an id that one reference has",
-                    ));
-                }
-                if meant.any(|check| !has_value(check)) {
-                    let found = format!("'{id}', which is no check of one value with a tolerance");
-                    return Err(Refusal::new(
-                        &parameters.file,
-                        key,
-                        found,
-                        "a value, a mode or a measured value",
-                    ));
-                }
-            }
-        }
-        for id in parameters.spec.weights.keys() {
-            if !known.contains(id) {
-                return Err(Refusal::unknown(&parameters.file, format!("weights.{id}"), id, &known));
-            }
-        }
+        check_once(references)?;
+        check_ids(references, parameters)?;
         let sources = references
             .iter()
             .map(|r| Source::new(r, parameters))
             .collect::<Result<Vec<_>, Refusal>>()?;
         if sources.iter().all(|source| source.checks.is_empty()) {
-            let found = "no check to fit";
-            return Err(Refusal::new(
-                &parameters.file,
-                "fit",
-                found,
-                "ids of checks of one value with a tolerance",
-            ));
+            let allowed = "ids of checks of one value with a tolerance";
+            let refused = Refusal::new(&parameters.file, "fit", "no check to fit", allowed);
+            return Err(refused.because(RefusalKind::Missing));
         }
         Ok(Self {
             bridge,
@@ -126,8 +85,8 @@ impl<'a> Model<'a> {
     }
 
     /// `weight (found - expected) / tolerance` of each fitted check, for each of several candidates, all solved together.
-    pub(super) fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<f64>, String>> {
-        let prepared: Vec<Result<Work, String>> = points
+    pub(super) fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<f64>, ModelError>> {
+        let prepared: Vec<Result<Work, ModelError>> = points
             .iter()
             .map(|point| self.jobs(point).map_err(|refusal| self.told_of(refusal)))
             .collect();
@@ -140,7 +99,7 @@ impl<'a> Model<'a> {
         let known = self.lock().modules.clone();
         let (records, solved) = solve_together(&all, &known);
         let mut records = records.into_iter();
-        let answers: Vec<Result<Vec<f64>, String>> = prepared
+        let answers: Vec<Result<Vec<f64>, ModelError>> = prepared
             .iter()
             .map(|candidate| {
                 let studies = candidate.as_ref().map_err(Clone::clone)?;
@@ -174,13 +133,13 @@ impl<'a> Model<'a> {
     }
 
     /// Keeps what the first candidates were refused for, and says it.
-    fn told_of(&self, refusal: Refusal) -> String {
-        let text = refusal.to_string();
+    fn told_of(&self, refusal: Refusal) -> ModelError {
+        let error = ModelError(refusal.to_string());
         let mut state = self.lock();
         if state.candidates == 0 {
             state.refused.get_or_insert(refusal);
         }
-        text
+        error
     }
 
     /// Modules condensed so far.
@@ -214,23 +173,20 @@ impl<'a> Source<'a> {
     fn new(reference: &'a Reference, parameters: &Parameters) -> Result<Self, Refusal> {
         let Some(path) = reference.study() else {
             let allowed = "the path of the study that gives what its checks look at";
-            return Err(Refusal::new(&reference.file, "study", "nothing", allowed));
+            return Err(Refusal::new(&reference.file, "study", Found::NOTHING, allowed));
         };
-        let all = reference.spec.checks.iter().enumerate();
-        let checks: Vec<usize> = all
-            .filter(|(_, check)| match &parameters.spec.fit {
-                Some(ids) => ids.contains(&check.id),
-                None => check.role == Role::Hold && has_value(check),
-            })
-            .map(|(i, _)| i)
+        let is_fitted = |check: &Check| match &parameters.spec.fit {
+            Some(ids) => ids.contains(&check.id),
+            None => check.role == Role::Hold && fitted(check).is_some(),
+        };
+        let checks: Vec<usize> = (0..reference.checks.len())
+            .filter(|&i| is_fitted(&reference.checks[i]))
             .collect();
         let mut filters = Vec::new();
-        for &i in &checks {
-            let check = &reference.spec.checks[i];
-            match check.kind() {
-                Some(CheckKind::Value(value)) => collect(&value.of, &check.filter, &mut filters),
-                Some(CheckKind::Measured(measured)) => collect(&measured.of, &check.filter, &mut filters),
-                _ => filters.push(check.filter.clone()),
+        for check in checks.iter().map(|&i| &reference.checks[i]) {
+            match check.one_value() {
+                Some(one) => filters.extend(one.of.filters(&check.filter)),
+                None => filters.push(check.filter.clone()),
             }
         }
         Ok(Self {
@@ -243,10 +199,9 @@ impl<'a> Source<'a> {
 
     /// Whether a check looks at a job.
     fn needs(&self, job: &Job) -> bool {
-        let mut axes = self.study.path_axes();
-        axes.extend(pontoon_plan::design::SHORT_NAMES.map(str::to_owned));
         let means = |filter: &Filter| {
-            let mut of_axes = filter.0.iter().filter(|(name, _)| axes.contains(name));
+            // what is no axis is a column of rows, which the job's record will have
+            let mut of_axes = filter.0.iter().filter(|(name, _)| Varies::of_column(name).is_some());
             of_axes.all(|(name, allowed)| allowed.allows(&job.column(name)))
         };
         self.filters.iter().any(means)
@@ -259,49 +214,78 @@ impl<'a> Source<'a> {
         jobs: &[Job],
         records: &[JobRecord],
         weights: &BTreeMap<String, f64>,
-    ) -> Result<Result<Vec<f64>, String>, Refusal> {
-        if let Some(record) = records.iter().find(|record| record.reason.is_some()) {
-            let reason = record.reason.as_deref().unwrap_or_default();
-            return Ok(Err(format!("{}: job {}: {reason}", study.spec.name, record.job)));
+    ) -> Result<Result<Vec<f64>, ModelError>, Refusal> {
+        let failed = records
+            .iter()
+            .find_map(|record| Some((record, record.failure.as_ref()?)));
+        if let Some((record, failure)) = failed {
+            let reason = format!("{}: job {}: {}", study.name, record.job, failure.text);
+            return Ok(Err(ModelError(reason)));
         }
-        let results = match Results::of_run(study, jobs, records, Path::new("candidate")) {
-            Ok(results) => results,
-            Err(reason) => return Ok(Err(reason)),
-        };
+        let results = Results::of_records(study, jobs, records, Path::new("candidate"));
         let judge = Judge::new(&results, self.reference);
         let mut residuals = Vec::new();
         for &i in &self.checks {
-            let check = &self.reference.spec.checks[i];
-            let (expected, tolerance) = check.expected_and_tolerance().unwrap_or_default();
+            let check = &self.reference.checks[i];
+            let Some((expected, tolerance)) = fitted(check) else {
+                return Ok(Err(ModelError(format!("{}: not a check of one value", check.id))));
+            };
             match judge.value(i)? {
                 Ok(found) => {
                     let weight = weights.get(&check.id).unwrap_or(&1.0);
                     residuals.push(weight * (found - expected) / tolerance);
                 }
-                Err(reason) => return Ok(Err(format!("{}: {reason}", check.id))),
+                Err(reason) => return Ok(Err(ModelError(format!("{}: {reason}", check.id)))),
             }
         }
         Ok(Ok(residuals))
     }
 }
 
-/// Whether a check is of one value, with a tolerance above zero to scale it by.
-fn has_value(check: &CheckSpec) -> bool {
-    check.each.is_empty()
-        && check
-            .expected_and_tolerance()
-            .is_some_and(|(_, tolerance)| tolerance > 0.0)
+/// What a check of one value expects and the tolerance that scales its residual; none where it has none above zero.
+fn fitted(check: &Check) -> Option<(f64, f64)> {
+    let one = check.one_value()?;
+    Some((one.expected?, one.tolerance)).filter(|(_, tolerance)| *tolerance > 0.0)
 }
 
-/// The filters of all parts of a quantity.
-fn collect(quantity: &Quantity, outer: &Filter, filters: &mut Vec<Filter>) {
-    match quantity {
-        Quantity::Number(_) => {}
-        Quantity::Select(select) => filters.push(select.filter.within(outer)),
-        Quantity::History(history) => filters.push(history.filter.within(outer)),
-        _ => quantity
-            .parts()
-            .iter()
-            .for_each(|(_, part)| collect(part, outer, filters)),
+/// Refuses a reference that is given twice.
+fn check_once(references: &[Reference]) -> Result<(), Refusal> {
+    let place = |reference: &Reference| reference.file.canonicalize().ok();
+    for (i, reference) in references.iter().enumerate() {
+        if references[..i].iter().any(|other| place(other) == place(reference)) {
+            return Err(Refusal::new(&reference.file, "", "given twice", "each reference once"));
+        }
     }
+    Ok(())
+}
+
+/// Refuses ids of checks to fit or to weigh that no check has, or several, or one that cannot be fitted.
+fn check_ids(references: &[Reference], parameters: &Parameters) -> Result<(), Refusal> {
+    let checks = || references.iter().flat_map(|reference| &reference.checks);
+    let known: Vec<String> = checks().map(|check| check.id.clone()).collect();
+    for (i, id) in parameters.spec.fit.iter().flatten().enumerate() {
+        let path = format!("fit[{i}]");
+        if !known.contains(id) {
+            return Err(Refusal::unknown(&parameters.file, path, id, &known));
+        }
+        let mut meant = checks().filter(|check| check.id == *id);
+        let found = Found::value(id.as_str());
+        if meant.clone().count() > 1 {
+            let found = found.which("which several references have");
+            let allowed = "an id that one reference has";
+            return Err(Refusal::new(&parameters.file, path, found, allowed));
+        }
+        if meant.any(|check| fitted(check).is_none()) {
+            let found = found.which("which is no check of one value with a tolerance");
+            let allowed = "a value, a mode or a measured value";
+            return Err(Refusal::new(&parameters.file, path, found, allowed));
+        }
+    }
+    for id in parameters.spec.weights.keys() {
+        if !known.contains(id) {
+            let path = format!("weights.{id}");
+            return Err(Refusal::unknown_key(&parameters.file, path, id, &known));
+        }
+    }
+    Ok(())
 }

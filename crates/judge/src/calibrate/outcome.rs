@@ -6,7 +6,7 @@ use super::candidate::Candidate;
 use super::fit::{Bound, Fit, Purpose};
 use super::model::Model;
 use pontoon_core::bridge::{BridgeDesign, Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
-use pontoon_plan::input::{canonical_text, to_value};
+use pontoon_plan::input::{Document, to_value};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -146,12 +146,13 @@ fn checks(model: &Model<'_>, fit: &Fit) -> Vec<FittedCheck> {
     let fitted = model
         .sources
         .iter()
-        .flat_map(|s| s.checks.iter().map(|&i| &s.reference.spec.checks[i]));
+        .flat_map(|s| s.checks.iter().map(|&i| &s.reference.checks[i]));
     let residuals = fit.residuals_start.iter().zip(&fit.residuals_best);
     fitted
         .zip(residuals)
         .filter_map(|(check, (&before, &after))| {
-            let (expected, tolerance) = check.expected_and_tolerance()?;
+            let one = check.one_value()?;
+            let (expected, tolerance) = (one.expected?, one.tolerance);
             let weight = model.parameters.spec.weights.get(&check.id).copied().unwrap_or(1.0);
             let (before, after) = (before / weight, after / weight);
             Some(FittedCheck {
@@ -168,10 +169,10 @@ fn checks(model: &Model<'_>, fit: &Fit) -> Vec<FittedCheck> {
 }
 
 fn provenance(model: &Model<'_>, fit: &Fit, parameters: &[Identified]) -> Provenance {
-    let document = |role: &str, name: &str, document: &Value| ProvenanceDocument {
+    let document = |role: &str, name: &str, document: &Document| ProvenanceDocument {
         role: role.to_owned(),
         name: name.to_owned(),
-        blake3: blake3::hash(canonical_text(document).as_bytes()).to_hex().to_string(),
+        blake3: document.hash(),
     };
     let mut documents = vec![
         document("start", &model.bridge.design.name, &model.bridge.document),
@@ -180,10 +181,11 @@ fn provenance(model: &Model<'_>, fit: &Fit, parameters: &[Identified]) -> Proven
     for source in &model.sources {
         documents.push(document(
             "reference",
-            &source.reference.spec.name,
-            &to_value(&source.reference.spec.judged()),
+            &source.reference.name,
+            &Document::from(&source.reference.judged),
         ));
-        documents.push(document("study", &source.study.spec.name, &source.study.computed()));
+        let computed = Document::from(&source.study.computed());
+        documents.push(document("study", &source.study.name, &computed));
     }
     Provenance {
         program: format!("pontoon calibrate {}", pontoon_results::VERSION),

@@ -4,7 +4,7 @@
 
 use super::fit::{Parameter, Settings};
 use super::quantities::{FOLLOWS, QUANTITIES, quantity};
-use pontoon_plan::input::{DocumentPath, Refusal, leaves, read, to_value, typed};
+use pontoon_plan::input::{Document, DocumentPath, Found, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_plan::study_file::BridgeFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -57,14 +57,16 @@ pub struct ParameterSpec {
 }
 
 /// A file of parameters, read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Parameters {
     /// The file.
     pub file: PathBuf,
     /// Its document.
-    pub document: Value,
+    pub document: Document,
     /// What it says.
     pub spec: ParametersSpec,
+    /// What steers the fit: its numbers checked, its defaults filled in.
+    settings: Settings,
 }
 
 impl ParametersSpec {
@@ -87,13 +89,83 @@ impl ParametersSpec {
                         Some(_) => format!("parameters[{i}].name"),
                         None => format!("parameters[{i}].sets.{path}"),
                     };
-                    let found = format!("'{path}', which follows '{other}'");
-                    return Err(Refusal::new(file, key, found, "numbers that nothing else moves"));
+                    let found = Found::value(path.as_str()).which(format!("which follows '{other}'"));
+                    let refused = Refusal::new(file, key, found, "numbers that nothing else moves");
+                    return Err(refused.because(RefusalKind::Conflict));
                 }
                 taken.push((path, &parameter.name));
             }
         }
         Ok(())
+    }
+
+    /// Refuses quantities that are not known, moved as well, or not above zero.
+    fn check_held(&self, file: &Path) -> Result<(), Refusal> {
+        let known = QUANTITIES.map(str::to_owned);
+        for (name, value) in &self.hold {
+            let path = format!("hold.{name}");
+            if !known.contains(name) {
+                return Err(Refusal::unknown_key(file, path, name, &known));
+            }
+            if self.parameters.iter().any(|p| p.name == *name) {
+                let refused = Refusal::new(file, path, "a parameter of the same name", "held or moved, not both");
+                return Err(refused.because(RefusalKind::Misplaced));
+            }
+            if *value <= 0.0 {
+                return Err(Refusal::new(file, path, *value, "a number above 0"));
+            }
+        }
+        Ok(())
+    }
+
+    /// What steers the fit, with its defaults.
+    fn settings(&self, file: &Path) -> Result<Settings, Refusal> {
+        let settings = Settings {
+            evaluations_limit: self.evaluations_limit.unwrap_or(300),
+            difference_share: self.difference_share.unwrap_or(0.005),
+            tolerance: self.tolerance.unwrap_or(1e-4),
+            ..Settings::default()
+        };
+        for (key, value, most) in [
+            ("difference_share", settings.difference_share, 0.25),
+            ("tolerance", settings.tolerance, 0.1),
+        ] {
+            if !(value > 1e-14 && value <= most) {
+                let allowed = format!("above 1e-14 and at most {most}");
+                return Err(Refusal::new(file, key, value, allowed));
+            }
+        }
+        if settings.evaluations_limit == 0 {
+            return Err(Refusal::new(
+                file,
+                "evaluations_limit",
+                0.0,
+                "a whole number of at least 1",
+            ));
+        }
+        Ok(settings)
+    }
+}
+
+impl ParameterSpec {
+    /// Refuses bounds that hold nothing between them, and a factor of 0; `key` is the parameter's path.
+    fn check(&self, file: &Path, key: &str) -> Result<(), Refusal> {
+        let upper = format!("{key}.upper");
+        if !(self.upper - self.lower).is_finite() {
+            let found = Found::from(self.upper).which(format!("too far from lower, {}", self.lower));
+            return Err(Refusal::new(file, upper, found, "bounds whose distance is a number"));
+        }
+        if self.lower >= self.upper {
+            let refused = Refusal::new(file, upper, self.upper, format!("above lower, {}", self.lower));
+            return Err(refused.because(RefusalKind::Conflict));
+        }
+        match self.sets.iter().find(|(_, factor)| **factor == 0.0) {
+            Some((path, factor)) => {
+                let path = format!("{key}.sets.{path}");
+                Err(Refusal::new(file, path, *factor, "a factor other than 0"))
+            }
+            None => Ok(()),
+        }
     }
 }
 
@@ -103,83 +175,33 @@ impl Parameters {
     /// # Errors
     /// [`Refusal`].
     pub fn open(file: &Path) -> Result<Self, Refusal> {
-        let document = read(file)?;
+        let document = Document::read(file)?;
         let spec: ParametersSpec = typed(file, "", &document)?;
-        let refuse = |key: String, found: String, allowed: &str| Err(Refusal::new(file, key, found, allowed));
         if spec.parameters.is_empty() {
-            return refuse(
-                "parameters".to_owned(),
-                "an empty list".to_owned(),
+            return Err(Refusal::new(
+                file,
+                "parameters",
+                "an empty list",
                 "at least one parameter",
-            );
+            ));
         }
         for (i, parameter) in spec.parameters.iter().enumerate() {
-            let key = |name: &str| format!("parameters[{i}].{name}");
-            if !(parameter.upper - parameter.lower).is_finite() {
-                let found = format!("{}, too far from lower, {}", parameter.upper, parameter.lower);
-                return refuse(key("upper"), found, "bounds whose distance is a number");
-            }
-            if parameter.lower >= parameter.upper {
-                return refuse(
-                    key("upper"),
-                    parameter.upper.to_string(),
-                    &format!("above lower, {}", parameter.lower),
-                );
-            }
+            parameter.check(file, &format!("parameters[{i}]"))?;
             if spec.parameters[..i].iter().any(|other| other.name == parameter.name) {
-                return refuse(key("name"), format!("'{}' twice", parameter.name), "each name once");
-            }
-            if let Some((path, factor)) = parameter.sets.iter().find(|(_, factor)| **factor == 0.0) {
-                return refuse(
-                    key(&format!("sets.{path}")),
-                    factor.to_string(),
-                    "a factor other than 0",
-                );
+                let found = Found::value(parameter.name.as_str());
+                let refused = Refusal::new(file, format!("parameters[{i}].name"), found, "each name once");
+                return Err(refused.because(RefusalKind::Repeated));
             }
         }
         spec.each_number_once(file)?;
-        let known = QUANTITIES.map(str::to_owned);
-        for (name, value) in &spec.hold {
-            let key = format!("hold.{name}");
-            if !known.contains(name) {
-                return Err(Refusal::unknown(file, key, name, &known));
-            }
-            if spec.parameters.iter().any(|p| p.name == *name) {
-                return refuse(
-                    key,
-                    "a parameter of the same name".to_owned(),
-                    "held or moved, not both",
-                );
-            }
-            if *value <= 0.0 {
-                return refuse(key, value.to_string(), "a number above 0");
-            }
-        }
+        spec.check_held(file)?;
         if let Some((id, weight)) = spec.weights.iter().find(|(_, weight)| **weight <= 0.0) {
-            return refuse(format!("weights.{id}"), weight.to_string(), "a number above 0");
-        }
-        for (key, value, most) in [
-            ("difference_share", spec.difference_share, 0.25),
-            ("tolerance", spec.tolerance, 0.1),
-        ] {
-            if let Some(value) = value.filter(|v| !(*v > 1e-14 && *v <= most)) {
-                return refuse(
-                    key.to_owned(),
-                    value.to_string(),
-                    &format!("above 1e-14 and at most {most}"),
-                );
-            }
-        }
-        if spec.evaluations_limit == Some(0) {
-            return refuse(
-                "evaluations_limit".to_owned(),
-                "0".to_owned(),
-                "a whole number of at least 1",
-            );
+            return Err(Refusal::new(file, format!("weights.{id}"), *weight, "a number above 0"));
         }
         Ok(Self {
             file: file.to_owned(),
             document,
+            settings: spec.settings(file)?,
             spec,
         })
     }
@@ -192,14 +214,8 @@ impl Parameters {
     }
 
     /// What steers the fit.
-    pub(super) fn settings(&self) -> Settings {
-        let default = Settings::default();
-        Settings {
-            evaluations_limit: self.spec.evaluations_limit.unwrap_or(300),
-            difference_share: self.spec.difference_share.unwrap_or(0.005),
-            tolerance: self.spec.tolerance.unwrap_or(1e-4),
-            ..default
-        }
+    pub(super) fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The parameters with their starts, which are the bridge's own values.
@@ -209,7 +225,7 @@ impl Parameters {
             let key = format!("parameters[{i}]");
             let start = self.start(&key, parameter, bridge, &document)?;
             if !(parameter.lower..=parameter.upper).contains(&start) {
-                let found = format!("{start}, where {} starts", parameter.name);
+                let found = Found::from(start).which(format!("where {} starts", parameter.name));
                 let allowed = format!(
                     "bounds that hold the start: {} to {} do not",
                     parameter.lower, parameter.upper
@@ -246,19 +262,16 @@ impl Parameters {
         let number = |at: String, path: &str| {
             let value = DocumentPath::parse(path).and_then(|p| p.get(document).cloned());
             match value.as_ref().map(Value::as_f64) {
-                Some(_) if value.as_ref().is_some_and(Value::is_u64) => Err(Refusal::new(
-                    &self.file,
-                    at,
-                    format!("'{path}', a whole number, which cannot move a little"),
-                    "the path of a number that need not be whole",
-                )),
+                Some(_) if value.as_ref().is_some_and(Value::is_u64) => {
+                    let found = Found::value(path).which("a whole number, which cannot move a little");
+                    let allowed = "the path of a number that need not be whole";
+                    Err(Refusal::new(&self.file, at, found, allowed))
+                }
                 Some(Some(number)) => Ok(number),
-                Some(None) => Err(Refusal::new(
-                    &self.file,
-                    at,
-                    format!("'{path}', which is no number"),
-                    "the path of a number",
-                )),
+                Some(None) => {
+                    let found = Found::value(path).which("which is no number");
+                    Err(Refusal::new(&self.file, at, found, "the path of a number"))
+                }
                 None => Err(Refusal {
                     allowed: "the path of a number of the bridge".to_owned(),
                     ..Refusal::unknown(&self.file, at, path, &known)
@@ -275,14 +288,10 @@ impl Parameters {
             let first = *start.get_or_insert(own);
             if (own - first).abs() > 1e-9 * first.abs() {
                 let found = format!("{} in the bridge, which makes {} {own}", own * factor, parameter.name);
-                return Err(Refusal::new(
-                    &self.file,
-                    at,
-                    found,
-                    format!("{}, as its other numbers make it", first * factor),
-                ));
+                let allowed = format!("{}, as its other numbers make it", first * factor);
+                return Err(Refusal::new(&self.file, at, found, allowed).because(RefusalKind::Conflict));
             }
         }
-        Ok(start.unwrap_or_default())
+        Ok(start.unwrap_or(0.0))
     }
 }

@@ -2,9 +2,13 @@
 //!
 //! Knows verdicts and what they mean for the whole. Does not know how they were found.
 
-use crate::reference::Role;
-use serde::Serialize;
-use serde_json::{Map, Value};
+use crate::checks::Role;
+use pontoon_plan::input::Cell;
+use pontoon_results::labels::{all_digits, percent};
+use serde::{Serialize, Serializer};
+
+/// Digits of a value of a line.
+pub(super) const DIGITS: usize = 4;
 
 /// What became of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -35,11 +39,21 @@ impl Verdict {
     }
 }
 
+/// The columns of a case with their values, in their order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CaseColumns(pub Vec<(String, Cell<'static>)>);
+
+impl Serialize for CaseColumns {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(column, cell)| (column, cell)))
+    }
+}
+
 /// One case of a check: one combination of the columns that it is made for each of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
     /// The columns and their values.
-    pub case: Map<String, Value>,
+    pub case: CaseColumns,
     /// The values found: one, or one for each value of the axis of a trend.
     pub values: Vec<f64>,
     /// By how much the value is off, as a share of what is expected (in its own unit where that is zero).
@@ -68,7 +82,7 @@ impl Case {
     }
 
     /// A case for which nothing was found.
-    pub(super) fn without_values(case: Map<String, Value>, reason: String) -> Self {
+    pub(super) fn without_values(case: CaseColumns, reason: String) -> Self {
         Self {
             case,
             values: Vec::new(),
@@ -106,7 +120,10 @@ impl Line {
     pub fn got(&self) -> String {
         match self.worst.values.as_slice() {
             [] => "-".to_owned(),
-            values => values.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" -> "),
+            values => {
+                let texts: Vec<String> = values.iter().map(|v| all_digits(*v, DIGITS)).collect();
+                texts.join(" -> ")
+            }
         }
     }
 
@@ -122,9 +139,10 @@ impl Line {
 
     /// Which case is the worst and what else is to be said.
     pub fn remark(&self) -> String {
-        let place = self.worst.case.iter().map(|(name, value)| match value {
-            Value::String(word) => format!("{name} {word}"),
-            other => format!("{name} {other}"),
+        let columns = self.worst.case.0.iter();
+        let place = columns.map(|(name, cell)| match cell {
+            Cell::Nothing => format!("{name} null"),
+            other => format!("{name} {}", other.text()),
         });
         let place = place.collect::<Vec<_>>().join(", ");
         let cases = match self.cases.len() {
@@ -193,49 +211,16 @@ impl Comparison {
     }
 }
 
-/// A number with four digits.
-pub(super) fn number(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
-    }
-    let digits = x.abs().log10().floor() as i32;
-    if (-5..9).contains(&digits) {
-        let decimals = usize::try_from(3 - digits).unwrap_or(0);
-        format!("{x:.decimals$}")
-    } else {
-        format!("{x:.3e}")
-    }
-}
-
-fn percent(share: f64) -> String {
-    let x = 100.0 * share;
-    if x != 0.0 && x.abs() < 0.005 {
-        format!("{x:+.0e} %")
-    } else {
-        format!("{x:+.2} %")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_have_four_digits() {
-        let texts = [0.141_234, 74.0, 230_300.0, -0.000_123_46, 0.0, 1e12, 9.9999].map(number);
-        assert_eq!(
-            texts,
-            ["0.1412", "74.00", "230300", "-0.0001235", "0", "1.000e12", "10.000"]
-        );
-        assert_eq!([0.021, -0.000_04, 1e-9].map(percent), ["+2.10 %", "-4e-3 %", "+1e-7 %"]);
-    }
 
     fn case(values: &[f64], margin: Option<f64>, deviation: Option<f64>) -> Case {
         Case {
             values: values.to_vec(),
             margin,
             deviation,
-            ..Case::without_values(Map::new(), String::new())
+            ..Case::without_values(CaseColumns::default(), String::new())
         }
     }
 

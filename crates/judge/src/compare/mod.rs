@@ -2,23 +2,18 @@
 //!
 //! Knows what a check asks of tables and what becomes of it. Does not know how a comparison is written down.
 
-mod asked;
-mod expected;
-mod history;
 mod judge;
 mod line;
 mod old;
-mod quantity;
 mod tolerances;
 
-pub use history::{Moments, moments_of};
 pub(crate) use judge::Judge;
-pub use line::{Case, Comparison, Line, Verdict};
+pub use line::{Case, CaseColumns, Comparison, Line, Verdict};
 pub use old::against_old;
 pub use tolerances::Tolerances;
 
 use crate::reference::Reference;
-use pontoon_plan::input::{Refusal, canonical_text};
+use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::study_file::Study;
 use pontoon_results::Results;
 
@@ -29,13 +24,13 @@ use pontoon_results::Results;
 pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
     let study = reference.study_of(&results.name, &results.place)?;
     let judge = Judge::new(results, reference);
-    let lines = (0..reference.spec.checks.len())
+    let lines = (0..reference.checks.len())
         .map(|i| judge.line(i))
         .collect::<Result<_, _>>()?;
     Ok(Comparison {
         results: results.name.clone(),
-        with: reference.spec.name.clone(),
-        source: reference.spec.source.clone(),
+        with: reference.name.clone(),
+        source: reference.source.clone(),
         notes: study.map(|study| changes(results, &study)).unwrap_or_default(),
         lines,
     })
@@ -48,7 +43,7 @@ fn changes(results: &Results, study: &Study) -> Vec<String> {
     let differ = now
         .iter()
         .zip(then)
-        .filter(|((_, now), then)| canonical_text(now) != canonical_text(then));
+        .filter(|((_, now), then)| **now != Document::from(*then));
     differ
         .map(|((what, _), _)| format!("the {what} has changed since these results: run it again"))
         .collect()

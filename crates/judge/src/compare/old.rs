@@ -2,16 +2,14 @@
 //!
 //! Knows which rows of two runs are the same. Does not know why they may differ.
 
-use super::line::{Case, Comparison, Line, Verdict};
+use super::line::{Case, CaseColumns, Comparison, DIGITS, Line, Verdict};
 use super::tolerances::Tolerances;
-use crate::reference::{Role, Tolerance};
-use pontoon_plan::input::Refusal;
-use pontoon_results::{Kind, Results, Table, TableName};
-use serde_json::{Map, Value, json};
+use crate::checks::Role;
+use crate::quantity::Tolerance;
+use pontoon_plan::input::{Cell, Refusal};
+use pontoon_results::labels::all_digits;
+use pontoon_results::{Column, Kind, Results, Role as ColumnRole, Table, TableName};
 use std::collections::HashMap;
-
-/// Columns that say which row it is of its job.
-const ROW_KEYS: [&str; 6] = ["position", "joint", "y_m", "number", "quantity", "time_s"];
 
 /// Holds every number of new results against that of old ones: a line a column, and one for the jobs themselves. An old
 /// job without a new one, a job that fails now and did not then, and a number where there was none fall short.
@@ -62,10 +60,12 @@ pub fn against_old(new: &Results, old: &Results, tolerances: &Tolerances) -> Res
 type Pairs = HashMap<u64, u64>;
 
 fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
-    let key = |r: &Results, row: usize| axes.iter().map(|a| r.jobs().cell(a, row)).collect::<Vec<_>>();
-    let text = |r: &Results, row: usize| key(r, row).iter().map(place_text).collect::<String>();
+    let text = |r: &Results, row: usize| {
+        let cells = axes.iter().map(|axis| r.jobs().cell(axis, row));
+        cells.map(|cell| place_text(&cell)).collect::<String>()
+    };
     let number = |r: &Results, row: usize| r.jobs().number("job", row).unwrap_or_default() as u64;
-    let failed = |r: &Results, row: usize| r.jobs().cell("status", row) == json!("failed");
+    let failed = |r: &Results, row: usize| r.jobs().cell("status", row).word() == Some("failed");
     let rows: HashMap<String, usize> = (0..new.jobs().rows()).map(|row| (text(new, row), row)).collect();
     let (mut pairs, mut known, mut lost, mut broken, mut first) = (Pairs::new(), 0, 0, 0, None);
     for row in 0..old.jobs().rows() {
@@ -102,7 +102,10 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
         reasons.push("no job succeeded in both".to_owned());
     }
     let case = first
-        .map(|row| axes.iter().cloned().zip(key(old, row)).collect::<Map<_, _>>())
+        .map(|row| {
+            let cell = |axis: &String| (axis.clone(), old.jobs().cell(axis, row).owned());
+            CaseColumns(axes.iter().map(cell).collect())
+        })
         .unwrap_or_default();
     let holds = lost == 0 && broken == 0 && !pairs.is_empty();
     let worst = Case {
@@ -118,10 +121,10 @@ fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
 }
 
 /// A place as text: numbers to twelve digits, so that two ways of writing one are one.
-fn place_text(value: &Value) -> String {
-    match value.as_f64() {
+fn place_text(cell: &Cell<'_>) -> String {
+    match cell.number() {
         Some(x) => format!("{:.11e};", x + 0.0),
-        None => format!("{value};"),
+        None => format!("{cell};"),
     }
 }
 
@@ -144,7 +147,7 @@ fn line(id: String, expected: String, worst: Case) -> Line {
 
 fn missing(name: TableName) -> Line {
     let worst = Case {
-        case: Map::new(),
+        case: CaseColumns::default(),
         values: Vec::new(),
         deviation: None,
         margin: None,
@@ -173,9 +176,10 @@ fn columns(
     tolerances: &Tolerances,
     old: &Results,
 ) -> Vec<Line> {
-    let keys: Vec<&str> = ROW_KEYS
-        .into_iter()
-        .filter(|k| name != TableName::Jobs && now.has(k))
+    let is_key = |column: &&Column| column.role == ColumnRole::Key && column.name != "job" && now.has(column.name);
+    let keys: Vec<&str> = Column::of_table(name)
+        .filter(is_key)
+        .map(|column| column.name)
         .collect();
     let key = |table: &Table, row: usize, job: u64| {
         let own = keys.iter().map(|k| place_text(&table.cell(k, row)));
@@ -188,14 +192,15 @@ fn columns(
         .map(|(row, job)| (row, rows.get(&key(then, row, job)).copied()))
         .collect();
     let mut lines = Vec::new();
-    let place = |row: usize| -> Map<String, Value> {
+    let place = |row: usize| {
         let of_job = old.row_of_job(job(then, row)).into_iter();
-        let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), old.jobs().cell(a, r))));
-        let own = keys.iter().map(|k| ((*k).to_owned(), then.cell(k, row)));
-        axes.chain(own).filter(|(_, value)| !value.is_null()).collect()
+        let axes = of_job.flat_map(|r| axes.iter().map(move |a| (a.clone(), old.jobs().cell(a, r).owned())));
+        let own = keys.iter().map(|k| ((*k).to_owned(), then.cell(k, row).owned()));
+        CaseColumns(axes.chain(own).filter(|(_, cell)| !cell.is_nothing()).collect())
     };
     let is_axis = |column: &str| name == TableName::Jobs && axes.iter().any(|axis| axis == column);
-    let is_outcome = |c: &&str| *c != "job" && *c != "reason" && !keys.contains(c) && !is_axis(c);
+    let of_words = |c: &str| c == "reason" || c == "failure";
+    let is_outcome = |c: &&str| *c != "job" && !of_words(c) && !keys.contains(c) && !is_axis(c);
     for column in then.names().filter(is_outcome) {
         let id = format!("{}.{column}", name.word());
         let was = || matched.iter().filter_map(|&(row, _)| then.number(column, row));
@@ -226,7 +231,7 @@ fn words(
     column: &str,
     (now, then): (&Table, &Table),
     matched: &[(usize, Option<usize>)],
-    place: impl Fn(usize) -> Map<String, Value>,
+    place: impl Fn(usize) -> CaseColumns,
 ) -> Line {
     let cells = |&(old, new): &(usize, Option<usize>)| {
         let found = new.map(|row| now.cell(column, row)).unwrap_or_default();
@@ -249,7 +254,7 @@ fn words(
 /// A case that falls short with a count.
 fn short_of(count: f64, reason: String) -> Case {
     Case {
-        case: Map::new(),
+        case: CaseColumns::default(),
         values: vec![count],
         deviation: None,
         margin: None,
@@ -278,7 +283,7 @@ impl Worst {
         }
     }
 
-    fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> Map<String, Value>) -> Line {
+    fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> CaseColumns) -> Line {
         let (row, old, new) = self
             .at
             .map_or((None, None, None), |(row, old, new)| (Some(row), old, new));
@@ -296,7 +301,7 @@ impl Worst {
         let absolute = tolerance.absolute.map(|x| format!("+- {x:e}"));
         let within = relative.into_iter().chain(absolute).collect::<Vec<_>>().join(" or ");
         let expected = old.map_or("as before".to_owned(), |old| {
-            format!("{} {within}", super::line::number(old))
+            format!("{} {within}", all_digits(old, DIGITS))
         });
         let worst = Case {
             case: row.map(place).unwrap_or_default(),

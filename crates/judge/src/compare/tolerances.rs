@@ -2,8 +2,8 @@
 //!
 //! Knows the file of tolerances and what holds without one. Does not know results.
 
-use crate::reference::Tolerance;
-use pontoon_plan::input::{Refusal, read, typed};
+use crate::quantity::Tolerance;
+use pontoon_plan::input::{Document, Refusal, RefusalKind, typed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -57,7 +57,7 @@ impl Tolerances {
     /// # Errors
     /// [`Refusal`].
     pub fn open(file: &Path) -> Result<Self, Refusal> {
-        let spec: TolerancesSpec = typed(file, "", &read(file)?)?;
+        let spec: TolerancesSpec = typed(file, "", &Document::read(file)?)?;
         let named = spec
             .columns
             .iter()
@@ -83,7 +83,8 @@ impl Tolerances {
             }
             if !tolerance.ignore && tolerance.relative_tolerance.is_none() && tolerance.absolute_tolerance.is_none() {
                 let allowed = "relative_tolerance, absolute_tolerance or ignore";
-                return Err(Refusal::new(file, key, "no tolerance", allowed));
+                let refused = Refusal::new(file, key, "no tolerance", allowed);
+                return Err(refused.because(RefusalKind::Missing));
             }
         }
         Ok(Self {
@@ -100,7 +101,7 @@ impl Tolerances {
                 .any(|k| k == name || k.split_once('.').is_some_and(|(_, column)| column == name))
         };
         match self.spec.columns.keys().find(|name| !is_known(name)) {
-            Some(name) => Err(Refusal::unknown(&self.file, format!("columns.{name}"), name, known)),
+            Some(name) => Err(Refusal::unknown_key(&self.file, format!("columns.{name}"), name, known)),
             None => Ok(()),
         }
     }

@@ -3,9 +3,9 @@
 //! Knows which columns can be drawn against what, and what fixes the place of a measurement. Does not know results, and
 //! judges nothing: a measurement that decides is a check.
 
-use super::{Allowed, Filter};
-use pontoon_plan::input::Refusal;
-use pontoon_results::TableName;
+use pontoon_plan::input::filter::Filter;
+use pontoon_plan::input::{Cell, Found, Refusal, RefusalKind};
+use pontoon_results::{Column, QUANTITIES, TableName};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -70,22 +70,14 @@ impl Against {
     }
 }
 
-/// The columns of a table that can be drawn.
-fn columns(table: TableName) -> &'static [&'static str] {
+/// What of a table can be drawn: columns, of histories their quantities.
+fn drawn(table: TableName) -> Vec<String> {
     match table {
-        TableName::Jobs => &[
-            "peak_deflection_m",
-            "peak_uplift_m",
-            "peak_compression_n",
-            "peak_tension_n",
-            "peak_edge_deflection_m",
-            "static_peak_deflection_m",
-            "dynamic_amplification",
-        ],
-        TableName::Positions => &["deflection_m", "peak_deflection_m", "peak_uplift_m"],
-        TableName::Connectors => &["peak_compression_n", "peak_tension_n"],
-        TableName::Histories => &["deflection_m", "force_n"],
-        TableName::Modes => &[],
+        TableName::Histories => QUANTITIES.map(str::to_owned).to_vec(),
+        table => {
+            let drawn = Column::of_table(table).filter(|column| column.drawn);
+            drawn.map(|column| column.name.to_owned()).collect()
+        }
     }
 }
 
@@ -112,20 +104,21 @@ impl MeasuredSpec {
     /// Refuses what cannot be drawn, whatever the results.
     pub(super) fn check(&self, file: &Path, key: &str) -> Result<(), Refusal> {
         let at = |part: &str| format!("{key}.{part}");
-        let known = columns(self.of.table);
+        let known = drawn(self.of.table);
         if known.is_empty() {
             let allowed = "jobs, positions, connectors, histories; a frequency is a check of kind mode";
-            return Err(Refusal::new(file, at("of.table"), self.of.table.word(), allowed));
+            let found = Found::value(self.of.table.word());
+            return Err(Refusal::new(file, at("of.table"), found, allowed));
         }
-        if !known.contains(&self.of.column.as_str()) {
-            let known: Vec<String> = known.iter().map(|&name| name.to_owned()).collect();
+        if !known.contains(&self.of.column) {
             return Err(Refusal::unknown(file, at("of.column"), &self.of.column, &known));
         }
         let axes = against(self.of.table);
         if !axes.contains(&self.against) {
             let words: Vec<&str> = axes.iter().map(|axis| axis.word()).collect();
             let allowed = format!("{} of the table of {}", words.join(" or "), self.of.table.word());
-            return Err(Refusal::new(file, at("against"), self.against.word(), allowed));
+            let found = Found::value(self.against.word());
+            return Err(Refusal::new(file, at("against"), found, allowed).because(RefusalKind::Conflict));
         }
         self.check_where(file, key)?;
         if self.points.is_empty() {
@@ -148,44 +141,39 @@ impl MeasuredSpec {
             let key = format!("{key}.where.{name}");
             if name == self.against.word() {
                 let allowed = "no column that the points themselves run along";
-                return Err(Refusal::new(file, key, "a column of the points", allowed));
+                let refused = Refusal::new(file, key, "a column of the points", allowed);
+                return Err(refused.because(RefusalKind::Misplaced));
             }
             if ["position", "joint"].contains(&name.as_str()) && place != Some(name) {
                 let allowed = match place {
                     Some(place) => format!("{place}, as the table of {} has it", self.of.table.word()),
                     None => "none: the points have no one place".to_owned(),
                 };
-                return Err(Refusal::new(file, key, format!("a {name}"), allowed));
+                let refused = Refusal::new(file, key, format!("a {name}"), allowed);
+                return Err(refused.because(RefusalKind::Misplaced));
             }
-            let single = matches!(allowed, Allowed::OneOf(values) if values.len() == 1);
-            if !single {
+            if allowed.single().is_none() {
+                let found = allowed.written().to_string();
                 let allowed = "a single value: a measurement has its own conditions";
-                return Err(Refusal::new(file, key, self.written(name), allowed));
+                return Err(Refusal::new(file, key, found, allowed));
             }
         }
         let Some(place) = place else { return Ok(()) };
         let key = format!("{key}.where.{place}");
         let allowed = "a whole number from 1";
-        match self.number_of(place) {
-            Some(number) if number >= 1.0 && number.fract() == 0.0 && number <= f64::from(u32::MAX) => Ok(()),
-            _ if self.filter.of(place).is_none() => Err(Refusal::new(file, key, "nothing", allowed)),
-            _ => Err(Refusal::new(file, key, self.written(place), allowed)),
+        match self.filter.of(place).map(|allowed| (allowed, allowed.single())) {
+            None => Err(Refusal::new(file, key, Found::NOTHING, allowed)),
+            Some((_, Some(cell))) if is_place(cell) => Ok(()),
+            Some((_, Some(cell))) => Err(Refusal::new(file, key, &cell.value(), allowed)),
+            Some((several, None)) => Err(Refusal::new(file, key, several.written().to_string(), allowed)),
         }
     }
+}
 
-    fn written(&self, name: &str) -> String {
-        self.filter
-            .of(name)
-            .map(|a| a.written().to_string())
-            .unwrap_or_default()
-    }
-
-    fn number_of(&self, name: &str) -> Option<f64> {
-        match self.filter.of(name)? {
-            Allowed::OneOf(values) => values.first()?.as_f64(),
-            Allowed::Range(..) => None,
-        }
-    }
+/// Whether a value is the number of a position or joint.
+fn is_place(cell: &Cell<'_>) -> bool {
+    let whole = |number: f64| number >= 1.0 && number.fract() == 0.0 && number <= f64::from(u32::MAX);
+    cell.number().is_some_and(whole)
 }
 
 #[cfg(test)]
@@ -194,7 +182,7 @@ mod tests {
     use serde_json::{Value, json};
 
     fn refused(written: Value) -> String {
-        match serde_json::from_value::<MeasuredSpec>(written) {
+        match pontoon_plan::input::typed_value::<MeasuredSpec>(Path::new("r.json"), "measured[0]", &written) {
             Err(error) => error.to_string(),
             Ok(spec) => match spec.check(Path::new("r.json"), "measured[0]") {
                 Err(refusal) => refusal.to_string(),
@@ -228,7 +216,7 @@ mod tests {
             ("/of/column", json!("deflection_cm"), "nearest known: deflection_m"),
             ("/of/column", json!("steps"), "measured[0].of.column"),
             ("/against", json!("time_s"), "measured[0].against"),
-            ("/against", json!("x"), "unknown variant"),
+            ("/against", json!("x"), "measured[0].against: found unknown \"x\""),
             ("/where", json!({ "position": 7 }), "measured[0].where.position"),
             ("/where", json!({ "x_m": 7 }), "measured[0].where.x_m"),
             (
@@ -242,9 +230,13 @@ mod tests {
                 "measured[0].where.gap_tension_m",
             ),
             ("/points", json!([]), "measured[0].points"),
-            ("/points", json!([[1.0]]), "invalid length"),
-            ("/points", json!([[1.0, null]]), "invalid type"),
-            ("/judge", json!(true), "unknown field"),
+            (
+                "/points",
+                json!([[1.0]]),
+                "measured[0].points[0]: found a list of length 1",
+            ),
+            ("/points", json!([[1.0, null]]), "measured[0].points[0][1]: found null"),
+            ("/judge", json!(true), "measured[0].judge: found unknown key"),
         ] {
             let mut written = profile();
             if key == "/judge" {

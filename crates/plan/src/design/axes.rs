@@ -1,33 +1,215 @@
-//! Axes: what they are called and what they vary.
+//! Axes: what they are called, in which unit they are, and where they go.
 //!
-//! Knows the names that an axis may have and when two axes contradict each other. Does not know values or points.
+//! Knows the axes that have a name of their own, one entry each, and when two axes contradict each other. Does not know values
+//! or points.
 
-use crate::input::{DocumentPath, Refusal};
+use crate::input::{DocumentPath, Found, Refusal, RefusalKind};
 use std::path::Path;
 
-/// Axes that have a name of their own; every other is named by its path.
-pub const SHORT_NAMES: [&str; 7] = [
-    "connection",
-    "gap_tension_m",
-    "gap_compression_m",
-    "speed_m_s",
-    "load_n",
-    "load_position",
-    "load_x_m",
+/// An axis that has a name of its own; every other is named by the path of what it sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NamedAxis {
+    /// Its name, which is also its column.
+    pub name: &'static str,
+    /// Its unit; empty of words and counts.
+    pub unit: &'static str,
+    /// What it is called in words.
+    pub label: &'static str,
+    /// What its values are.
+    pub values: AxisValues,
+    /// Where they go.
+    pub goes: Goes,
+}
+
+/// What the values of an axis with a name of its own are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AxisValues {
+    /// Numbers.
+    Numbers,
+    /// Whole numbers from 1.
+    Counts,
+    /// These words.
+    Words(&'static [&'static str]),
+}
+
+/// Where the values of an axis with a name of its own go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Goes {
+    /// To the job itself.
+    Job {
+        /// Which of its numbers they are.
+        axis: JobAxis,
+        /// The path of the value that they take the place of, where they do: the axis of that path is the same one.
+        stands_for: Option<&'static str>,
+        /// Whether crossings have it, and so its column.
+        crossings: bool,
+        /// Whether static cases have it.
+        statics: bool,
+    },
+    /// To the value at a path of a document: the axis is another name of that path.
+    Document(&'static str),
+}
+
+/// A number or word of a job that an axis sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JobAxis {
+    /// How the connectors work.
+    Connection,
+    /// Tension gap.
+    TensionGap,
+    /// Compression gap.
+    CompressionGap,
+    /// Speed of a crossing.
+    Speed,
+    /// Position that the load stands on.
+    LoadPosition,
+    /// Place of the load.
+    LoadPlace,
+    /// Weight of the vehicle.
+    Load,
+}
+
+const fn job(axis: JobAxis, crossings: bool, statics: bool) -> Goes {
+    Goes::Job {
+        axis,
+        stands_for: None,
+        crossings,
+        statics,
+    }
+}
+
+const fn gap(axis: JobAxis, path: &'static str) -> Goes {
+    Goes::Job {
+        axis,
+        stands_for: Some(path),
+        crossings: true,
+        statics: true,
+    }
+}
+
+const fn numbers(name: &'static str, unit: &'static str, label: &'static str, goes: Goes) -> NamedAxis {
+    NamedAxis {
+        name,
+        unit,
+        label,
+        values: AxisValues::Numbers,
+        goes,
+    }
+}
+
+/// The axes that have a name of their own, in the order of their columns.
+pub const NAMED_AXES: [NamedAxis; 7] = [
+    NamedAxis {
+        name: "connection",
+        unit: "",
+        label: "connection",
+        values: AxisValues::Words(&["linear", "nonlinear"]),
+        goes: job(JobAxis::Connection, true, true),
+    },
+    numbers(
+        "gap_tension_m",
+        "m",
+        "tension gap",
+        gap(JobAxis::TensionGap, "bridge.connectors.gap_tension_m"),
+    ),
+    numbers(
+        "gap_compression_m",
+        "m",
+        "compression gap",
+        gap(JobAxis::CompressionGap, "bridge.connectors.gap_compression_m"),
+    ),
+    numbers("speed_m_s", "m/s", "speed", job(JobAxis::Speed, true, false)),
+    NamedAxis {
+        name: "load_position",
+        unit: "",
+        label: "load position",
+        values: AxisValues::Counts,
+        goes: job(JobAxis::LoadPosition, false, true),
+    },
+    numbers("load_x_m", "m", "load place", job(JobAxis::LoadPlace, false, true)),
+    numbers("load_n", "N", "load", job(JobAxis::Load, true, true)),
 ];
+
+impl NamedAxis {
+    /// The axis of a name, or of the path that its values take the place of.
+    pub fn of(name: &str) -> Option<&'static Self> {
+        let mut axes = NAMED_AXES.iter();
+        axes.find(|axis| axis.name == name || axis.path() == Some(name))
+    }
+
+    /// The axis that sets a number of the job.
+    pub fn of_job(of: JobAxis) -> Option<&'static Self> {
+        let sets = |axis: &&Self| matches!(axis.goes, Goes::Job { axis, .. } if axis == of);
+        NAMED_AXES.iter().find(sets)
+    }
+
+    /// The path of the value that it sets or takes the place of, where there is one.
+    fn path(&self) -> Option<&'static str> {
+        match self.goes {
+            Goes::Job { stands_for, .. } => stands_for,
+            Goes::Document(path) => Some(path),
+        }
+    }
+}
+
+/// A document of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Root {
+    /// The bridge.
+    Bridge,
+    /// The vehicle.
+    Vehicle,
+    /// The analysis.
+    Analysis,
+}
+
+impl Root {
+    /// All documents.
+    pub const ALL: [Self; 3] = [Self::Bridge, Self::Vehicle, Self::Analysis];
+
+    /// How a path begins that leads into it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Bridge => "bridge",
+            Self::Vehicle => "vehicle",
+            Self::Analysis => "analysis",
+        }
+    }
+}
 
 /// What an axis varies.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum AxisName {
-    /// One of [`SHORT_NAMES`].
-    Short(&'static str),
+pub enum Varies {
+    /// A number or word of the job itself.
+    Job(JobAxis),
     /// A value of one of the study's documents.
-    Path {
-        /// `bridge`, `vehicle` or `analysis`.
-        root: &'static str,
-        /// The path inside that document.
-        path: DocumentPath,
-    },
+    Path(Root, DocumentPath),
+}
+
+impl Varies {
+    /// What the axis or column of a name varies; none where the name is no axis's.
+    pub fn of(name: &str) -> Option<Self> {
+        let path = match NamedAxis::of(name).map(|axis| axis.goes) {
+            Some(Goes::Job { axis, .. }) if NAMED_AXES.iter().any(|named| named.name == name) => {
+                return Some(Self::Job(axis));
+            }
+            Some(Goes::Document(path)) => path,
+            _ => name,
+        };
+        let (root, path) = path.split_once('.')?;
+        let root = Root::ALL.into_iter().find(|known| known.word() == root)?;
+        Some(Self::Path(root, DocumentPath::parse(path)?))
+    }
+}
+
+impl Varies {
+    /// What a column of a name shows: of a path whose value the job has a number of its own for, that number.
+    pub fn of_column(name: &str) -> Option<Self> {
+        match NamedAxis::of(name).map(|axis| axis.goes) {
+            Some(Goes::Job { axis, .. }) => Some(Self::Job(axis)),
+            _ => Self::of(name),
+        }
+    }
 }
 
 /// One axis.
@@ -36,16 +218,26 @@ pub struct Axis {
     /// The name as written, which is also its column.
     pub name: String,
     /// What it varies.
-    pub varies: AxisName,
+    pub varies: Varies,
 }
 
 impl Axis {
     /// The axis of a name that stands at `key`; `known` are the names to suggest for a name that is not known.
     pub(super) fn read(file: &Path, key: &str, name: &str, known: &[String]) -> Result<Self, Refusal> {
-        Ok(Self {
-            name: name.to_owned(),
-            varies: axis_name(file, key, name, known)?,
-        })
+        if name == "analysis.kind" {
+            let found = Found::from("the kind of the study as an axis");
+            return Err(Refusal::new(file, key, found, "one kind a study").because(RefusalKind::Misplaced));
+        }
+        match Varies::of(name) {
+            Some(varies) => Ok(Self {
+                name: name.to_owned(),
+                varies,
+            }),
+            None => Err(Refusal {
+                allowed: "a short name or the path of a value in bridge, vehicle or analysis".to_owned(),
+                ..Refusal::unknown_key(file, key, name, known)
+            }),
+        }
     }
 
     /// Whether it sets what an axis of another name would set.
@@ -62,24 +254,16 @@ pub(super) fn check_apart(file: &Path, key: &str, axes: &[Axis]) -> Result<(), R
             .find(|other| same_place(place(&other.name), place(&axis.name)))
         {
             let found = format!("an axis that sets what {} sets too", other.name);
-            return Err(Refusal::new(
-                file,
-                format!("{key}.{}", axis.name),
-                found,
-                "one of the two",
-            ));
+            let refused = Refusal::new(file, format!("{key}.{}", axis.name), found, "one of the two");
+            return Err(refused.because(RefusalKind::Misplaced));
         }
     }
     Ok(())
 }
 
-/// The path of what an axis sets: a short name of a number of the bridge stands for its path.
+/// The path of what an axis sets: a name of its own stands for its path, where it has one.
 fn place(name: &str) -> &str {
-    match name {
-        "gap_tension_m" => "bridge.connectors.gap_tension_m",
-        "gap_compression_m" => "bridge.connectors.gap_compression_m",
-        other => other,
-    }
+    NamedAxis::of(name).and_then(NamedAxis::path).unwrap_or(name)
 }
 
 /// Whether one path is the other or leads to it.
@@ -91,29 +275,37 @@ fn same_place(a: &str, b: &str) -> bool {
     leads(a, b) || leads(b, a)
 }
 
-fn axis_name(file: &Path, key: &str, name: &str, known: &[String]) -> Result<AxisName, Refusal> {
-    if let Some(short) = SHORT_NAMES.iter().find(|short| **short == name) {
-        return Ok(AxisName::Short(short));
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_entry_is_found_by_its_name_and_by_the_path_that_it_stands_for() {
+        for axis in &NAMED_AXES {
+            assert_eq!(NamedAxis::of(axis.name), Some(axis));
+            if let Some(path) = axis.path() {
+                assert_eq!(NamedAxis::of(path), Some(axis));
+            }
+            if let Goes::Job { axis: of, .. } = axis.goes {
+                assert_eq!(NamedAxis::of_job(of), Some(axis));
+                assert_eq!(Varies::of(axis.name), Some(Varies::Job(of)));
+            }
+            let unit = axis
+                .name
+                .ends_with(&format!("_{}", axis.unit.to_lowercase().replace('/', "_")));
+            assert!(axis.unit.is_empty() || unit, "{axis:?}");
+        }
     }
-    let unknown = || Refusal {
-        allowed: "a short name or the path of a value in bridge, vehicle or analysis".to_owned(),
-        ..Refusal::unknown(file, key, name, known)
-    };
-    let (root, path) = name.split_once('.').ok_or_else(unknown)?;
-    let root = ["bridge", "vehicle", "analysis"]
-        .into_iter()
-        .find(|r| *r == root)
-        .ok_or_else(unknown)?;
-    if name == "analysis.kind" {
-        return Err(Refusal::new(
-            file,
-            key,
-            "the kind of the study as an axis",
-            "one kind a study",
-        ));
+
+    #[test]
+    fn a_path_varies_a_value_of_its_document() {
+        let path = |text| DocumentPath::parse(text).unwrap();
+        assert_eq!(
+            Varies::of("vehicle.axles[0].share"),
+            Some(Varies::Path(Root::Vehicle, path("axles[0].share")))
+        );
+        for name in ["speed", "bridge", "bridge.", "water.depth_m", "bridge.a[x]"] {
+            assert_eq!(Varies::of(name), None, "{name}");
+        }
     }
-    Ok(AxisName::Path {
-        root,
-        path: DocumentPath::parse(path).ok_or_else(unknown)?,
-    })
 }

@@ -2,25 +2,29 @@
 //!
 //! Knows what makes a design one that can be expanded: names, forms and sizes. Does not know what a point means.
 
-use super::axes::{Axis, check_apart};
+use super::axes::{Axis, JobAxis, Root, Varies, check_apart};
+use super::cases::{CaseRun, Cases};
 use super::condition::{Conditions, Test};
 use super::forms::{AxisMap, Design, Form, SampleSpec};
 use super::points::{Drawn, Making, Sample, values};
 use super::sampling::SobolPoints;
 use super::values::{MOST_POINTS, Values};
-use crate::input::{Refusal, canonical};
-use serde_json::{Map, Value};
+use crate::input::{Cell, DocumentPath, Found, Refusal, RefusalKind};
+use serde_json::Value;
 use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Most parts of all ranges of a Latin hypercube, whose orders take four bytes a part.
 const MOST_PARTS: usize = 100_000_000;
 
-/// A design with its axes read, or one of its cases.
+/// A design with its axes read, or those of its cases that name the same axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// Where its axes stand in the study file.
-    pub key: String,
+    /// Where its axes stand in the study file; of cases the list that they stand in.
+    key: String,
+    /// Of cases the place of the first in their list.
+    first_case: Option<usize>,
     /// Its axes in the order of the file.
     pub axes: Vec<Axis>,
     making: Making,
@@ -34,13 +38,39 @@ pub struct Block {
 pub struct Point<'a> {
     /// The block it is of.
     pub block: &'a Block,
-    values: Vec<Cow<'a, Value>>,
+    /// Its number among the points of the block, those included that conditions leave out.
+    number: usize,
+    values: Vec<Cell<'a>>,
 }
 
 impl<'a> Point<'a> {
+    /// Where its axes stand in the study file.
+    pub fn key(&self) -> Cow<'a, str> {
+        match self.block.first_case {
+            Some(first) => format!("{}[{}]", self.block.key, first + self.number).into(),
+            None => self.block.key.as_str().into(),
+        }
+    }
+
     /// The axes with the point's values.
-    pub fn values(&self) -> impl Iterator<Item = (&'a Axis, &Value)> {
-        self.block.axes.iter().zip(self.values.iter().map(Cow::as_ref))
+    pub fn values(&self) -> impl Iterator<Item = (&'a Axis, &Cell<'a>)> {
+        self.block.axes.iter().zip(&self.values)
+    }
+
+    /// The value of an axis that sets a number or word of the job.
+    pub fn of_job(&self, of: JobAxis) -> Option<&Cell<'a>> {
+        let mut values = self.values();
+        values
+            .find(|(axis, _)| axis.varies == Varies::Job(of))
+            .map(|(_, value)| value)
+    }
+
+    /// The axes that set a value of a document, by name and path, with the point's values.
+    pub fn of_document(&self, root: Root) -> impl Iterator<Item = (&'a str, &'a DocumentPath, &Cell<'a>)> {
+        self.values().filter_map(move |(axis, value)| match &axis.varies {
+            Varies::Path(of, path) if *of == root => Some((axis.name.as_str(), path, value)),
+            _ => None,
+        })
     }
 }
 
@@ -72,6 +102,7 @@ impl Block {
         let count = making.count().unwrap_or(usize::MAX);
         Ok(Self {
             key,
+            first_case: None,
             axes,
             making,
             tests: Vec::new(),
@@ -93,7 +124,11 @@ impl Block {
     /// nothing but, of a Latin hypercube, four bytes a point and range while it lasts.
     pub fn points(&self) -> impl Iterator<Item = Point<'_>> {
         let values = values(&self.axes, &self.making, &self.tests);
-        values.map(move |values| Point { block: self, values })
+        values.map(move |(number, values)| Point {
+            block: self,
+            number,
+            values,
+        })
     }
 }
 
@@ -130,7 +165,7 @@ impl Reader<'_> {
     fn refuse<T>(
         &self,
         key: impl Into<String>,
-        found: impl ToString,
+        found: impl Into<Found>,
         allowed: impl Into<String>,
     ) -> Result<T, Refusal> {
         Err(Refusal::new(self.file, key, found, allowed))
@@ -141,11 +176,12 @@ impl Reader<'_> {
         let form = match design.form() {
             Ok(form) => form,
             Err(found) => {
-                let found = match found.as_slice() {
-                    [] => "none of them".to_owned(),
-                    several => several.join(" and "),
+                let (found, kind) = match found.as_slice() {
+                    [] => ("none of them".to_owned(), RefusalKind::Missing),
+                    several => (several.join(" and "), RefusalKind::Misplaced),
                 };
-                return self.refuse(key, found, format!("exactly one of {}", Form::NAMES.join(", ")));
+                let allowed = format!("exactly one of {}", Form::NAMES.join(", "));
+                return Err(Refusal::new(self.file, key, found, allowed).because(kind));
             }
         };
         match form {
@@ -155,11 +191,7 @@ impl Reader<'_> {
                 self.check_even(&block)?;
                 Ok(vec![block])
             }
-            Form::Cases([]) => self.refuse(format!("{key}.cases"), "an empty list", "at least one case"),
-            Form::Cases(cases) => {
-                let case = |(c, case)| self.case(format!("{key}.cases[{c}]"), case);
-                (0..).zip(cases).map(case).collect()
-            }
+            Form::Cases(cases) => self.cases(&format!("{key}.cases"), cases),
             Form::LatinHypercube(spec) => {
                 let key = format!("{key}.latin_hypercube");
                 let (axes, sample) = self.sample(&key, spec)?;
@@ -216,14 +248,24 @@ impl Reader<'_> {
         }
     }
 
-    fn case(&self, key: String, case: &Map<String, Value>) -> Result<Block, Refusal> {
-        let axis = |(name, value): (&String, &Value)| {
-            let axis = Axis::read(self.file, &format!("{key}.{name}"), name, self.known)?;
-            Ok((axis, Values::Listed(vec![canonical(value)])))
-        };
-        let read = case.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
-        let (axes, values) = read.into_iter().unzip();
-        Block::new(self.file, key, axes, Making::Grid(values))
+    fn cases(&self, key: &str, cases: &Cases) -> Result<Vec<Block>, Refusal> {
+        if cases.runs.is_empty() {
+            return self.refuse(key, "an empty list", "at least one case");
+        }
+        cases.runs.iter().map(|run| self.run_of_cases(key, run)).collect()
+    }
+
+    fn run_of_cases(&self, key: &str, run: &CaseRun) -> Result<Block, Refusal> {
+        let first = format!("{key}[{}]", run.first);
+        let axis = |name: &String| Axis::read(self.file, &format!("{first}.{name}"), name, self.known);
+        let axes = run.names.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
+        let making = Making::Cases(Arc::clone(&run.columns), run.count);
+        let block = Block::new(self.file, first, axes, making)?;
+        Ok(Block {
+            key: key.to_owned(),
+            first_case: Some(run.first),
+            ..block
+        })
     }
 
     /// The axes of a sample and what they are drawn from; `key` is where its count stands.
@@ -241,7 +283,8 @@ impl Reader<'_> {
         let read = spec.ranges.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
         let (axes, drawn): (_, Vec<Drawn>) = read.into_iter().unzip();
         if !drawn.iter().any(Drawn::is_range) {
-            return self.refuse(key, "no range", "at least one axis with a range [from, to]");
+            let refused = Refusal::new(self.file, key, "no range", "at least one axis with a range [from, to]");
+            return Err(refused.because(RefusalKind::Missing));
         }
         let sample = Sample {
             count: spec.count,
@@ -254,7 +297,9 @@ impl Reader<'_> {
     fn drawn(&self, key: &str, name: &str, written: &Value) -> Result<Drawn, Refusal> {
         let allowed = "[from, to], two numbers with from below to, or one number or word";
         match written {
-            Value::Number(_) | Value::String(_) | Value::Bool(_) => Ok(Drawn::Constant(canonical(written))),
+            Value::Number(_) | Value::String(_) | Value::Bool(_) => {
+                Ok(Drawn::Constant(Cell::from(written).canonical()))
+            }
             _ if name == "connection" => self.refuse(key, written, "linear or nonlinear, the same for all points"),
             Value::Array(ends) => match (
                 ends.as_slice(),

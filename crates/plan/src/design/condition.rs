@@ -3,11 +3,10 @@
 //! Knows how conditions are written and when the values of a point meet them. Does not know how points are made.
 
 use super::axes::Axis;
-use crate::input::Refusal;
-use crate::input::filter::{Allowed, entries, same};
+use crate::input::filter::{Allowed, NoFilter, entries, same};
+use crate::input::{Cell, Refusal};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::path::Path;
@@ -63,7 +62,7 @@ impl Relation {
 }
 
 impl Condition {
-    fn read(written: &Value) -> Result<Self, String> {
+    fn read(written: &Value) -> Result<Self, NoFilter> {
         let Value::Object(map) = written else {
             let allowed = Some(Allowed::read(written)?);
             let compared = Vec::new();
@@ -75,17 +74,13 @@ impl Condition {
             match (relation(key), value) {
                 (Some(relation), Value::String(axis)) => compared.push((relation, axis.clone())),
                 (Some(_), value) => {
-                    return Err(format!(
-                        "{value} as {key}, expected the name of another axis (the keys of numbers are from and to)"
-                    ));
+                    let allowed = "the name of another axis (the keys of numbers are from and to)";
+                    return Err(NoFilter::new(format!("{value} as {key}"), allowed));
                 }
                 (None, value) if key == "from" || key == "to" => {
                     bounds.insert(key.clone(), value.clone());
                 }
-                (None, _) => {
-                    let keys = Relation::ALL.map(|relation| format!("`{}`", relation.key())).join(", ");
-                    return Err(format!("unknown field `{key}`, expected one of `from`, `to`, {keys}"));
-                }
+                (None, _) => return Err(NoFilter::UnknownKey(key.clone(), &KEYS)),
             }
         }
         let allowed = if bounds.is_empty() && !compared.is_empty() {
@@ -95,24 +90,10 @@ impl Condition {
         };
         Ok(Self { allowed, compared })
     }
-
-    fn written(&self) -> Value {
-        let allowed = self.allowed.as_ref().map(Allowed::written);
-        if self.compared.is_empty() {
-            return allowed.unwrap_or_default();
-        }
-        let mut map = match allowed {
-            Some(Value::Object(map)) => map,
-            _ => Map::new(),
-        };
-        map.extend(
-            self.compared
-                .iter()
-                .map(|(relation, axis)| (relation.key().to_owned(), axis.as_str().into())),
-        );
-        map.into()
-    }
 }
+
+/// The keys of a condition.
+const KEYS: [&str; 6] = ["from", "to", "at_least", "at_most", "above", "below"];
 
 impl Conditions {
     /// Whether every point meets them.
@@ -122,18 +103,18 @@ impl Conditions {
 
     /// Refuses a name that is none of the `axes` of the design; `key` is where the conditions stand.
     pub(super) fn check(&self, file: &Path, key: &str, axes: &[Axis]) -> Result<(), Refusal> {
-        let check = |key: String, name: &str| {
-            if axes.iter().any(|axis| axis.sets_what(name)) {
-                return Ok(());
-            }
-            let known: Vec<String> = axes.iter().map(|axis| axis.name.clone()).collect();
-            Err(Refusal::unknown(file, key, name, &known))
-        };
+        let is_axis = |name: &str| axes.iter().any(|axis| axis.sets_what(name));
+        let known = || axes.iter().map(|axis| axis.name.clone()).collect::<Vec<_>>();
         for (name, condition) in &self.0 {
-            let key = format!("{key}.{name}");
-            check(key.clone(), name)?;
+            let path = format!("{key}.{name}");
+            if !is_axis(name) {
+                return Err(Refusal::unknown_key(file, path, name, &known()));
+            }
             for (relation, other) in &condition.compared {
-                check(format!("{key}.{}", relation.key()), other)?;
+                if !is_axis(other) {
+                    let path = format!("{path}.{}", relation.key());
+                    return Err(Refusal::unknown(file, path, other, &known()));
+                }
             }
         }
         Ok(())
@@ -165,18 +146,11 @@ pub(super) struct Test {
 
 impl Test {
     /// Whether the values of a point meet the condition. What is no number stands in no relation.
-    pub(super) fn met(&self, values: &[Cow<'_, Value>]) -> bool {
-        let value = |axis: Option<usize>| axis.map_or(&Value::Null, |axis| values[axis].as_ref());
+    pub(super) fn met(&self, values: &[Cell<'_>]) -> bool {
+        let value = |axis: Option<usize>| axis.map_or(&Cell::Nothing, |axis| &values[axis]);
         let own = value(self.axis);
-        let stands = |&(relation, other): &(Relation, Option<usize>)| matches!((own.as_f64(), value(other).as_f64()), (Some(a), Some(b)) if relation.holds(a, b));
+        let stands = |&(relation, other): &(Relation, Option<usize>)| matches!((own.number(), value(other).number()), (Some(a), Some(b)) if relation.holds(a, b));
         self.allowed.as_ref().is_none_or(|allowed| allowed.allows(own)) && self.compared.iter().all(stands)
-    }
-}
-
-impl Serialize for Conditions {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let map: Map<String, Value> = self.0.iter().map(|(name, c)| (name.clone(), c.written())).collect();
-        map.serialize(serializer)
     }
 }
 
@@ -188,7 +162,7 @@ impl<'de> Deserialize<'de> for Conditions {
 
 impl<'de> Deserialize<'de> for Condition {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::read(&Value::deserialize(deserializer)?).map_err(D::Error::custom)
+        Self::read(&Value::deserialize(deserializer)?).map_err(NoFilter::of_reader)
     }
 }
 
@@ -248,7 +222,18 @@ mod tests {
         }
         let written = json!({"a": 1, "b": ["x", null], "c": {"from": 0.0, "to": 1.0}, "d": {"at_least": "a"},
                              "e": {"to": 3.0, "above": "a", "below": "b"}});
-        assert_eq!(serde_json::to_value(read(written.clone()).unwrap()).unwrap(), written);
+        let Conditions(conditions) = read(written).unwrap();
+        let names: Vec<&str> = conditions.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["a", "b", "c", "d", "e"]);
+        let [.., (_, compared), (_, both)] = conditions.as_slice() else {
+            panic!("{conditions:?}")
+        };
+        assert_eq!(
+            (compared.allowed.is_none(), compared.compared.as_slice()),
+            (true, &[(Relation::AtLeast, "a".to_owned())][..])
+        );
+        assert_eq!(both.allowed, Some(Allowed::Range(None, Some(3.0))));
+        assert_eq!(both.compared.len(), 2);
     }
 
     #[test]

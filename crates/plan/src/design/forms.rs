@@ -2,41 +2,43 @@
 //!
 //! Knows its forms and their schema. Does not know what an axis may be called or what it expands to.
 
+use super::axes::{AxisValues, NAMED_AXES};
+use super::cases::Cases;
 use super::condition::Conditions;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
 /// One design: exactly one of `grid`, `zip`, `cases`, `latin_hypercube` and `sobol` says which points it has. The designs
 /// of a study are united in the order of the file.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = Form::NAMES.map(|name| json!({ "required": [name] }))))]
 pub struct Design {
     /// Every combination of the axes' values; the first axis changes slowest.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     #[schemars(with = "AxisMap")]
     pub grid: Option<AxisMap>,
     /// The axes' first values, then their second ones, and so on: all axes have equally many, or one that stands for all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     #[schemars(with = "AxisMap")]
     pub zip: Option<AxisMap>,
     /// Single points, each axis with one value.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     #[schemars(with = "Vec<Case>")]
-    pub cases: Option<Vec<Map<String, Value>>>,
+    pub cases: Option<Cases>,
     /// Points drawn at random, one in each of `count` equal parts of each range.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     #[schemars(with = "SampleSpec")]
     pub latin_hypercube: Option<SampleSpec>,
     /// Points of the scrambled Sobol' sequence, which fills the ranges evenly at every length: a longer design of the same
     /// seed begins with the points of a shorter one. Best at a power of two.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     #[schemars(with = "SampleSpec")]
     pub sobol: Option<SampleSpec>,
     /// What a point must meet to become a job.
-    #[serde(default, rename = "where", skip_serializing_if = "Conditions::is_empty")]
+    #[serde(default, rename = "where")]
     pub conditions: Conditions,
 }
 
@@ -48,7 +50,7 @@ pub enum Form<'a> {
     /// Value by value.
     Zip(&'a AxisMap),
     /// Point by point.
-    Cases(&'a [Map<String, Value>]),
+    Cases(&'a Cases),
     /// Drawn at random, one in each part of each range.
     LatinHypercube(&'a SampleSpec),
     /// Points of a sequence.
@@ -69,7 +71,7 @@ impl Design {
         let forms = [
             self.grid.as_ref().map(Form::Grid),
             self.zip.as_ref().map(Form::Zip),
-            self.cases.as_deref().map(Form::Cases),
+            self.cases.as_ref().map(Form::Cases),
             self.latin_hypercube.as_ref().map(Form::LatinHypercube),
             self.sobol.as_ref().map(Form::Sobol),
         ];
@@ -86,12 +88,12 @@ impl Design {
 }
 
 /// Axes by name, in the order of the file.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(transparent)]
 pub struct AxisMap(pub Map<String, Value>);
 
 /// Points drawn from ranges.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SampleSpec {
     /// Number of points.
@@ -104,31 +106,31 @@ pub struct SampleSpec {
 }
 
 /// Ranges and constants by the name of their axis, in the order of the file.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(transparent)]
 pub struct RangeMap(pub Map<String, Value>);
 
 /// Pattern of the axes that are named by their path.
 const PATH_PATTERN: &str = r"^(bridge|vehicle|analysis)\.[a-z0-9_]+(\.[a-z0-9_]+|\[[0-9]+\])*$";
 
-/// The schema of an object of axes, where `number` and `word` are the schemas of one axis of numbers and of words.
-fn object_of(text: &str, number: &Value, word: &Value, any: &Value) -> Schema {
+/// The schema of an object of axes, where `number` and `word` make the schemas of one axis of numbers and of words.
+fn object_of(text: &str, number: &Value, word: &dyn Fn(Value) -> Value, any: &Value) -> Schema {
+    let property = |values: AxisValues| match values {
+        AxisValues::Numbers | AxisValues::Counts => number.clone(),
+        AxisValues::Words(words) => word(json!({ "enum": words })),
+    };
+    let named = NAMED_AXES.iter();
+    let properties: Map<String, Value> = named
+        .map(|axis| (axis.name.to_owned(), property(axis.values)))
+        .collect();
     let schema = json!({
         "type": "object",
         "description": text,
-        "properties": {
-            "connection": word, "gap_tension_m": number, "gap_compression_m": number, "speed_m_s": number,
-            "load_n": number, "load_position": number, "load_x_m": number
-        },
+        "properties": properties,
         "patternProperties": { PATH_PATTERN: any },
         "additionalProperties": false
     });
     schema.try_into().unwrap_or_default()
-}
-
-/// How the connectors may work.
-fn words() -> Value {
-    json!({ "enum": ["linear", "nonlinear"] })
 }
 
 impl JsonSchema for AxisMap {
@@ -158,7 +160,7 @@ impl JsonSchema for AxisMap {
         object_of(
             "Axes by name, each a list of values, one value or a spaced range.",
             &with(forms(json!({ "type": "number" })), json!({ "type": "number" })),
-            &json!({ "anyOf": [words(), { "type": "array", "items": words(), "minItems": 1 }] }),
+            &|words| json!({ "anyOf": [words, { "type": "array", "items": words, "minItems": 1 }] }),
             &with(forms(json!(true)), json!({ "type": ["number", "string", "boolean"] })),
         )
     }
@@ -180,7 +182,7 @@ impl JsonSchema for RangeMap {
         object_of(
             "Axes by name, each a range [from, to] or one value that all points have; at least one is a range.",
             &or(json!({ "type": "number" })),
-            &words(),
+            &|words| words,
             &or(json!({ "type": ["number", "string", "boolean"] })),
         )
     }
@@ -198,7 +200,7 @@ impl JsonSchema for Case {
         object_of(
             "One point: a value for each axis.",
             &json!({ "type": "number" }),
-            &words(),
+            &|words| words,
             &json!(true),
         )
     }

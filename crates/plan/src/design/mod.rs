@@ -4,6 +4,8 @@
 
 mod axes;
 mod block;
+mod cases;
+mod column;
 mod condition;
 mod forms;
 mod points;
@@ -12,7 +14,8 @@ mod sampling;
 mod tests;
 mod values;
 
-pub use axes::{Axis, AxisName, SHORT_NAMES};
+pub use axes::{Axis, AxisValues, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 pub use block::{Block, Point};
+pub use cases::Cases;
 pub use condition::{Condition, Conditions, Relation};
 pub use forms::{AxisMap, Design, Form, RangeMap, SampleSpec};

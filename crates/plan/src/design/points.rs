@@ -3,11 +3,12 @@
 //! Knows their order. Stores none: a point is made when it is asked for. Does not know what a point means.
 
 use super::axes::Axis;
+use super::column::Column;
 use super::condition::Test;
 use super::sampling::{SobolPoints, Strata};
-use super::values::{Values, number};
-use serde_json::Value;
-use std::borrow::Cow;
+use super::values::Values;
+use crate::input::Cell;
+use std::sync::Arc;
 
 /// How the points of a block are made.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +21,8 @@ pub(super) enum Making {
     LatinHypercube(Sample),
     /// Points of the Sobol' sequence.
     Sobol(Sample),
+    /// Point by point: the values of each axis, and how many points there are.
+    Cases(Arc<Vec<Column>>, usize),
 }
 
 /// Points drawn from ranges.
@@ -37,7 +40,7 @@ pub(super) struct Sample {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Drawn {
     /// The same for all points.
-    Constant(Value),
+    Constant(Cell<'static>),
     /// From the first to the second number.
     Range(f64, f64),
 }
@@ -51,6 +54,7 @@ impl Making {
                 .try_fold(1_usize, |count, values| count.checked_mul(values.len())),
             Self::Zip(axes) => Some(axes.iter().map(Values::len).max().unwrap_or(1)),
             Self::LatinHypercube(sample) | Self::Sobol(sample) => Some(sample.count),
+            Self::Cases(_, count) => Some(*count),
         }
     }
 
@@ -63,16 +67,17 @@ impl Making {
     }
 }
 
-/// The values of the points of some axes, in order, that meet conditions: of a grid the first axis changes slowest.
+/// The points of some axes, in order, that meet conditions, each with its number among all: of a grid the first axis changes
+/// slowest.
 pub(super) fn values<'a>(
     axes: &'a [Axis],
     making: &'a Making,
     tests: &'a [Test],
-) -> impl Iterator<Item = Vec<Cow<'a, Value>>> {
+) -> impl Iterator<Item = (usize, Vec<Cell<'a>>)> {
     let mut source = Source::of(axes, making);
     (0..making.count().unwrap_or(0))
-        .map_while(move |number| source.values(number))
-        .filter(|values| tests.iter().all(|test| test.met(values)))
+        .map_while(move |number| Some((number, source.values(number)?)))
+        .filter(|(_, values)| tests.iter().all(|test| test.met(values)))
 }
 
 /// What the values of the next point come from.
@@ -82,6 +87,7 @@ enum Source<'a> {
     /// With the coordinates of the ranges.
     LatinHypercube(&'a [Drawn], Vec<Strata>),
     Sobol(&'a [Drawn], SobolPoints),
+    Cases(&'a [Column]),
 }
 
 impl<'a> Source<'a> {
@@ -98,11 +104,12 @@ impl<'a> Source<'a> {
                 let dimensions = drawn.iter().filter(|drawn| drawn.is_range()).count();
                 Self::Sobol(drawn, SobolPoints::new(dimensions, *seed))
             }
+            Making::Cases(columns, _) => Self::Cases(columns),
         }
     }
 
     /// The values of a point, to be asked from the first on; nothing where the sequence ends.
-    fn values(&mut self, number: usize) -> Option<Vec<Cow<'a, Value>>> {
+    fn values(&mut self, number: usize) -> Option<Vec<Cell<'a>>> {
         match self {
             Self::Grid(axes) => {
                 let axes: &'a [Values] = axes;
@@ -124,6 +131,10 @@ impl<'a> Source<'a> {
                 drawn_values(drawn, strata.iter_mut().map(|strata| strata.share(number)))
             }
             Self::Sobol(drawn, points) => drawn_values(drawn, points.next()?.into_iter()),
+            Self::Cases(columns) => {
+                let columns: &'a [Column] = columns;
+                Some(columns.iter().map(|column| column.at(number)).collect())
+            }
         }
     }
 }
@@ -135,12 +146,12 @@ impl Drawn {
 }
 
 /// The values of a point whose ranges have these coordinates.
-fn drawn_values<'a>(drawn: &'a [Drawn], mut shares: impl Iterator<Item = f64>) -> Option<Vec<Cow<'a, Value>>> {
+fn drawn_values<'a>(drawn: &'a [Drawn], mut shares: impl Iterator<Item = f64>) -> Option<Vec<Cell<'a>>> {
     let value = |drawn: &'a Drawn| match drawn {
-        Drawn::Constant(value) => Some(Cow::Borrowed(value)),
+        Drawn::Constant(value) => Some(value.borrowed()),
         Drawn::Range(from, to) => {
             let x = from + (to - from) * shares.next()?;
-            Some(Cow::Owned(number(x.clamp(*from, *to))))
+            Some(Cell::written(x.clamp(*from, *to)))
         }
     };
     drawn.iter().map(value).collect()

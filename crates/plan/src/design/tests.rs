@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 fn read(designs: Value) -> Result<Vec<Block>, Refusal> {
-    let designs: Vec<Design> = crate::input::typed(Path::new("study.json"), "design", &designs)?;
-    let mut known: Vec<String> = SHORT_NAMES.map(str::to_owned).to_vec();
+    let designs: Vec<Design> = crate::input::typed_value(Path::new("study.json"), "design", &designs)?;
+    let mut known: Vec<String> = NAMED_AXES.iter().map(|axis| axis.name.to_owned()).collect();
     known.push("bridge.hydrostatic_stiffness_pa_m".to_owned());
     Block::read(Path::new("study.json"), &designs, &known)
 }
@@ -18,7 +18,7 @@ fn points(designs: Value) -> Vec<Vec<Value>> {
     let found: Vec<Vec<Value>> = blocks
         .iter()
         .flat_map(|b| b.points())
-        .map(|p| p.values().map(|(_, v)| v.clone()).collect())
+        .map(|p| p.values().map(|(_, cell)| cell.value()).collect())
         .collect();
     assert_eq!(found.len(), blocks.iter().map(Block::len).sum::<usize>());
     found
@@ -39,8 +39,8 @@ fn refused(design: Value) -> Refusal {
 /// Expects the refusal of a design at a key below it, with what was found and what is allowed.
 fn is_refused(design: Value, key: &str, found: &str, allowed: &str) {
     let e = refused(design);
-    assert_eq!(e.key, format!("design[0]{key}"), "{e}");
-    assert!(e.found.contains(found) && e.allowed.contains(allowed), "{e}");
+    assert_eq!(e.path, format!("design[0]{key}"), "{e}");
+    assert!(e.fault().contains(found) && e.allowed.contains(allowed), "{e}");
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn what_is_no_axis_is_refused_by_key() {
         is_refused(json!({"zip": grid.clone()}), &key.replace("grid", "zip"), "", "");
         is_refused(json!({ "grid": grid }), key, "", "");
     }
-    assert_eq!(read(json!([])).unwrap_err().key, "design");
+    assert_eq!(read(json!([])).unwrap_err().path, "design");
     is_refused(json!({"cases": []}), ".cases", "an empty list", "at least one case");
 }
 
@@ -134,7 +134,7 @@ fn designs_beyond_counting_are_refused_at_once() {
     ] {
         let e = read(designs).unwrap_err();
         assert_eq!(
-            (e.key.as_str(), e.found.as_str(), e.allowed.as_str()),
+            (e.path.as_str(), e.found.text().as_str(), e.allowed.as_str()),
             ("design", found, "at most 10000000 points"),
             "{e}"
         );
@@ -158,13 +158,16 @@ fn an_unknown_name_is_refused_with_the_nearest() {
         ] {
             let e = refused(design);
             assert_eq!(e.nearest.as_deref(), Some(nearest), "{e}");
-            assert!(e.key.ends_with(name), "{e}");
+            assert!(e.path.ends_with(name), "{e}");
         }
     }
     let e = refused(json!({"grid": {"speed_m_s": {"linspce": [1, 2, 3]}}}));
     assert_eq!(e.nearest.as_deref(), Some("linspace"));
     let e = refused(json!({"gird": {}}));
-    assert_eq!((e.key.as_str(), e.nearest.as_deref()), ("design[0].gird", Some("grid")));
+    assert_eq!(
+        (e.path.as_str(), e.nearest.as_deref()),
+        ("design[0].gird", Some("grid"))
+    );
 }
 
 #[test]
@@ -280,7 +283,7 @@ fn what_is_no_sample_is_refused_by_key() {
             is_refused(design, &format!(".{form}.{key}"), "-1", allowed);
         }
         let design = json!({form: {"count": 2, "ranges": {"load_n": [1, 2]}}});
-        is_refused(design, &format!(".{form}.seed"), "nothing", "required");
+        is_refused(design, &format!(".{form}.seed"), "missing key `seed` (required)", "");
     }
 }
 
@@ -365,7 +368,8 @@ fn cases_without_an_axis_of_a_condition_have_null_there() {
     assert_eq!(left(json!({"speed_m_s": {"at_least": "load_n"}})), [1, 3]);
     let blocks = read(json!([{"cases": cases, "where": {"load_n": {"from": 3}}}])).unwrap();
     assert_eq!(blocks.len(), 1);
-    assert_eq!(blocks[0].key, "design[0].cases[2]");
+    let keys: Vec<_> = blocks[0].points().map(|point| point.key().into_owned()).collect();
+    assert_eq!(keys, ["design[0].cases[2]"]);
 }
 
 #[test]
@@ -377,7 +381,7 @@ fn what_is_no_condition_is_refused_by_key() {
     at(
         json!({"sped_m_s": 1}),
         ".sped_m_s",
-        "unknown 'sped_m_s'",
+        "unknown key `sped_m_s`",
         "speed_m_s, load_n",
     );
     at(
@@ -389,13 +393,13 @@ fn what_is_no_condition_is_refused_by_key() {
     at(
         json!({"speed_m_s": {"at_least": "lod_n"}}),
         ".speed_m_s.at_least",
-        "unknown 'lod_n'",
+        "unknown \"lod_n\"",
         "speed_m_s, load_n",
     );
     at(
         json!({"speed_m_s": {"at_lest": "load_n"}}),
         ".speed_m_s.at_lest",
-        "unknown key 'at_lest'",
+        "unknown key `at_lest`",
         "at_least",
     );
     at(

@@ -2,9 +2,9 @@
 //!
 //! Knows the forms and that ranges hold both ends exactly. Does not know what an axis may be called.
 
-use crate::input::{Refusal, canonical};
+use super::column::Column;
+use crate::input::{Cell, Refusal};
 use serde_json::Value;
-use std::borrow::Cow;
 use std::path::Path;
 
 /// Most points of a study, equal ones counted as often as they occur, and so most values of an axis: each point costs a
@@ -18,7 +18,7 @@ const FORMS: &str = "a list of values, one number or word, {\"linspace\": [from,
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Values {
     /// As listed.
-    Listed(Vec<Value>),
+    Listed(Column),
     /// From one end to the other.
     Spaced {
         /// The first value.
@@ -39,15 +39,17 @@ impl Values {
             Value::Array(list) if list.is_empty() => {
                 Err(Refusal::new(file, key, "an empty list", "at least one value"))
             }
-            Value::Array(list) => Ok(Self::Listed(list.iter().map(canonical).collect())),
-            Value::Number(_) | Value::String(_) | Value::Bool(_) => Ok(Self::Listed(vec![canonical(written)])),
+            Value::Array(list) => Ok(Self::Listed(list.iter().map(Cell::from).collect())),
+            Value::Number(_) | Value::String(_) | Value::Bool(_) => {
+                Ok(Self::Listed(std::iter::once(Cell::from(written)).collect()))
+            }
             Value::Object(map) => match map.iter().next() {
                 Some((form, ends)) if map.len() == 1 && (form == "linspace" || form == "geomspace") => {
                     spaced(file, &format!("{key}.{form}"), form == "geomspace", ends)
                 }
                 Some((form, _)) if map.len() == 1 => {
                     let known = ["linspace".to_owned(), "geomspace".to_owned()];
-                    Err(Refusal::unknown(file, format!("{key}.{form}"), form, &known))
+                    Err(Refusal::unknown_key(file, format!("{key}.{form}"), form, &known))
                 }
                 _ => Err(Refusal::new(
                     file,
@@ -56,7 +58,7 @@ impl Values {
                     FORMS,
                 )),
             },
-            Value::Null => Err(Refusal::new(file, key, "null", FORMS)),
+            Value::Null => Err(Refusal::new(file, key, written, FORMS)),
         }
     }
 
@@ -69,9 +71,9 @@ impl Values {
     }
 
     /// The value at a place below the number of values; both ends of a range are exact.
-    pub(super) fn at(&self, place: usize) -> Cow<'_, Value> {
+    pub(super) fn at(&self, place: usize) -> Cell<'_> {
         match *self {
-            Self::Listed(ref values) => Cow::Borrowed(&values[place]),
+            Self::Listed(ref values) => values.at(place),
             Self::Spaced {
                 from,
                 to,
@@ -79,20 +81,15 @@ impl Values {
                 geometric,
             } => {
                 let s = place as f64 / last as f64;
-                Cow::Owned(number(match place {
+                Cell::written(match place {
                     0 => from,
                     place if place == last => to,
                     _ if geometric => from * (to / from).powf(s),
                     _ => from + (to - from) * s,
-                }))
+                })
             }
         }
     }
-}
-
-/// A number as a value, a whole one as a file would write it.
-pub(super) fn number(x: f64) -> Value {
-    canonical(&x.into())
 }
 
 /// The range of `[from, to, count]`.
@@ -133,7 +130,7 @@ mod tests {
 
     fn values(written: Value) -> Vec<f64> {
         let values = Values::read(Path::new("study.json"), "axis", &written).unwrap();
-        (0..values.len()).map(|i| values.at(i).as_f64().unwrap()).collect()
+        (0..values.len()).map(|i| values.at(i).number().unwrap()).collect()
     }
 
     #[test]

@@ -2,8 +2,9 @@
 //!
 //! Knows the forms and when a cell is meant. Does not know which columns or axes there are.
 
+use super::cell::Cell;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::{Error as _, MapAccess, Visitor};
+use serde::de::{Error as DeError, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
@@ -18,7 +19,7 @@ pub struct Filter(pub Vec<(String, Allowed)>);
 #[derive(Debug, Clone, PartialEq)]
 pub enum Allowed {
     /// One of these: numbers, words, yes and no, or nothing.
-    OneOf(Vec<Value>),
+    OneOf(Vec<Cell<'static>>),
     /// A number from the first to the second, both included; no bound where absent.
     Range(Option<f64>, Option<f64>),
 }
@@ -28,10 +29,15 @@ pub enum Allowed {
 const SAME_NUMBER: f64 = 1e-9;
 
 impl Allowed {
+    /// One value.
+    pub fn one(value: &Cell<'_>) -> Self {
+        Self::OneOf(vec![value.owned()])
+    }
+
     /// Whether a cell is meant.
-    pub fn allows(&self, cell: &Value) -> bool {
-        match (self, cell.as_f64()) {
-            (Self::OneOf(values), Some(x)) => values.iter().filter_map(Value::as_f64).any(|v| same(v, x)),
+    pub fn allows(&self, cell: &Cell<'_>) -> bool {
+        match (self, cell.number()) {
+            (Self::OneOf(values), Some(x)) => values.iter().filter_map(Cell::number).any(|v| same(v, x)),
             (Self::OneOf(values), None) => values.contains(cell),
             (Self::Range(from, to), Some(x)) => {
                 from.is_none_or(|from| x >= from || same(from, x)) && to.is_none_or(|to| x <= to || same(to, x))
@@ -40,44 +46,56 @@ impl Allowed {
         }
     }
 
+    /// The one value, where it is one.
+    pub fn single(&self) -> Option<&Cell<'static>> {
+        match self {
+            Self::OneOf(values) => match values.as_slice() {
+                [single] => Some(single),
+                _ => None,
+            },
+            Self::Range(..) => None,
+        }
+    }
+
     /// The words among the values.
     pub fn words(&self) -> impl Iterator<Item = &str> {
-        let values: &[Value] = match self {
+        let values: &[Cell<'static>] = match self {
             Self::OneOf(values) => values,
             Self::Range(..) => &[],
         };
-        values.iter().filter_map(Value::as_str)
+        values.iter().filter_map(Cell::word)
     }
 
-    /// What a file writes; what is wrong with it as text.
-    pub fn read(written: &Value) -> Result<Self, String> {
-        let forms = "a value, a list of values or {\"from\": .., \"to\": ..}";
+    /// What a file writes.
+    ///
+    /// # Errors
+    /// [`NoFilter`] where it is no filter.
+    pub fn read(written: &Value) -> Result<Self, NoFilter> {
+        let no_form = |found: &str| Err(NoFilter::new(found, FORMS));
         match written {
-            Value::Array(list) if list.is_empty() => Err(format!("an empty list, expected {forms}")),
-            Value::Array(list) if list.iter().any(|v| v.is_array() || v.is_object()) => {
-                Err(format!("a list in a list, expected {forms}"))
-            }
-            Value::Array(list) => Ok(Self::OneOf(list.clone())),
+            Value::Array(list) if list.is_empty() => no_form("an empty list"),
+            Value::Array(list) if list.iter().any(|v| v.is_array() || v.is_object()) => no_form("a list in a list"),
+            Value::Array(list) => Ok(Self::OneOf(list.iter().map(Cell::from).collect())),
             Value::Object(map) => {
-                if let Some(key) = map.keys().find(|key| *key != "from" && *key != "to") {
-                    return Err(format!("unknown field `{key}`, expected `from` or `to`"));
+                if let Some(key) = map.keys().find(|key| !ENDS.contains(&key.as_str())) {
+                    return Err(NoFilter::UnknownKey(key.clone(), &ENDS));
                 }
                 let end = |key: &str| match map.get(key) {
                     None => Ok(None),
                     Some(value) => value
                         .as_f64()
                         .map(Some)
-                        .ok_or_else(|| format!("{value} as {key}, expected a number")),
+                        .ok_or_else(|| NoFilter::new(format!("{value} as {key}"), "a number")),
                 };
                 match (end("from")?, end("to")?) {
-                    (None, None) => Err(format!("an empty object, expected {forms}")),
+                    (None, None) => no_form("an empty object"),
                     (Some(from), Some(to)) if from > to => {
-                        Err(format!("a range from {from} to {to}, expected from at most to"))
+                        Err(NoFilter::new(format!("a range from {from} to {to}"), "from at most to"))
                     }
                     (from, to) => Ok(Self::Range(from, to)),
                 }
             }
-            single => Ok(Self::OneOf(vec![single.clone()])),
+            single => Ok(Self::OneOf(vec![single.into()])),
         }
     }
 
@@ -85,8 +103,8 @@ impl Allowed {
     pub fn written(&self) -> Value {
         match self {
             Self::OneOf(values) => match values.as_slice() {
-                [single] => single.clone(),
-                several => several.to_vec().into(),
+                [single] => single.value(),
+                several => several.iter().map(Cell::value).collect(),
             },
             Self::Range(from, to) => {
                 let ends = [("from", from), ("to", to)];
@@ -95,6 +113,43 @@ impl Allowed {
                     .filter_map(|(key, end)| end.map(|end| ((*key).to_owned(), json!(end))));
                 given.collect::<Map<_, _>>().into()
             }
+        }
+    }
+}
+
+/// The forms of a filter.
+const FORMS: &str = "a value, a list of values or {\"from\": .., \"to\": ..}";
+
+/// The keys of a range.
+const ENDS: [&str; 2] = ["from", "to"];
+
+/// What is no filter.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NoFilter {
+    /// A key that a range does not have, and those that it may have.
+    UnknownKey(String, &'static [&'static str]),
+    /// Anything else: what was found and what is allowed.
+    NotAllowed {
+        /// What was found, in words.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
+}
+
+impl NoFilter {
+    pub(crate) fn new(found: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Self::NotAllowed {
+            found: found.into(),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// The same as an error of a reader.
+    pub(crate) fn of_reader<E: DeError>(self) -> E {
+        match self {
+            Self::UnknownKey(key, known) => E::unknown_field(&key, known),
+            Self::NotAllowed { found, allowed } => E::invalid_value(Unexpected::Other(&found), &allowed.as_str()),
         }
     }
 }
@@ -127,13 +182,9 @@ impl Filter {
 
     /// The filter with a column fixed to one value.
     #[must_use]
-    pub fn fixed(&self, column: &str, value: &Value) -> Self {
+    pub fn fixed(&self, column: &str, value: &Cell<'_>) -> Self {
         let others = self.0.iter().filter(|(name, _)| name != column).cloned();
-        Self(
-            others
-                .chain([(column.to_owned(), Allowed::OneOf(vec![value.clone()]))])
-                .collect(),
-        )
+        Self(others.chain([(column.to_owned(), Allowed::one(value))]).collect())
     }
 }
 
@@ -176,7 +227,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for EntriesVisitor<T> {
 
 impl<'de> Deserialize<'de> for Allowed {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::read(&Value::deserialize(deserializer)?).map_err(D::Error::custom)
+        Self::read(&Value::deserialize(deserializer)?).map_err(NoFilter::of_reader)
     }
 }
 
@@ -212,7 +263,7 @@ mod tests {
     #[test]
     fn values_lists_ranges_and_nothing_are_told_apart() {
         let f = filter(json!({"a": 0.1, "b": ["x", null], "c": {"from": 2}, "d": true}));
-        let allows = |column: &str, cell: Value| f.of(column).unwrap().allows(&cell);
+        let allows = |column: &str, cell: Value| f.of(column).unwrap().allows(&Cell::from(&cell));
         assert!(allows("a", json!(0.1 + 1e-12)) && !allows("a", json!(0.1001)) && !allows("a", json!(null)));
         assert!(allows("b", json!("x")) && allows("b", json!(null)) && !allows("b", json!("y")));
         assert!(allows("c", json!(2)) && !allows("c", json!(1.999)) && !allows("c", json!(null)));
@@ -223,7 +274,7 @@ mod tests {
     fn an_inner_filter_has_the_last_word() {
         let (inner, outer) = (filter(json!({"a": 1})), filter(json!({"a": 2, "b": 3})));
         assert_eq!(inner.within(&outer), filter(json!({"a": 1, "b": 3})));
-        assert_eq!(outer.fixed("a", &json!(5)), filter(json!({"b": 3, "a": 5})));
+        assert_eq!(outer.fixed("a", &Cell::Whole(5)), filter(json!({"b": 3, "a": 5})));
     }
 
     #[test]

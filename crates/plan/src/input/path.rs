@@ -4,15 +4,60 @@
 //! which paths make sense: reading the document as its type decides that.
 
 use serde_json::{Map, Value};
+use thiserror::Error;
 
 /// Most steps of a path; no document of this program is as deep as a tenth of it.
 const MOST_STEPS: usize = 100;
 
 /// A step of a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
-enum Step {
+pub(super) enum Step {
+    /// A key of an object.
     Key(String),
+    /// A place in a list, from 0.
     Place(usize),
+}
+
+/// What stands in the way of a path.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Obstacle {
+    /// A key is asked of what is no object.
+    #[error("no object to hold '{0}'")]
+    NoObject(String),
+    /// A place is asked of what is no list.
+    #[error("no list to hold [{0}]")]
+    NoList(usize),
+    /// A list has no such place.
+    #[error("no place [{place}] in a list of {length}")]
+    NoPlace {
+        /// The place, from 0.
+        place: usize,
+        /// Length of the list.
+        length: usize,
+    },
+}
+
+/// Steps as a path is written: `module.y_m[0]`.
+pub(super) fn join_steps(steps: &[Step]) -> String {
+    let mut text = String::new();
+    for step in steps {
+        match step {
+            Step::Key(key) if text.is_empty() => text.push_str(key),
+            Step::Key(key) => text.extend([".", key]),
+            Step::Place(place) => text.push_str(&format!("[{place}]")),
+        }
+    }
+    text
+}
+
+/// Two paths one after the other.
+pub(super) fn join(prefix: &str, path: &str) -> String {
+    match (prefix.is_empty(), path.is_empty()) {
+        (true, _) => path.to_owned(),
+        (_, true) => prefix.to_owned(),
+        _ if path.starts_with('[') => format!("{prefix}{path}"),
+        _ => format!("{prefix}.{path}"),
+    }
 }
 
 /// A path into a document.
@@ -53,8 +98,8 @@ impl DocumentPath {
     /// Puts a value at the path, making objects on the way where there are none.
     ///
     /// # Errors
-    /// What stands in the way, as text: a list that is too short, a key of something that is not an object.
-    pub fn set(&self, document: &mut Value, value: Value) -> Result<(), String> {
+    /// [`Obstacle`]: a list that is too short, a key of something that is not an object.
+    pub fn set(&self, document: &mut Value, value: Value) -> Result<(), Obstacle> {
         let mut at = document;
         for step in &self.0 {
             at = match (step, at) {
@@ -63,13 +108,12 @@ impl DocumentPath {
                     *at = Value::Object(Map::from_iter([(key.clone(), Value::Null)]));
                     &mut at[key]
                 }
-                (Step::Key(key), _) => return Err(format!("no object to hold '{key}'")),
+                (Step::Key(key), _) => return Err(Obstacle::NoObject(key.clone())),
                 (Step::Place(place), Value::Array(list)) => {
-                    let length = list.len();
-                    list.get_mut(*place)
-                        .ok_or(format!("no place [{place}] in a list of {length}"))?
+                    let (place, length) = (*place, list.len());
+                    list.get_mut(place).ok_or(Obstacle::NoPlace { place, length })?
                 }
-                (Step::Place(place), _) => return Err(format!("no list to hold [{place}]")),
+                (Step::Place(place), _) => return Err(Obstacle::NoList(*place)),
             };
         }
         *at = value;
@@ -115,12 +159,7 @@ mod tests {
         let mut document = json!({"l": [1]});
         path("x.y").set(&mut document, json!(1)).unwrap();
         assert_eq!(document["x"]["y"], json!(1));
-        assert!(
-            path("l[1]")
-                .set(&mut document, json!(1))
-                .unwrap_err()
-                .contains("list of 1")
-        );
+        assert!(path("l[1]").set(&mut document, json!(1)) == Err(Obstacle::NoPlace { place: 1, length: 1 }));
         assert!(path("l.k").set(&mut document, json!(1)).is_err());
     }
 

@@ -1,124 +1,30 @@
-//! From a JSON value to a type, with errors that a person can act on.
+//! From a document to a type, with errors that say which place is wrong, what kind of fault it is and what is allowed there.
 //!
-//! Knows how serde words its errors and turns them into key path, found, allowed and the nearest known name. Does not
-//! know the types.
+//! Knows where a document stands in its file. Does not know the types of files. `serde_json` tells a wrong type in words alone:
+//! `reader` goes through a canonical text and keeps what is wrong as values.
 
-use super::canonical;
-use crate::input::Refusal;
+use super::document::Document;
+use super::reader::Reader;
+use super::refusal::Refusal;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::Path;
 
-/// Reads a value as a type; `prefix` is where the value stands in `file`. A whole number may be written `3.0`.
+/// Reads a document as a type; `prefix` is where the document stands in `file`. A whole number may be written `3.0`.
 ///
 /// # Errors
-/// [`Refusal`] with the key's path in the file.
-pub fn typed<T: DeserializeOwned + Serialize>(file: &Path, prefix: &str, value: &Value) -> Result<T, Refusal> {
-    let read: T = serde_path_to_error::deserialize(canonical(value)).map_err(|error| {
-        let path = error.path().to_string();
-        let key = join(prefix, if path == "." { "" } else { &path });
-        translate(file, key, &error.inner().to_string())
-    })?;
-    let back = serde_json::to_value(&read).unwrap_or_default();
-    match list_for_object(prefix, value, &back) {
-        Some(key) => Err(Refusal::new(file, key, "a list", "an object")),
-        None => Ok(read),
-    }
+/// [`Refusal`] with the path in the file.
+pub fn typed<T: DeserializeOwned>(file: &Path, prefix: &str, document: &Document) -> Result<T, Refusal> {
+    T::deserialize(&mut Reader::new(document.text())).map_err(|trouble| trouble.refusal(file, prefix))
 }
 
-/// Where a list stands for an object: serde would take its entries for the object's values in their order.
-fn list_for_object(at: &str, written: &Value, read: &Value) -> Option<String> {
-    match (written, read) {
-        (Value::Array(_), Value::Object(_)) => Some(at.to_owned()),
-        (Value::Array(written), Value::Array(read)) => (0..)
-            .zip(written.iter().zip(read))
-            .find_map(|(i, (w, r))| list_for_object(&join(at, &format!("[{i}]")), w, r)),
-        (Value::Object(written), Value::Object(read)) => written
-            .iter()
-            .find_map(|(key, w)| list_for_object(&join(at, key), w, read.get(key)?)),
-        _ => None,
-    }
-}
-
-/// Two key paths one after the other.
-pub(super) fn join(prefix: &str, path: &str) -> String {
-    match (prefix.is_empty(), path.is_empty()) {
-        (true, _) => path.to_owned(),
-        (_, true) => prefix.to_owned(),
-        _ if path.starts_with('[') => format!("{prefix}{path}"),
-        _ => format!("{prefix}.{path}"),
-    }
-}
-
-fn translate(file: &Path, key: String, message: &str) -> Refusal {
-    let quoted: Vec<String> = message.split('`').skip(1).step_by(2).map(str::to_owned).collect();
-    let under = |name: &str| {
-        if key == name || key.ends_with(&format!(".{name}")) {
-            key.clone()
-        } else {
-            join(&key, name)
-        }
-    };
-    match (message, quoted.split_first()) {
-        (m, Some((name, known))) if m.starts_with("unknown field") => Refusal {
-            found: format!("unknown key '{name}'"),
-            ..Refusal::unknown(file, under(name), name, known)
-        },
-        (m, Some((name, known))) if m.starts_with("unknown variant") => Refusal {
-            found: format!("'{name}'"),
-            ..Refusal::unknown(file, key, name, known)
-        },
-        (m, Some((name, _))) if m.starts_with("missing field") => {
-            Refusal::new(file, under(name), "nothing", "a value: this key is required")
-        }
-        // a type's own words
-        (m, _) if let Some((found, allowed)) = own_words(m) => Refusal::new(file, key, found, allowed),
-        (m, _) => match m.split_once(", expected ") {
-            Some((found, expected)) => Refusal::new(file, key, plain_found(found), plain(expected)),
-            None => Refusal::new(file, key, m, "a document after `pontoon schema`"),
-        },
-    }
-}
-
-/// What was found and what is allowed, where a type says it itself.
-fn own_words(message: &str) -> Option<(&str, &str)> {
-    message.strip_prefix("found ")?.split_once(", allowed: ")
-}
-
-/// What serde found, in the words of JSON.
-fn plain_found(found: &str) -> String {
-    let value = found
-        .split_once(": ")
-        .map_or(found, |(_, value)| value)
-        .replace('`', "");
-    match value.split_once(' ') {
-        Some(("string" | "integer" | "boolean", text)) => text.to_owned(),
-        Some(("floating", text)) => text.trim_start_matches("point ").to_owned(),
-        Some(("invalid", text)) => text.replace("length", "a list of length"),
-        _ => match value.as_str() {
-            "map" => "an object".to_owned(),
-            "sequence" => "a list".to_owned(),
-            _ => value,
-        },
-    }
-}
-
-/// serde's word for a type in plain words.
-fn plain(expected: &str) -> String {
-    match expected {
-        "f64" => "a number".to_owned(),
-        "usize" | "u64" => "a whole number of at least 0".to_owned(),
-        "a boolean" => "true or false".to_owned(),
-        "a sequence" => "a list".to_owned(),
-        "a map" => "an object".to_owned(),
-        "string or map" => "a word or an object".to_owned(),
-        "fewer elements in array" => "fewer".to_owned(),
-        "map with a single key" => "an object with a single key".to_owned(),
-        other if other.starts_with("struct ") => "an object".to_owned(),
-        other if other.starts_with("an array of") => other.replace("an array", "a list"),
-        other => other.to_owned(),
-    }
+/// The same of a tree.
+///
+/// # Errors
+/// As above.
+pub fn typed_value<T: DeserializeOwned>(file: &Path, prefix: &str, value: &Value) -> Result<T, Refusal> {
+    typed(file, prefix, &Document::from(value))
 }
 
 /// A value of a type that always is one.
@@ -148,12 +54,12 @@ mod tests {
     }
 
     fn refused(value: &Value) -> Refusal {
-        typed::<BridgeDesign>(Path::new("b.json"), "", value).unwrap_err()
+        typed_value::<BridgeDesign>(Path::new("b.json"), "", value).unwrap_err()
     }
 
     #[test]
     fn the_base_is_accepted() {
-        assert!(typed::<BridgeDesign>(Path::new("b.json"), "", &bridge()).is_ok());
+        assert!(typed_value::<BridgeDesign>(Path::new("b.json"), "", &bridge()).is_ok());
     }
 
     #[test]
@@ -162,11 +68,11 @@ mod tests {
         value["module"]["material"] = json!([2e11, 0.3, 7850]);
         let e = refused(&value);
         assert_eq!(
-            (e.key.as_str(), e.allowed.as_str()),
+            (e.path.as_str(), e.allowed.as_str()),
             ("module.material", "an object"),
             "{e}"
         );
-        assert_eq!(refused(&json!([1])).key, "[0]");
+        assert_eq!(refused(&json!([1])).allowed, "an object");
     }
 
     #[test]
@@ -174,7 +80,9 @@ mod tests {
         let mut value = bridge();
         value["modules"] = json!(3.0);
         assert_eq!(
-            typed::<BridgeDesign>(Path::new("b.json"), "", &value).unwrap().modules,
+            typed_value::<BridgeDesign>(Path::new("b.json"), "", &value)
+                .unwrap()
+                .modules,
             3
         );
     }
@@ -184,7 +92,7 @@ mod tests {
         let mut value = bridge();
         value["module"]["material"]["youngs_modulus"] = json!(2e11);
         let e = refused(&value);
-        assert_eq!(e.key, "module.material.youngs_modulus", "{e}");
+        assert_eq!(e.path, "module.material.youngs_modulus", "{e}");
         assert_eq!(e.nearest.as_deref(), Some("youngs_modulus_pa"), "{e}");
     }
 
@@ -192,13 +100,13 @@ mod tests {
     fn a_missing_key_a_wrong_type_and_a_wrong_word_name_their_paths() {
         let mut value = bridge();
         value["module"].as_object_mut().unwrap().remove("depth_m");
-        assert_eq!(refused(&value).key, "module.depth_m");
+        assert_eq!(refused(&value).path, "module.depth_m");
 
         let mut value = bridge();
         value["hinges"]["y_m"] = json!([0, "left"]);
         let e = refused(&value);
         assert_eq!(
-            (e.key.as_str(), e.allowed.as_str()),
+            (e.path.as_str(), e.allowed.as_str()),
             ("hinges.y_m[1]", "a number"),
             "{e}"
         );
@@ -216,7 +124,7 @@ mod tests {
             value["modules"] = found;
             let e = refused(&value);
             assert_eq!(
-                (e.key.as_str(), e.found.as_str(), e.allowed.as_str()),
+                (e.path.as_str(), e.found.text().as_str(), e.allowed.as_str()),
                 ("modules", word, "a whole number of at least 0"),
                 "{e}"
             );
@@ -226,7 +134,7 @@ mod tests {
         value["water_distribution"] = json!("lumpd");
         let e = refused(&value);
         assert_eq!(
-            (e.key.as_str(), e.nearest.as_deref()),
+            (e.path.as_str(), e.nearest.as_deref()),
             ("water_distribution", Some("lumped")),
             "{e}"
         );

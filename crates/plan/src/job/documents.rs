@@ -2,13 +2,12 @@
 //!
 //! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
 
-use crate::design::{AxisName, Point};
-use crate::input::{Refusal, canonical_text, to_value, typed};
-use crate::study_file::{AnalysisSpec, Study, filled_vehicle};
+use crate::design::{Point, Root};
+use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, to_value, typed_value};
+use crate::study_file::{Analysis, AnalysisSpec, Study, filled_vehicle};
 use pontoon_core::bridge::{BridgeDesign, Supports};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -53,9 +52,9 @@ pub struct VehicleEntry {
 pub struct AnalysisEntry {
     /// Its number, from 0, in the order of first use.
     pub id: usize,
-    /// The analysis, checked, with its defaults.
-    pub spec: AnalysisSpec,
-    /// The same as a document.
+    /// The analysis.
+    pub analysis: Analysis,
+    /// The same as a document, defaults filled in.
     pub document: Value,
     /// Equal for analyses that are equal, whatever study they are of.
     pub key: Arc<str>,
@@ -120,7 +119,7 @@ impl<T> Interned<T> {
 impl Documents {
     /// The bridge of a point.
     pub(super) fn bridge(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<BridgeEntry>, Refusal> {
-        let changes = Changes::of(study, point, "bridge");
+        let changes = Changes::of(study, point, Root::Bridge);
         let read = || {
             let design: BridgeDesign = changes.applied(&to_value(&study.bridge.design))?;
             design.check().map_err(|e| changes.refusal(e))?;
@@ -139,12 +138,12 @@ impl Documents {
         point: &Point<'_>,
         bridge: &BridgeEntry,
     ) -> Result<Arc<VehicleEntry>, Refusal> {
-        let changes = Changes::of(study, point, "vehicle");
+        let changes = Changes::of(study, point, Root::Vehicle);
         let breadth_m = bridge.design.module.breadth_m;
         let read = || {
             // the defaults of the single footprint can be changed in part, unless axles take its place
             let axles = changes.list.iter().any(|(name, ..)| name.starts_with("vehicle.axles"));
-            let written = &study.spec.vehicle;
+            let written = &study.vehicle;
             let base = filled_vehicle(written).ok().filter(|_| !axles);
             let design: VehicleDesign = changes.applied(&to_value(base.as_ref().unwrap_or(written)))?;
             let design = filled_vehicle(&design).map_err(|e| changes.refusal(e))?;
@@ -166,17 +165,21 @@ impl Documents {
 
     /// The analysis of a point.
     pub(super) fn analysis(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<AnalysisEntry>, Refusal> {
-        let changes = Changes::of(study, point, "analysis");
+        let changes = Changes::of(study, point, Root::Analysis);
         let read = || {
-            let spec: AnalysisSpec = changes.applied(&to_value(&study.spec.analysis))?;
-            let spec = spec.checked().map_err(|e| changes.refusal(e))?;
-            let document = to_value(&spec);
-            Ok((canonical_text(&document), (spec, document)))
+            let written: AnalysisSpec = if changes.list.is_empty() {
+                study.analysis.written()
+            } else {
+                changes.applied(&study.analysis_written)?
+            };
+            let analysis = Analysis::of(&written).map_err(|e| changes.refusal(e))?;
+            let document = to_value(&analysis.written());
+            Ok((canonical_text(&document), (analysis, document)))
         };
         self.analyses
-            .get((0, changes.text()), read, |id, (spec, document)| AnalysisEntry {
+            .get((0, changes.text()), read, |id, (analysis, document)| AnalysisEntry {
                 id,
-                spec,
+                analysis,
                 key: blake3::hash(canonical_text(&document).as_bytes())
                     .to_hex()
                     .as_str()
@@ -217,22 +220,18 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
 /// What the axes of a point change in one document.
 struct Changes<'a> {
     file: &'a Path,
-    block: &'a str,
-    root: &'static str,
-    list: Vec<(&'a str, &'a crate::input::DocumentPath, &'a Value)>,
+    point: &'a Point<'a>,
+    root: Root,
+    list: Vec<(&'a str, &'a DocumentPath, &'a Cell<'a>)>,
 }
 
 impl<'a> Changes<'a> {
-    fn of(study: &'a Study, point: &'a Point<'_>, root: &'static str) -> Self {
-        let list = point.values().filter_map(|(axis, value)| match &axis.varies {
-            AxisName::Path { root: r, path } if *r == root => Some((axis.name.as_str(), path, value)),
-            _ => None,
-        });
+    fn of(study: &'a Study, point: &'a Point<'a>, root: Root) -> Self {
         Self {
             file: &study.file,
-            block: &point.block.key,
+            point,
             root,
-            list: list.collect(),
+            list: point.of_document(root).collect(),
         }
     }
 
@@ -243,19 +242,16 @@ impl<'a> Changes<'a> {
     }
 
     /// The document with the changes, typed.
-    fn applied<T: DeserializeOwned + Serialize>(&self, base: &Value) -> Result<T, Refusal> {
+    fn applied<T: DeserializeOwned>(&self, base: &Value) -> Result<T, Refusal> {
         let mut document = base.clone();
         for (name, path, value) in &self.list {
-            path.set(&mut document, (*value).clone()).map_err(|found| {
-                Refusal::new(
-                    self.file,
-                    format!("{}.{name}", self.block),
-                    found,
-                    format!("the path of a value in {}", self.root),
-                )
+            path.set(&mut document, value.value()).map_err(|obstacle| {
+                let allowed = format!("the path of a value in {}", self.root.word());
+                let path = format!("{}.{name}", self.point.key());
+                Refusal::new(self.file, path, obstacle.to_string(), allowed).because(RefusalKind::Misplaced)
             })?;
         }
-        typed(self.file, "", &document).map_err(|e| self.placed(e))
+        typed_value(self.file, "", &document).map_err(|e| self.placed(e))
     }
 
     /// A refusal of a number of the changed document.
@@ -263,19 +259,26 @@ impl<'a> Changes<'a> {
         self.placed(Refusal::of(self.file, "", error))
     }
 
-    /// The refusal with its key as the study file has it: at the axis that changed it, or beside the block where the
-    /// axes made another number wrong.
+    /// The refusal with its path as the study file has it: at the axis that changed it, or at the block whose axes made
+    /// another value wrong.
     fn placed(&self, refusal: Refusal) -> Refusal {
-        let key = format!("{}.{}", self.root, refusal.key);
-        let axis = self
-            .list
-            .iter()
-            .any(|(name, ..)| key.starts_with(name) || name.starts_with(&key));
-        let key = match (self.list.is_empty(), axis) {
-            (true, _) => key,
-            (false, true) => format!("{}.{key}", self.block),
-            (false, false) => format!("{} ({key})", self.block),
-        };
-        Refusal { key, ..refusal }
+        let path = format!("{}.{}", self.root.word(), refusal.path);
+        if self.list.is_empty() {
+            return Refusal { path, ..refusal };
+        }
+        let block = self.point.key();
+        let mut axes = self.list.iter().map(|(name, ..)| name);
+        let axis = axes.any(|name| path.starts_with(name) || name.starts_with(&path));
+        if axis {
+            return Refusal {
+                path: format!("{block}.{path}"),
+                ..refusal
+            };
+        }
+        Refusal {
+            path: block.into_owned(),
+            made_wrong: Some(path.into()),
+            ..refusal
+        }
     }
 }

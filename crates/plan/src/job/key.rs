@@ -50,6 +50,7 @@ pub(super) fn key_of(job: &Job) -> JobKey {
     number(kind);
     number(of_kind);
     // whether a job is solved again is told by its number
-    number(if job.verify().is_some() { 1.0 } else { 0.0 });
+    let verified = job.as_crossing().and_then(|crossing| crossing.verify()).is_some();
+    number(if verified { 1.0 } else { 0.0 });
     JobKey::of(&hasher)
 }

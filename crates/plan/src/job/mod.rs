@@ -22,15 +22,15 @@ pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
 pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};
-pub use shard::Shard;
+pub use shard::{NoShard, Shard};
 
-use crate::input::{DocumentPath, canonical};
-use crate::study_file::{SolverSpec, TimeStepSpec, VerifySpec};
+use crate::design::{JobAxis, Root, Varies};
+use crate::input::Cell;
+use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, Solver, VerifySpec};
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::connector::Connection;
 use pontoon_core::response::Record;
-use serde_json::Value;
 use std::sync::Arc;
 
 /// A job of a study.
@@ -75,64 +75,106 @@ pub struct Load {
     pub x_m: f64,
 }
 
-impl Job {
-    /// Time steps of a crossing, bisected ones apart; 0 of a static case.
+/// A job that is a crossing, with how it is computed.
+#[derive(Debug, Clone, Copy)]
+pub struct CrossingJob<'a> {
+    /// The job.
+    pub job: &'a Job,
+    /// How it is computed.
+    pub analysis: &'a CrossingAnalysis,
+    /// Speed `[m/s]`.
+    pub speed_m_s: f64,
+}
+
+impl<'a> CrossingJob<'a> {
+    /// Time steps, bisected ones apart.
     pub fn steps(&self) -> usize {
-        let analysis = &self.analysis.spec;
-        match (self.task, analysis.time_step_s, analysis.tail_s) {
-            (Task::Crossing { speed_m_s }, Some(step), Some(tail)) => CrossingSolver::steps(
-                self.bridge.design.length_m(),
-                &self.vehicle.vehicle,
-                step.seconds(),
-                speed_m_s,
-                tail,
-            ),
-            _ => 0,
-        }
+        CrossingSolver::steps(
+            self.job.bridge.design.length_m(),
+            &self.job.vehicle.vehicle,
+            self.analysis.time_step.seconds(),
+            self.speed_m_s,
+            self.analysis.tail_s,
+        )
     }
 
-    /// The crossing, of which a record is kept.
-    pub fn crossing(&self, record: Record) -> Crossing {
-        let speed_m_s = match self.task {
-            Task::Crossing { speed_m_s } => speed_m_s,
-            _ => 0.0,
-        };
+    /// What a solver is given, of which a record is kept.
+    pub fn input(&self, record: Record) -> Crossing {
         Crossing {
-            connection: self.connection,
-            connector_stiffness_n_m: self.bridge.design.connectors.stiffness_n_m,
-            load_n: self.load_n,
-            speed_m_s,
-            tail_s: self.analysis.spec.tail_s.unwrap_or_default(),
+            connection: self.job.connection,
+            connector_stiffness_n_m: self.job.bridge.design.connectors.stiffness_n_m,
+            load_n: self.job.load_n,
+            speed_m_s: self.speed_m_s,
+            tail_s: self.analysis.tail_s,
             record,
         }
     }
 
-    /// The settings of its crossing's solver, with the damping of its bridge.
+    /// The settings of its solver, with the damping of its bridge.
     pub fn settings(&self, rayleigh: Rayleigh) -> CrossingSettings {
-        let spec = &self.analysis.spec;
         CrossingSettings {
-            time_step_s: self.time_step_s(),
-            spectral_radius: spec.spectral_radius.unwrap_or_default(),
+            time_step_s: self.analysis.time_step.seconds(),
+            spectral_radius: self.analysis.spectral_radius,
             rayleigh,
-            newton_limit: spec.newton_limit.unwrap_or_default(),
-            bisection_limit: spec.bisection_limit.unwrap_or_default(),
+            newton_limit: self.analysis.newton_limit,
+            bisection_limit: self.analysis.bisection_limit,
         }
     }
 
-    /// The time step that its study states, the first one where the program is to find it; 0 of what is no crossing `[s]`.
-    pub fn time_step_s(&self) -> f64 {
-        self.analysis.spec.time_step_s.map_or(0.0, TimeStepSpec::seconds)
-    }
-
-    /// Whether it is a crossing by the operator.
-    pub fn by_operator(&self) -> bool {
-        matches!(self.task, Task::Crossing { .. }) && self.analysis.spec.solver == Some(SolverSpec::Operator)
+    /// Whether the operator solves it, and how far that may be off; none where the reference solver does.
+    pub fn operator_tolerance(&self) -> Option<f64> {
+        match self.analysis.solver {
+            Solver::Operator { tolerance, .. } => Some(tolerance),
+            Solver::Reference => None,
+        }
     }
 
     /// How it is to be verified; none where it is not.
     pub fn verify(&self) -> Option<VerifySpec> {
-        let verify = self.analysis.spec.verify.filter(|verify| verify.takes(self.number));
-        verify.filter(|_| self.by_operator())
+        self.analysis.verify().filter(|verify| verify.takes(self.job.number))
+    }
+
+    /// The vehicle that crosses.
+    pub fn vehicle(&self) -> &'a pontoon_core::vehicle::Vehicle {
+        &self.job.vehicle.vehicle
+    }
+}
+
+impl Job {
+    /// The job as a crossing; none where it is another.
+    pub fn as_crossing(&self) -> Option<CrossingJob<'_>> {
+        match (&self.analysis.analysis, self.task) {
+            (Analysis::Crossing(analysis), Task::Crossing { speed_m_s }) => Some(CrossingJob {
+                job: self,
+                analysis,
+                speed_m_s,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The modes that it asks for; none where it is another.
+    pub fn as_modes(&self) -> Option<&ModesAnalysis> {
+        match &self.analysis.analysis {
+            Analysis::Modes(modes) => Some(modes),
+            _ => None,
+        }
+    }
+
+    /// Model of the modules.
+    pub fn model(&self) -> ModelSpec {
+        self.analysis.analysis.model()
+    }
+
+    /// Time steps of a crossing, bisected ones apart; 0 of another job.
+    pub fn steps(&self) -> usize {
+        self.as_crossing().map_or(0, |crossing| crossing.steps())
+    }
+
+    /// Whether it is a crossing by the operator.
+    pub fn by_operator(&self) -> bool {
+        let crossing = self.as_crossing();
+        crossing.is_some_and(|crossing| crossing.operator_tolerance().is_some())
     }
 
     /// The gaps (tension, compression) `[m]`; none in the linear connection.
@@ -146,39 +188,44 @@ impl Job {
         }
     }
 
-    /// The value of a column of the study, a short name or a path; null where it has no meaning.
-    pub fn column(&self, name: &str) -> Value {
-        canonical(&self.typed_column(name))
-    }
-
-    /// The same with each number written as its type has it: `3.0` where fractions are allowed, `3` where they are not.
-    pub fn typed_column(&self, name: &str) -> Value {
-        let (load, speed) = match self.task {
-            Task::Crossing { speed_m_s } => (None, Some(speed_m_s)),
-            Task::Static(load) => (Some(load), None),
-            Task::Modes => (None, None),
-        };
-        match name {
-            "connection" => self.gaps_m().map_or("linear", |_| "nonlinear").into(),
-            "gap_tension_m" | "bridge.connectors.gap_tension_m" => self.gaps_m().map(|g| g.0).into(),
-            "gap_compression_m" | "bridge.connectors.gap_compression_m" => self.gaps_m().map(|g| g.1).into(),
-            "load_n" if self.task == Task::Modes => Value::Null,
-            "load_n" => self.load_n.into(),
-            "speed_m_s" => speed.into(),
-            "load_position" => load.and_then(|l| l.position).into(),
-            "load_x_m" => load.map(|l| l.x_m).into(),
-            path => self.at(path).cloned().unwrap_or_default(),
+    /// The value of an axis as its type has it, whole where that is a count; nothing where the axis has no meaning for the
+    /// job. A path's value is the one of the job's document, which is what the axis set.
+    pub fn cell(&self, axis: &Varies) -> Cell<'_> {
+        match axis {
+            Varies::Job(axis) => self.own(*axis),
+            Varies::Path(root, path) => {
+                let document = match root {
+                    Root::Bridge => &self.bridge.document,
+                    Root::Vehicle => &self.vehicle.document,
+                    Root::Analysis => &self.analysis.document,
+                };
+                path.get(document).map_or(Cell::Nothing, Cell::of)
+            }
         }
     }
 
-    fn at(&self, name: &str) -> Option<&Value> {
-        let (root, path) = name.split_once('.')?;
-        let document = match root {
-            "bridge" => &self.bridge.document,
-            "vehicle" => &self.vehicle.document,
-            _ => &self.analysis.document,
-        };
-        DocumentPath::parse(path)?.get(document)
+    /// The value of a column of the study, a number as a file would write it; nothing where it has no meaning.
+    pub fn column(&self, name: &str) -> Cell<'_> {
+        let axis = Varies::of_column(name);
+        axis.map_or(Cell::Nothing, |axis| match axis {
+            Varies::Job(axis) => self.own(axis),
+            path @ Varies::Path(..) => self.cell(&path).owned(),
+        })
+        .canonical()
+    }
+
+    fn own(&self, axis: JobAxis) -> Cell<'_> {
+        let gap = |of: fn((f64, f64)) -> f64| Cell::from(self.gaps_m().map(of));
+        match (axis, self.task) {
+            (JobAxis::Connection, _) => self.gaps_m().map_or("linear", |_| "nonlinear").into(),
+            (JobAxis::TensionGap, _) => gap(|gaps| gaps.0),
+            (JobAxis::CompressionGap, _) => gap(|gaps| gaps.1),
+            (JobAxis::Speed, Task::Crossing { speed_m_s }) => speed_m_s.into(),
+            (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),
+            (JobAxis::LoadPosition, Task::Static(load)) => load.position.into(),
+            (JobAxis::LoadPlace, Task::Static(load)) => load.x_m.into(),
+            _ => Cell::Nothing,
+        }
     }
 
     /// What the job is known by from run to run: equal for jobs that leave the same record, in whatever study and at whatever

@@ -5,7 +5,7 @@
 
 use super::{Job, Jobs, Task};
 use crate::input::Refusal;
-use crate::study_file::{ModelSpec, SolverSpec, Study};
+use crate::study_file::{ModelSpec, Study};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashSet};
 
@@ -97,9 +97,10 @@ const SECONDS_A_STATIC_JOB: f64 = 1.0e-3;
 
 /// What a job costs on a usual machine `[s]`, what it shares with others apart.
 pub(super) fn cost_s(job: &Job) -> f64 {
-    let step = match job.analysis.spec.solver {
-        Some(SolverSpec::Operator) => SECONDS_A_STEP_AND_MODULE_OPERATED,
-        _ => SECONDS_A_STEP_AND_MODULE,
+    let step = if job.by_operator() {
+        SECONDS_A_STEP_AND_MODULE_OPERATED
+    } else {
+        SECONDS_A_STEP_AND_MODULE
     };
     SECONDS_A_STATIC_JOB + step * module_steps(job)
 }
@@ -111,7 +112,7 @@ impl Plan {
     /// [`Refusal`] of the first job that is refused.
     pub fn new(study: &Study, mut look: impl FnMut(&Job)) -> Result<Self, Refusal> {
         let mut plan = Self {
-            study: study.spec.name.clone(),
+            study: study.name.clone(),
             points: study.points(),
             jobs: 0,
             distinct_bridges: 0,
@@ -126,7 +127,7 @@ impl Plan {
             plan.work.take(&job);
             plan.jobs += 1;
             plan.steps += job.steps() as u64;
-            let model = job.analysis.spec.model;
+            let model = job.model();
             if bridges.insert((job.bridge.id, model)) && model == ModelSpec::SuperElement {
                 modules.insert(job.bridge.module_key.clone());
             }
@@ -140,6 +141,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::Cell;
     use serde_json::{Value, json};
     use std::path::Path;
 
@@ -181,7 +183,7 @@ mod tests {
                            "speed_m_s": 10, "load_n": 1e5 });
         let merged = jobs(json!([{ "grid": grid }])).unwrap();
         assert_eq!(merged.len(), 1);
-        assert_eq!(merged[0].column("bridge.connectors.gap_tension_m"), Value::Null);
+        assert_eq!(merged[0].column("bridge.connectors.gap_tension_m"), Cell::Nothing);
     }
 
     #[test]
@@ -241,7 +243,7 @@ mod tests {
                 json!({ "sobol": drawn }),
             ] {
                 let found = jobs(json!([form])).unwrap_or_else(|e| panic!("{axis}: {e}"));
-                let values: Vec<f64> = found.iter().map(|job| job.column(axis).as_f64().unwrap()).collect();
+                let values: Vec<f64> = found.iter().map(|job| job.column(axis).number().unwrap()).collect();
                 assert!(values.len() == 2 && values[0] != values[1], "{form}: {values:?}");
                 assert!(values.iter().all(|x| (0.5..=0.75).contains(x)), "{form}: {values:?}");
             }
@@ -296,7 +298,7 @@ mod tests {
         };
         assert_eq!(jobs(json!([{ "cases": [on(9.0), on(10.0)] }])).unwrap().len(), 2);
         let refused = jobs(json!([{ "cases": [on(9.0), on(8.082)] }])).unwrap_err();
-        assert_eq!(refused.key, "design[0].cases[1].vehicle.track_y_m[0]", "{refused}");
+        assert_eq!(refused.path, "design[0].cases[1].vehicle.track_y_m[0]", "{refused}");
     }
 
     #[test]
@@ -316,13 +318,17 @@ mod tests {
         assert_ne!(jobs[0].bridge.structure_key, jobs[1].bridge.structure_key);
         assert_eq!(jobs[0].bridge.module_key, jobs[3].bridge.module_key);
         assert_ne!(jobs[0].bridge.structure_key, jobs[3].bridge.structure_key);
-        assert_eq!(jobs[1].column("gap_tension_m"), json!(0.01));
-        assert_eq!(jobs[3].column("bridge.modules"), json!(4));
+        assert_eq!(jobs[1].column("gap_tension_m"), Cell::Number(0.01));
+        assert_eq!(jobs[3].column("bridge.modules"), Cell::Whole(4));
     }
 
     #[test]
     fn a_number_that_an_axis_makes_wrong_elsewhere_is_told_beside_the_axis() {
         let refused = jobs(json!([{ "cases": [case(json!({ "bridge.module.breadth_m": 2.0 }))] }])).unwrap_err();
-        assert!(refused.key.starts_with("design[0].cases[0] (bridge."), "{refused}");
+        assert!(
+            refused.path == "design[0].cases[0]"
+                && refused.made_wrong.as_ref().is_some_and(|of| of.starts_with("bridge.")),
+            "{refused}"
+        );
     }
 }

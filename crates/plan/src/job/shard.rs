@@ -9,6 +9,7 @@ use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::str::FromStr;
+use thiserror::Error;
 
 /// Share `number`, from 0, of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -25,16 +26,21 @@ const MOST: usize = 100_000;
 /// Pieces that a share is made of at least, where the jobs allow it.
 const PIECES: f64 = 8.0;
 
-impl FromStr for Shard {
-    type Err = String;
+/// A text that names no share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("K/N, where K counts from 0 to N - 1 and N is at most {MOST}")]
+pub struct NoShard;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+impl FromStr for Shard {
+    type Err = NoShard;
+
+    fn from_str(text: &str) -> Result<Self, NoShard> {
         let parts = text
             .split_once('/')
             .and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
         match parts {
             Some((number, of)) if number < of && of <= MOST => Ok(Self { number, of }),
-            _ => Err(format!("K/N, where K counts from 0 to N - 1 and N is at most {MOST}")),
+            _ => Err(NoShard),
         }
     }
 }

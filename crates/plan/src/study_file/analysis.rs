@@ -1,360 +1,349 @@
-//! The `analysis` of a study.
+//! What is asked of the bridge and how it is computed: every number checked, every default filled in.
 //!
-//! Knows its keys, their defaults and ranges. Does not know bridges or vehicles.
+//! Knows the ranges and defaults of a study's `analysis`, and which keys each kind of it has. Does not know bridges or vehicles.
 
-use pontoon_core::bridge::Model;
-use pontoon_core::input::{InvalidInput, not_negative, positive, within};
-use schemars::JsonSchema;
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize};
+use super::raw::{AnalysisSpec, AutoSpec, DampingSpec, Kind, ModelSpec, SolverSpec, TimeStepSpec, VerifySpec};
+use pontoon_core::input::{InvalidInput, Problem, not_negative, positive, within};
 
 /// What is asked of the bridge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Analysis {
     /// A vehicle crosses at constant speed.
-    Crossing,
+    Crossing(CrossingAnalysis),
     /// A vehicle stands still.
-    Static,
-    /// The bridge oscillates by itself, linearly connected: natural frequencies and the names of their shapes.
-    Modes,
+    Static(StaticAnalysis),
+    /// The bridge oscillates by itself, linearly connected.
+    Modes(ModesAnalysis),
+}
+
+/// How a crossing is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrossingAnalysis {
+    /// Model of the modules.
+    pub model: ModelSpec,
+    /// Length of the time steps.
+    pub time_step: TimeStep,
+    /// How long the crossing goes on after the vehicle has left the bridge `[s]`.
+    pub tail_s: f64,
+    /// Which solver integrates it.
+    pub solver: Solver,
+    /// Spectral radius of the time integration at infinite frequency.
+    pub spectral_radius: f64,
+    /// Newton solutions that a step may take before it is halved.
+    pub newton_limit: usize,
+    /// How often a step may be halved before the job fails.
+    pub bisection_limit: usize,
+    /// Time steps beyond which the crossing is not run but fails.
+    pub step_limit: Option<usize>,
+    /// Damping.
+    pub damping: DampingSpec,
+}
+
+/// Length of a crossing's time steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeStep {
+    /// As stated `[s]`.
+    Stated(f64),
+    /// Each job's own: the coarsest, halved until its peak force changes by no more than a share of itself.
+    Auto {
+        /// The share.
+        tolerance: f64,
+    },
+}
+
+impl TimeStep {
+    /// The coarsest step that a job's own begins with `[s]`.
+    pub const COARSEST_S: f64 = 0.02;
+
+    /// The step, the coarsest of a job's own `[s]`.
+    pub fn seconds(self) -> f64 {
+        match self {
+            Self::Stated(seconds) => seconds,
+            Self::Auto { .. } => Self::COARSEST_S,
+        }
+    }
+
+    /// How far a job's peak force may be off for its own time step, as a share of it; none where the step is stated.
+    pub fn tolerance(self) -> Option<f64> {
+        match self {
+            Self::Stated(_) => None,
+            Self::Auto { tolerance } => Some(tolerance),
+        }
+    }
 }
 
 /// Which solver integrates a crossing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SolverSpec {
-    /// The bridge operator: modes, residual flexibilities and a small piecewise-linear system, many crossings at once.
-    #[default]
-    Operator,
-    /// Direct integration of the assembled bridge, the operator's judge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Solver {
+    /// The bridge operator.
+    Operator {
+        /// The share by which the flexibility of connectors and deck may be off.
+        tolerance: f64,
+        /// Which jobs the reference solver solves again.
+        verify: Option<VerifySpec>,
+    },
+    /// Direct integration of the assembled bridge.
     Reference,
 }
 
-/// Length of a crossing's steps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum TimeStepSpec {
-    /// As stated `[s]`.
-    Seconds(f64),
-    /// Each job's own: 0.02 s, halved as often as its peak force asks for.
-    Auto(AutoSpec),
-}
-
-/// The word that leaves the time step to the program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AutoSpec {
-    /// Follow an error estimate.
-    Auto,
-}
-
-impl TimeStepSpec {
-    /// The coarsest step that "auto" begins with `[s]`.
-    pub const COARSEST_S: f64 = 0.02;
-
-    /// The step, the coarsest of "auto" `[s]`.
-    pub fn seconds(self) -> f64 {
-        match self {
-            Self::Seconds(seconds) => seconds,
-            Self::Auto(_) => Self::COARSEST_S,
-        }
-    }
-}
-
-/// The reference solver as judge of the operator: which share of the jobs it solves again, and how far the operator may be
-/// off.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct VerifySpec {
-    /// Share of the jobs, above 0 to 1: the first and then evenly one in `1 / share`.
-    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
-    pub share: f64,
-    /// How far the largest deflection may be off, as a share of the reference solver's.
-    #[serde(default = "default_deflection_tolerance")]
-    #[schemars(range(min = 0.0))]
-    pub deflection_tolerance: f64,
-    /// How far the largest compression may be off, as a share of the job's largest joint force.
-    #[serde(default = "default_compression_tolerance")]
-    #[schemars(range(min = 0.0))]
-    pub compression_tolerance: f64,
-    /// How far the largest tension may be off, on the same scale.
-    #[serde(default = "default_tension_tolerance")]
-    #[schemars(range(min = 0.0))]
-    pub tension_tolerance: f64,
-}
-
-fn default_deflection_tolerance() -> f64 {
-    0.005
-}
-
-fn default_compression_tolerance() -> f64 {
-    0.02
-}
-
-fn default_tension_tolerance() -> f64 {
-    0.1
-}
-
-impl VerifySpec {
-    /// Whether a job is one of those that are solved again.
-    pub fn takes(&self, job: usize) -> bool {
-        let before = |n: usize| (n as f64 * self.share).floor();
-        job == 0 || before(job) > before(job - 1)
-    }
-}
-
-/// Which matrices a module contributes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ModelSpec {
-    /// Every degree of freedom of the shells and beams.
-    Full,
-    /// The condensed module.
-    #[default]
-    SuperElement,
-}
-
-impl From<ModelSpec> for Model {
-    fn from(model: ModelSpec) -> Self {
-        match model {
-            ModelSpec::Full => Self::Full,
-            ModelSpec::SuperElement => Self::SuperElement,
-        }
-    }
-}
-
-/// Rayleigh damping.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DampingSpec {
-    /// Ratio of critical damping at both frequencies.
-    #[serde(default = "default_ratio")]
-    #[schemars(range(min = 0.0, max = 0.99))]
-    pub ratio: f64,
-    /// The two frequencies, increasing `[Hz]`; absent: the first two vertical bending modes of the job's own bridge,
-    /// linearly connected and floating free.
-    #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
-    pub frequencies_hz: Option<[f64; 2]>,
-}
-
-/// Two numbers or nothing; a list of another length is told as such.
-fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
-    let list: Option<Vec<f64>> = Option::deserialize(deserializer)?;
-    let to_pair = |list: Vec<f64>| {
-        let wrong = D::Error::invalid_length(list.len(), &"a list of two numbers");
-        <[f64; 2]>::try_from(list).map_err(|_| wrong)
-    };
-    list.map(to_pair).transpose()
-}
-
-fn default_ratio() -> f64 {
-    0.05
-}
-
-impl Default for DampingSpec {
-    fn default() -> Self {
-        Self {
-            ratio: default_ratio(),
-            frequencies_hz: None,
-        }
-    }
-}
-
-/// What is asked and how it is computed. The keys of a crossing have no place in a study of another kind, nor have those of
-/// modes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AnalysisSpec {
-    /// What is asked of the bridge.
-    pub kind: Kind,
-    /// Time step of a crossing `[s]`; 0.01 where absent. At most the passage of one module. `"auto"`: each job's own, 0.02 s
-    /// halved until its peak force changes no more than `time_step_tolerance`.
-    #[serde(default, deserialize_with = "time_step", skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub time_step_s: Option<TimeStepSpec>,
-    /// How far a job's peak force may be off for its time step, as a share of it; 0.02 where absent. A key of `"auto"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 0.5), extend("exclusiveMinimum" = 0.0))]
-    pub time_step_tolerance: Option<f64>,
-    /// How long a crossing goes on after the vehicle has left the bridge `[s]`; 6 where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub tail_s: Option<f64>,
-    /// Solver of a crossing; `operator` where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub solver: Option<SolverSpec>,
-    /// What the operator may leave out: modes are added until the flexibility of connectors and deck at 5 Hz is off by no
-    /// more than this share; 0.0006 where absent. A key of the operator.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 0.1))]
-    pub operator_tolerance: Option<f64>,
-    /// A share of the jobs solved again by the reference solver; none where absent. A key of the operator.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub verify: Option<VerifySpec>,
+/// How a static case is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticAnalysis {
     /// Model of the modules.
-    #[serde(default)]
     pub model: ModelSpec,
-    /// Spectral radius at infinite frequency of a crossing's time integration, 0 to 1; 0.9 where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub spectral_radius: Option<f64>,
-    /// Newton solutions that a crossing's step may take before it is halved; 30 where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 1000))]
-    pub newton_limit: Option<usize>,
-    /// How often a crossing's step may be halved before the job fails; 8 where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 12))]
-    pub bisection_limit: Option<usize>,
-    /// Time steps beyond which a crossing is not run but fails; none where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 10_000_000))]
-    pub step_limit: Option<usize>,
-    /// Damping of a crossing; 5 % at the bridge's own first two vertical bending modes where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub damping: Option<DampingSpec>,
-    /// How many modes, from the lowest; 20 where absent. A key of modes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 1000))]
-    pub count: Option<usize>,
-    /// Whether the modes are those of the bridge on its supports; floating free where absent. A key of modes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub supports: Option<bool>,
 }
 
-impl AnalysisSpec {
-    /// Refuses numbers out of range and a crossing's keys in a static study, and fills a crossing's defaults.
+/// Which modes are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModesAnalysis {
+    /// Model of the modules.
+    pub model: ModelSpec,
+    /// How many, from the lowest.
+    pub count: usize,
+    /// Whether the bridge stands on its supports; else it floats free.
+    pub supports: bool,
+}
+
+/// The time step of a crossing that states none `[s]`.
+const TIME_STEP_S: f64 = 0.01;
+
+impl Analysis {
+    /// What a study file asks, checked, with the defaults of its kind.
     ///
     /// # Errors
-    /// [`InvalidInput`] with the key relative to `analysis`.
-    pub fn checked(mut self) -> Result<Self, InvalidInput> {
-        let crossing = [
-            ("time_step_s", self.time_step_s.is_some()),
-            ("time_step_tolerance", self.time_step_tolerance.is_some()),
-            ("tail_s", self.tail_s.is_some()),
-            ("solver", self.solver.is_some()),
-            ("operator_tolerance", self.operator_tolerance.is_some()),
-            ("verify", self.verify.is_some()),
-            ("spectral_radius", self.spectral_radius.is_some()),
-            ("newton_limit", self.newton_limit.is_some()),
-            ("bisection_limit", self.bisection_limit.is_some()),
-            ("step_limit", self.step_limit.is_some()),
-            ("damping", self.damping.is_some()),
-        ];
-        let modes = [("count", self.count.is_some()), ("supports", self.supports.is_some())];
-        let none = |keys: &[(&str, bool)], of: &str, allowed: &str| match keys.iter().find(|(_, given)| *given) {
-            Some((key, _)) => Err(InvalidInput::new(*key, format!("a key of {of}"), allowed)),
-            None => Ok(()),
-        };
-        match self.kind {
+    /// [`InvalidInput`] with the key relative to `analysis`: a number out of range, a key of another kind.
+    pub fn of(written: &AnalysisSpec) -> Result<Self, InvalidInput> {
+        let model = written.model;
+        match written.kind {
             Kind::Static => {
                 let allowed = "only kind and model in a static study";
-                none(&crossing, "crossings", allowed)?;
-                none(&modes, "modes", allowed)?;
-                return Ok(self);
+                has_none_of_crossings(written, allowed)?;
+                has_none_of_modes(written, allowed)?;
+                Ok(Self::Static(StaticAnalysis { model }))
             }
             Kind::Modes => {
-                none(
-                    &crossing,
-                    "crossings",
-                    "only kind, model, count and supports in a study of modes",
-                )?;
-                whole("count", *self.count.get_or_insert(20), 1, 1000)?;
-                self.supports.get_or_insert(false);
-                return Ok(self);
+                has_none_of_crossings(written, "only kind, model, count and supports in a study of modes")?;
+                let count = written.count.unwrap_or(20);
+                whole("count", count, 1, 1000)?;
+                let supports = written.supports.unwrap_or(false);
+                Ok(Self::Modes(ModesAnalysis { model, count, supports }))
             }
-            Kind::Crossing => none(&modes, "modes", "no key of modes in a study of crossings")?,
-        }
-        self.check_solver()?;
-        not_negative("tail_s", *self.tail_s.get_or_insert(6.0))?;
-        within("spectral_radius", *self.spectral_radius.get_or_insert(0.9), 0.0, 1.0)?;
-        whole("newton_limit", *self.newton_limit.get_or_insert(30), 1, 1000)?;
-        whole("bisection_limit", *self.bisection_limit.get_or_insert(8), 0, 12)?;
-        if let Some(limit) = self.step_limit {
-            whole("step_limit", limit, 1, 10_000_000)?;
-        }
-        let damping = self.damping.get_or_insert_default();
-        within("damping.ratio", damping.ratio, 0.0, 0.99)?;
-        if let Some([first, second]) = damping.frequencies_hz {
-            positive("damping.frequencies_hz[0]", first)?;
-            if !(second.is_finite() && second > first) {
-                return Err(InvalidInput::new(
-                    "damping.frequencies_hz[1]",
-                    second,
-                    format!("above {first}"),
-                ));
+            Kind::Crossing => {
+                has_none_of_modes(written, "no key of modes in a study of crossings")?;
+                crossing(written).map(Self::Crossing)
             }
         }
-        Ok(self)
+    }
+
+    /// The same as a study file would write it, every default written out.
+    pub fn written(&self) -> AnalysisSpec {
+        let nothing = AnalysisSpec {
+            kind: self.kind(),
+            time_step_s: None,
+            time_step_tolerance: None,
+            tail_s: None,
+            solver: None,
+            operator_tolerance: None,
+            verify: None,
+            model: self.model(),
+            spectral_radius: None,
+            newton_limit: None,
+            bisection_limit: None,
+            step_limit: None,
+            damping: None,
+            count: None,
+            supports: None,
+        };
+        match self {
+            Self::Static(_) => nothing,
+            Self::Modes(modes) => AnalysisSpec {
+                count: Some(modes.count),
+                supports: Some(modes.supports),
+                ..nothing
+            },
+            Self::Crossing(crossing) => AnalysisSpec {
+                time_step_s: Some(match crossing.time_step {
+                    TimeStep::Stated(seconds) => TimeStepSpec::Seconds(seconds),
+                    TimeStep::Auto { .. } => TimeStepSpec::Auto(AutoSpec::Auto),
+                }),
+                time_step_tolerance: crossing.time_step.tolerance(),
+                tail_s: Some(crossing.tail_s),
+                solver: Some(match crossing.solver {
+                    Solver::Operator { .. } => SolverSpec::Operator,
+                    Solver::Reference => SolverSpec::Reference,
+                }),
+                operator_tolerance: match crossing.solver {
+                    Solver::Operator { tolerance, .. } => Some(tolerance),
+                    Solver::Reference => None,
+                },
+                verify: crossing.verify(),
+                spectral_radius: Some(crossing.spectral_radius),
+                newton_limit: Some(crossing.newton_limit),
+                bisection_limit: Some(crossing.bisection_limit),
+                step_limit: crossing.step_limit,
+                damping: Some(crossing.damping),
+                ..nothing
+            },
+        }
+    }
+
+    /// What kind it is of.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Crossing(_) => Kind::Crossing,
+            Self::Static(_) => Kind::Static,
+            Self::Modes(_) => Kind::Modes,
+        }
+    }
+
+    /// Model of the modules.
+    pub fn model(&self) -> ModelSpec {
+        match self {
+            Self::Crossing(crossing) => crossing.model,
+            Self::Static(case) => case.model,
+            Self::Modes(modes) => modes.model,
+        }
     }
 }
 
-impl AnalysisSpec {
-    /// Refuses the operator's keys beside the reference solver, and fills the defaults of time step and solver.
-    fn check_solver(&mut self) -> Result<(), InvalidInput> {
-        let solver = *self.solver.get_or_insert_default();
-        let step = *self.time_step_s.get_or_insert(TimeStepSpec::Seconds(0.01));
-        positive("time_step_s", step.seconds())?;
-        let auto = matches!(step, TimeStepSpec::Auto(_));
-        if auto {
-            let tolerance = *self.time_step_tolerance.get_or_insert(0.02);
-            positive("time_step_tolerance", tolerance)?;
+impl CrossingAnalysis {
+    /// Which jobs the reference solver solves again.
+    pub fn verify(&self) -> Option<VerifySpec> {
+        match self.solver {
+            Solver::Operator { verify, .. } => verify,
+            Solver::Reference => None,
+        }
+    }
+}
+
+/// Refuses the keys of crossings.
+fn has_none_of_crossings(written: &AnalysisSpec, allowed: &str) -> Result<(), InvalidInput> {
+    none_of(
+        &[
+            ("time_step_s", written.time_step_s.is_some()),
+            ("time_step_tolerance", written.time_step_tolerance.is_some()),
+            ("tail_s", written.tail_s.is_some()),
+            ("solver", written.solver.is_some()),
+            ("operator_tolerance", written.operator_tolerance.is_some()),
+            ("verify", written.verify.is_some()),
+            ("spectral_radius", written.spectral_radius.is_some()),
+            ("newton_limit", written.newton_limit.is_some()),
+            ("bisection_limit", written.bisection_limit.is_some()),
+            ("step_limit", written.step_limit.is_some()),
+            ("damping", written.damping.is_some()),
+        ],
+        "a key of crossings",
+        allowed,
+    )
+}
+
+/// Refuses the keys of modes.
+fn has_none_of_modes(written: &AnalysisSpec, allowed: &str) -> Result<(), InvalidInput> {
+    let keys = [
+        ("count", written.count.is_some()),
+        ("supports", written.supports.is_some()),
+    ];
+    none_of(&keys, "a key of modes", allowed)
+}
+
+fn crossing(written: &AnalysisSpec) -> Result<CrossingAnalysis, InvalidInput> {
+    let time_step = time_step(written)?;
+    let solver = solver(written, time_step)?;
+    let tail_s = not_negative("tail_s", written.tail_s.unwrap_or(6.0))?;
+    let spectral_radius = within("spectral_radius", written.spectral_radius.unwrap_or(0.9), 0.0, 1.0)?;
+    let newton_limit = whole("newton_limit", written.newton_limit.unwrap_or(30), 1, 1000)?;
+    let bisection_limit = whole("bisection_limit", written.bisection_limit.unwrap_or(8), 0, 12)?;
+    let step_limit = written
+        .step_limit
+        .map(|limit| whole("step_limit", limit, 1, 10_000_000));
+    let damping = written.damping.unwrap_or_default();
+    within("damping.ratio", damping.ratio, 0.0, 0.99)?;
+    if let Some([first, second]) = damping.frequencies_hz {
+        positive("damping.frequencies_hz[0]", first)?;
+        if !(second.is_finite() && second > first) {
+            let allowed = format!("above {first}");
+            return Err(InvalidInput::new("damping.frequencies_hz[1]", second, allowed));
+        }
+    }
+    Ok(CrossingAnalysis {
+        model: written.model,
+        time_step,
+        tail_s,
+        solver,
+        spectral_radius,
+        newton_limit,
+        bisection_limit,
+        step_limit: step_limit.transpose()?,
+        damping,
+    })
+}
+
+fn time_step(written: &AnalysisSpec) -> Result<TimeStep, InvalidInput> {
+    match (written.time_step_s, written.time_step_tolerance) {
+        (Some(TimeStepSpec::Auto(_)), tolerance) => {
+            let tolerance = positive("time_step_tolerance", tolerance.unwrap_or(0.02))?;
             within("time_step_tolerance", tolerance, 0.0, 0.5)?;
-        } else if let Some(tolerance) = self.time_step_tolerance {
-            let allowed = "no tolerance where time_step_s is a number";
-            return Err(InvalidInput::new("time_step_tolerance", tolerance, allowed));
+            Ok(TimeStep::Auto { tolerance })
         }
-        if solver == SolverSpec::Reference {
-            let of_operator = [
-                ("operator_tolerance", self.operator_tolerance.is_some()),
-                ("verify", self.verify.is_some()),
-                ("time_step_s", auto),
-            ];
-            return match of_operator.iter().find(|(_, given)| *given) {
-                Some((key, _)) => Err(InvalidInput::new(*key, "a key of the operator", "solver: operator")),
-                None => Ok(()),
+        (stated, tolerance) => {
+            let seconds = match stated {
+                Some(TimeStepSpec::Seconds(seconds)) => seconds,
+                _ => TIME_STEP_S,
             };
+            positive("time_step_s", seconds)?;
+            match tolerance {
+                None => Ok(TimeStep::Stated(seconds)),
+                Some(tolerance) => {
+                    let allowed = "no tolerance where time_step_s is a number";
+                    let refused = InvalidInput::new("time_step_tolerance", tolerance, allowed);
+                    Err(refused.because(Problem::Misplaced))
+                }
+            }
         }
-        within(
-            "operator_tolerance",
-            *self.operator_tolerance.get_or_insert(6e-4),
-            0.0,
-            0.1,
-        )?;
-        if let Some(verify) = self.verify {
-            positive("verify.share", verify.share)?;
-            within("verify.share", verify.share, 0.0, 1.0)?;
-            not_negative("verify.deflection_tolerance", verify.deflection_tolerance)?;
-            not_negative("verify.compression_tolerance", verify.compression_tolerance)?;
-            not_negative("verify.tension_tolerance", verify.tension_tolerance)?;
-        }
-        Ok(())
     }
 }
 
-/// A number or the word; anything else is told as such.
-fn time_step<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<TimeStepSpec>, D::Error> {
-    let value: Option<serde_json::Value> = Option::deserialize(deserializer)?;
-    let read = |value: serde_json::Value| match (value.as_f64(), value.as_str()) {
-        (Some(seconds), _) => Ok(TimeStepSpec::Seconds(seconds)),
-        (None, Some("auto")) => Ok(TimeStepSpec::Auto(AutoSpec::Auto)),
-        _ => Err(D::Error::custom(format!(
-            "found {value}, allowed: a number of seconds or \"auto\""
-        ))),
-    };
-    value.map(read).transpose()
+fn solver(written: &AnalysisSpec, time_step: TimeStep) -> Result<Solver, InvalidInput> {
+    match written.solver.unwrap_or_default() {
+        SolverSpec::Reference => {
+            let of_operator = [
+                ("operator_tolerance", written.operator_tolerance.is_some()),
+                ("verify", written.verify.is_some()),
+                ("time_step_s", time_step.tolerance().is_some()),
+            ];
+            none_of(&of_operator, "a key of the operator", "solver: operator")?;
+            Ok(Solver::Reference)
+        }
+        SolverSpec::Operator => {
+            let tolerance = written.operator_tolerance.unwrap_or(6e-4);
+            within("operator_tolerance", tolerance, 0.0, 0.1)?;
+            if let Some(verify) = written.verify {
+                positive("verify.share", verify.share)?;
+                within("verify.share", verify.share, 0.0, 1.0)?;
+                not_negative("verify.deflection_tolerance", verify.deflection_tolerance)?;
+                not_negative("verify.compression_tolerance", verify.compression_tolerance)?;
+                not_negative("verify.tension_tolerance", verify.tension_tolerance)?;
+            }
+            let verify = written.verify;
+            Ok(Solver::Operator { tolerance, verify })
+        }
+    }
 }
 
-fn whole(key: &str, value: usize, from: usize, to: usize) -> Result<(), InvalidInput> {
+/// Refuses the first of some keys that is given.
+fn none_of(keys: &[(&str, bool)], found: &str, allowed: &str) -> Result<(), InvalidInput> {
+    match keys.iter().find(|(_, given)| *given) {
+        Some((key, _)) => Err(InvalidInput::new(*key, found, allowed).because(Problem::Misplaced)),
+        None => Ok(()),
+    }
+}
+
+fn whole(key: &str, value: usize, from: usize, to: usize) -> Result<usize, InvalidInput> {
     if (from..=to).contains(&value) {
-        return Ok(());
+        return Ok(value);
     }
-    Err(InvalidInput::new(
-        key,
-        value,
-        format!("a whole number from {from} to {to}"),
-    ))
+    let allowed = format!("a whole number from {from} to {to}");
+    Err(InvalidInput::new(key, value, allowed))
 }
 
 #[cfg(test)]
@@ -363,7 +352,10 @@ mod tests {
     use serde_json::json;
 
     fn checked(value: serde_json::Value) -> Result<AnalysisSpec, InvalidInput> {
-        serde_json::from_value::<AnalysisSpec>(value).unwrap().checked()
+        let analysis = Analysis::of(&serde_json::from_value(value).unwrap())?;
+        // what is written out is read as the same
+        assert_eq!(Analysis::of(&analysis.written()).unwrap(), analysis);
+        Ok(analysis.written())
     }
 
     #[test]
@@ -422,6 +414,26 @@ mod tests {
         assert_eq!(
             damping(json!({"frequencies_hz": [0.4, 0.3]})),
             "damping.frequencies_hz[1]"
+        );
+    }
+
+    #[test]
+    fn keys_of_the_operator_have_no_place_with_the_reference_solver() {
+        for (key, value) in [
+            ("operator_tolerance", json!(1e-3)),
+            ("verify", json!({"share": 0.1})),
+            ("time_step_s", json!("auto")),
+        ] {
+            let e = checked(json!({"kind": "crossing", "solver": "reference", key: value})).unwrap_err();
+            assert_eq!((e.key.as_str(), e.problem), (key, Problem::Misplaced), "{e}");
+        }
+        let of = |value| Analysis::of(&serde_json::from_value(value).unwrap()).unwrap();
+        let Analysis::Crossing(crossing) = of(json!({"kind": "crossing", "time_step_s": "auto"})) else {
+            panic!()
+        };
+        assert_eq!(
+            (crossing.time_step.seconds(), crossing.time_step.tolerance()),
+            (TimeStep::COARSEST_S, Some(0.02))
         );
     }
 }

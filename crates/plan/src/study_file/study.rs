@@ -2,97 +2,14 @@
 //!
 //! Knows files. Does not know jobs: what holds for a single point is checked where jobs are made.
 
-use super::analysis::AnalysisSpec;
-use crate::design::{Block, Design, SHORT_NAMES};
-use crate::input::{Refusal, leaves, read, text_and_hash, to_value, typed};
+use super::analysis::Analysis;
+use super::raw::{HistoriesSpec, Kind, RecordSpec, StudySpec};
+use crate::design::{Block, Goes, NAMED_AXES, Varies};
+use crate::input::{Document, Found, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
-use pontoon_core::response::Record;
 use pontoon_core::vehicle::VehicleDesign;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-
-/// A study as its file writes it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StudySpec {
-    /// Name of the study and of its folder of results: letters, digits, `_`, `-` and `.`, not beginning with `.`.
-    #[schemars(regex(pattern = r"^[A-Za-z0-9_-][A-Za-z0-9_.-]*$"))]
-    pub name: String,
-    /// What the study asks, in a sentence, for whoever reads its report.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub question: Option<String>,
-    /// Path of the bridge file, relative to the study file.
-    pub bridge: String,
-    /// The vehicle; a single footprint of 3.35 m on two tracks where absent.
-    #[serde(default)]
-    pub vehicle: VehicleDesign,
-    /// What is asked and how it is computed.
-    pub analysis: AnalysisSpec,
-    /// The designs, united in order; equal jobs run once.
-    #[schemars(length(min = 1))]
-    pub design: Vec<Design>,
-    /// What to keep of each job beyond its peaks.
-    #[serde(default)]
-    pub record: RecordSpec,
-}
-
-/// What to keep of each job beyond its peaks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RecordSpec {
-    /// Histories of crossings.
-    #[serde(default)]
-    pub histories: HistoriesSpec,
-    /// Whether to write the table of positions.
-    #[serde(default = "yes")]
-    pub positions: bool,
-    /// Whether to write the table of connectors.
-    #[serde(default = "yes")]
-    pub connectors: bool,
-}
-
-fn yes() -> bool {
-    true
-}
-
-impl Default for RecordSpec {
-    fn default() -> Self {
-        Self {
-            histories: HistoriesSpec::default(),
-            positions: true,
-            connectors: true,
-        }
-    }
-}
-
-/// Whose histories to keep.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HistoriesSpec {
-    /// Position numbers, 1 to modules + 1: deflection.
-    #[serde(default)]
-    pub positions: Vec<usize>,
-    /// Joint numbers, 2 to modules: force.
-    #[serde(default)]
-    pub joints: Vec<usize>,
-}
-
-impl HistoriesSpec {
-    /// Whether any history is asked for.
-    pub fn asked(&self) -> bool {
-        !(self.positions.is_empty() && self.joints.is_empty())
-    }
-
-    /// The same as the mechanics takes it.
-    pub fn record(&self) -> Record {
-        Record {
-            positions: self.positions.clone(),
-            joints: self.joints.clone(),
-        }
-    }
-}
 
 /// A bridge file, read and checked.
 #[derive(Debug, Clone)]
@@ -100,7 +17,7 @@ pub struct BridgeFile {
     /// The file.
     pub file: PathBuf,
     /// Its document.
-    pub document: Value,
+    pub document: Document,
     /// Its design.
     pub design: BridgeDesign,
 }
@@ -110,10 +27,10 @@ pub struct BridgeFile {
 /// # Errors
 /// [`Refusal`].
 pub fn read_bridge(file: &Path) -> Result<BridgeFile, Refusal> {
-    bridge_of(file, read(file)?)
+    bridge_of(file, Document::read(file)?)
 }
 
-fn bridge_of(file: &Path, document: Value) -> Result<BridgeFile, Refusal> {
+fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
     let design: BridgeDesign = typed(file, "", &document)?;
     design.check().map_err(|e| Refusal::of(file, "", e))?;
     Ok(BridgeFile {
@@ -129,9 +46,21 @@ pub struct Study {
     /// The study file.
     pub file: PathBuf,
     /// Its document.
-    pub document: Value,
-    /// The document typed.
-    pub spec: StudySpec,
+    pub document: Document,
+    /// Its name, and that of its folder of results.
+    pub name: String,
+    /// What it asks, in a sentence.
+    pub question: Option<String>,
+    /// Its vehicle before axes, as it is written.
+    pub vehicle: VehicleDesign,
+    /// Its analysis before axes.
+    pub analysis: Analysis,
+    /// The same as it is written, which is what axes change: a default is one of the kind and solver that they leave.
+    pub(crate) analysis_written: Value,
+    /// What to keep of each job beyond its peaks.
+    pub record: RecordSpec,
+    /// Seeds of its designs, in the order of the file.
+    pub seeds: Vec<u64>,
     /// Its bridge before axes.
     pub bridge: BridgeFile,
     /// Its designs with their axes read.
@@ -149,11 +78,11 @@ impl Study {
         } else {
             path.to_owned()
         };
-        let document = read(&file)?;
+        let document = Document::read(&file)?;
         let spec: StudySpec = typed(&file, "", &document)?;
         let bridge_path = file.parent().unwrap_or(Path::new("")).join(&spec.bridge);
         if !bridge_path.is_file() {
-            let found = format!("'{}', which is no file", spec.bridge);
+            let found = Found::value(spec.bridge).which("which is no file");
             return Err(Refusal::new(
                 &file,
                 "bridge",
@@ -169,35 +98,41 @@ impl Study {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn of_documents(file: &Path, document: Value, bridge: Value) -> Result<Self, Refusal> {
+    pub fn of_documents(file: &Path, document: Document, bridge: Document) -> Result<Self, Refusal> {
         let spec: StudySpec = typed(file, "", &document)?;
         let bridge = bridge_of(file, bridge)?;
         Self::checked(file.to_owned(), document, spec, bridge)
     }
 
-    fn checked(file: PathBuf, document: Value, spec: StudySpec, bridge: BridgeFile) -> Result<Self, Refusal> {
+    fn checked(file: PathBuf, document: Document, spec: StudySpec, bridge: BridgeFile) -> Result<Self, Refusal> {
         check_name(&file, &spec.name)?;
         let vehicle = filled_vehicle(&spec.vehicle).and_then(|v| v.check(bridge.design.module.breadth_m).map(|_| v));
         let vehicle = vehicle.map_err(|e| Refusal::of(&file, "vehicle", e))?;
-        let analysis = spec
-            .analysis
-            .clone()
-            .checked()
-            .map_err(|e| Refusal::of(&file, "analysis", e))?;
+        let analysis = Analysis::of(&spec.analysis).map_err(|e| Refusal::of(&file, "analysis", e))?;
         check_histories(&file, &spec.record.histories, bridge.design.modules)?;
-        let mut known = SHORT_NAMES.map(str::to_owned).to_vec();
+        let mut known: Vec<String> = NAMED_AXES.iter().map(|axis| axis.name.to_owned()).collect();
         for (root, value) in [
             ("bridge", to_value(&bridge.design)),
             ("vehicle", to_value(&vehicle)),
-            ("analysis", to_value(&analysis)),
+            ("analysis", to_value(&analysis.written())),
         ] {
             leaves(root, &value, &mut known);
         }
         let blocks = Block::read(&file, &spec.design, &known)?;
+        let drawn = spec
+            .design
+            .iter()
+            .flat_map(|design| [&design.latin_hypercube, &design.sobol]);
         Ok(Self {
+            seeds: drawn.flatten().map(|sample| sample.seed).collect(),
             file,
             document,
-            spec,
+            name: spec.name,
+            question: spec.question,
+            vehicle: spec.vehicle,
+            analysis_written: to_value(&spec.analysis),
+            analysis,
+            record: spec.record,
             bridge,
             blocks,
         })
@@ -208,21 +143,18 @@ impl Study {
         self.blocks.iter().map(Block::len).sum()
     }
 
-    /// Seeds of its designs, in the order of the file.
-    pub fn seeds(&self) -> Vec<u64> {
-        let drawn = self
-            .spec
-            .design
-            .iter()
-            .flat_map(|design| [&design.latin_hypercube, &design.sobol]);
-        drawn.flatten().map(|sample| sample.seed).collect()
-    }
-
-    /// The columns that the study's axes make: their names as written, each once, in the order of the file.
-    pub fn path_axes(&self) -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        for axis in self.blocks.iter().flat_map(|b| &b.axes) {
-            if !SHORT_NAMES.contains(&axis.name.as_str()) && !names.contains(&axis.name) {
+    /// The columns of the study's axes: those with a name of their own that its kind has, then every other axis as written,
+    /// each once, in the order of the file.
+    pub fn axis_columns(&self) -> Vec<String> {
+        let kind = self.analysis.kind();
+        let own = NAMED_AXES.iter().filter(|axis| match (axis.goes, kind) {
+            (Goes::Job { crossings, .. }, Kind::Crossing) => crossings,
+            (Goes::Job { statics, .. }, Kind::Static) => statics,
+            _ => false,
+        });
+        let mut names: Vec<String> = own.map(|axis| axis.name.to_owned()).collect();
+        for axis in self.blocks.iter().flat_map(|block| &block.axes) {
+            if matches!(axis.varies, Varies::Path(..)) && !names.contains(&axis.name) {
                 names.push(axis.name.clone());
             }
         }
@@ -231,21 +163,11 @@ impl Study {
 
     /// The document without what it asks in words, on which no number depends.
     pub fn computed(&self) -> Value {
-        let mut document = self.document.clone();
+        let mut document = self.document.value();
         if let Some(keys) = document.as_object_mut() {
             keys.shift_remove("question");
         }
         document
-    }
-
-    /// The study's document on one line and the blake3 hash of that text.
-    pub fn text_and_hash(&self) -> (String, String) {
-        text_and_hash(&self.document)
-    }
-
-    /// The bridge's document on one line and the blake3 hash of that text.
-    pub fn bridge_text_and_hash(&self) -> (String, String) {
-        text_and_hash(&self.bridge.document)
     }
 }
 
@@ -265,7 +187,7 @@ fn check_name(file: &Path, name: &str) -> Result<(), Refusal> {
         return Err(Refusal::new(
             file,
             "name",
-            format!("'{name}'"),
+            Found::value(name),
             "letters, digits, _, - and ., not beginning with .",
         ));
     }
@@ -289,7 +211,7 @@ pub(crate) fn check_histories(file: &Path, histories: &HistoriesSpec, modules: u
                 return Err(Refusal::new(file, key, number, allowed));
             }
             if list[..i].contains(&number) {
-                return Err(Refusal::new(file, key, format!("{number} twice"), "each number once"));
+                return Err(Refusal::new(file, key, number, "each number once").because(RefusalKind::Repeated));
             }
         }
     }

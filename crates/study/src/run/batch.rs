@@ -4,13 +4,14 @@
 //! not know how a study is cut into batches nor what becomes of the records.
 
 use super::bench::Bench;
-use super::crossing::{Failure, Solved};
+use super::crossing::Solved;
+use super::failure::JobFailure;
 use super::{crossing, guard, modes, statics, verify};
 use pontoon_core::response::Record;
 use pontoon_journal::LONGEST;
-use pontoon_plan::job::{Job, Task};
+use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_plan::study_file::Study;
-use pontoon_results::JobRecord;
+use pontoon_results::{Failure, FailureKind, JobRecord};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -65,10 +66,10 @@ fn crews(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
     let mut crews = Vec::new();
     let mut operated: BTreeMap<_, Vec<usize>> = BTreeMap::new();
     for (place, (_, job)) in jobs.iter().enumerate() {
-        if job.by_operator() {
-            operated.entry(Bench::crew_key(job)).or_default().push(place);
-        } else {
-            crews.push(vec![place]);
+        let crossing = job.as_crossing();
+        match crossing.as_ref().and_then(Bench::crew_key) {
+            Some(key) => operated.entry(key).or_default().push(place),
+            None => crews.push(vec![place]),
         }
     }
     for mut places in operated.into_values() {
@@ -79,64 +80,76 @@ fn crews(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
     crews
 }
 
-/// The records of the jobs at some places.
+/// The records of the jobs at some places: crossings by the operator that share a solver, or one job of another kind.
 fn records(jobs: &[(&Study, &Job)], places: &[usize], bench: &Bench) -> Vec<JobRecord> {
-    let of = |place: usize| jobs[place];
-    let solved: Vec<Solved> = if of(places[0]).1.by_operator() {
-        let crew: Vec<(&Job, Record)> = places
-            .iter()
-            .map(|&place| (of(place).1, histories(of(place).0)))
-            .collect();
-        let together = guard::guarded(|| Ok::<_, String>(crossing::solve_crew(&crew, bench)));
-        // a panic is the failure of the job that it came from alone
-        together.unwrap_or_else(|_| {
-            let alone = |job: &(&Job, Record)| {
-                guard::guarded(|| {
-                    let one = crossing::solve_crew(std::slice::from_ref(job), bench)
-                        .into_iter()
-                        .next();
-                    one.unwrap_or_else(|| Err("program error: no record".to_owned().into()))
-                })
-            };
-            crew.iter().map(alone).collect()
-        })
+    let of: Vec<(&Study, &Job)> = places.iter().map(|&place| jobs[place]).collect();
+    let crew: Vec<(CrossingJob<'_>, Record)> = of
+        .iter()
+        .filter(|(_, job)| job.by_operator())
+        .filter_map(|(study, job)| Some((job.as_crossing()?, histories(study))))
+        .collect();
+    let solved: Vec<Solved> = if crew.len() == of.len() {
+        by_operator(&crew, bench)
     } else {
-        let single = |&place: &usize| {
-            let (study, job) = of(place);
-            guard::guarded(|| match job.task {
-                Task::Crossing { .. } => crossing::solve(job, histories(study), bench),
-                Task::Static(load) => statics::solve(job, load, bench).map_err(Failure::from),
-                Task::Modes => modes::solve(job, bench).map_err(Failure::from),
+        of.iter()
+            .map(|(study, job)| guard::guarded(|| alone(study, job, bench)))
+            .collect()
+    };
+    let finish = |((study, job), solved): (&(&Study, &Job), Solved)| finished(study, job, solved, bench);
+    of.iter().zip(solved).map(finish).collect()
+}
+
+/// Crossings that share a solver.
+fn by_operator(crew: &[(CrossingJob<'_>, Record)], bench: &Bench) -> Vec<Solved> {
+    let together = guard::guarded(|| Ok(crossing::solve_crew(crew, bench)));
+    // a panic is the failure of the job that it came from alone
+    together.unwrap_or_else(|_| {
+        let alone = |job: &(CrossingJob<'_>, Record)| {
+            guard::guarded(|| {
+                let mut solved = crossing::solve_crew(std::slice::from_ref(job), bench);
+                solved.pop().unwrap_or_else(|| Err(JobFailure::of_program("no record")))
             })
         };
-        places.iter().map(single).collect()
+        crew.iter().map(alone).collect()
+    })
+}
+
+/// A job that shares nothing of its solution with others.
+fn alone(study: &Study, job: &Job, bench: &Bench) -> Solved {
+    match (job.task, job.as_crossing(), job.as_modes()) {
+        (Task::Crossing { .. }, Some(crossing), _) => crossing::solve(&crossing, histories(study), bench),
+        (Task::Static(load), ..) => statics::solve(job, load, bench),
+        (Task::Modes, _, Some(asked)) => modes::solve(job, asked, bench),
+        _ => Err(JobFailure::of_program("a task of another analysis")),
+    }
+}
+
+/// The record of a job: solved once more where that may help, judged, without rows that no table will hold.
+fn finished(study: &Study, job: &Job, solved: Solved, bench: &Bench) -> JobRecord {
+    let solved = match (solved, job.as_crossing()) {
+        (Err(failed), Some(crossing)) if failed.half_step_may_help => {
+            guard::guarded(|| crossing::again_at_half_step(&crossing, histories(study), bench, &failed))
+        }
+        (solved, _) => solved,
     };
-    let finish = |(&place, solved): (&usize, Solved)| {
-        let (study, job) = of(place);
-        let solved = match solved {
-            Err(failure) if failure.half_step_may_help => {
-                guard::guarded(|| crossing::again_at_half_step(job, histories(study), bench, &failure))
-            }
-            solved => solved,
-        };
-        let mut record = solved.unwrap_or_else(|failure| JobRecord::failed(job, failure.reason));
-        let bytes = record.histories.bytes();
-        if bytes > LONGEST / 2 {
-            record = JobRecord::failed(job, format!("histories of {bytes} bytes, more than a record may have"));
-        }
-        verify::judge(job, &mut record, bench);
-        // rows that no table will hold are not kept until their batch is written
-        if !study.spec.record.positions {
-            record.positions = Vec::new();
-        }
-        if !study.spec.record.connectors {
-            record.connectors = Vec::new();
-        }
-        record
-    };
-    places.iter().zip(solved).map(finish).collect()
+    let mut record = solved.unwrap_or_else(|failed| JobRecord::failed(job, failed.failure));
+    let bytes = record.histories.bytes();
+    if bytes > LONGEST / 2 {
+        let text = format!("histories of {bytes} bytes, more than a record may have");
+        let failure = Failure::new(FailureKind::HistoriesTooLong, text).with("bytes", bytes as f64);
+        record = JobRecord::failed(job, failure);
+    }
+    verify::judge(job, &mut record, bench);
+    // not kept until their batch is written
+    if !study.record.positions {
+        record.positions = Vec::new();
+    }
+    if !study.record.connectors {
+        record.connectors = Vec::new();
+    }
+    record
 }
 
 fn histories(study: &Study) -> Record {
-    study.spec.record.histories.record()
+    study.record.histories.record()
 }

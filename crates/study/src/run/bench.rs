@@ -3,6 +3,7 @@
 //! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
 
 use super::cache::{Cache, Found};
+use super::failure::JobFailure;
 use super::guard::guarded;
 use super::progress::Progress;
 use super::retry::RETRY_STEP_SHARE;
@@ -12,24 +13,41 @@ use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
 use pontoon_core::operator::BridgeOperator;
-use pontoon_plan::job::{Job, Task};
-use pontoon_plan::study_file::TimeStepSpec;
-use pontoon_results::{BridgeReport, OperatorCounts, Preparation};
+use pontoon_plan::job::{CrossingJob, Job, Task};
+use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A thing that jobs share, or why it could not be made.
-type Shared<T> = Result<Arc<T>, String>;
+type Shared<T> = Result<Arc<T>, JobFailure>;
 type ModuleKey = (Model, Arc<str>);
 type BridgeKey = (Model, Arc<str>);
 type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
-type CrossingKey = (DampingKey, [u64; 2], [Option<usize>; 2]);
-type OperatorKey = (BridgeKey, u64);
+type CrossingKey = (DampingKey, [u64; 2], [usize; 2]);
 /// Crossings of one key are solved side by side.
 pub(super) type CrewKey = (CrossingKey, u64, Option<u64>);
 type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, u64);
+
+/// What an operator depends on: a bridge, and how far its flexibility may be off.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct OperatorKey {
+    bridge: BridgeKey,
+    tolerance: u64,
+}
+
+impl OperatorKey {
+    /// What its file in the cache is named by.
+    fn name(&self) -> String {
+        let (model, structure) = &self.bridge;
+        let model = match model {
+            Model::Full => "full",
+            Model::SuperElement => "super-element",
+        };
+        Cache::name(&format!("{model} {structure} {:016x}", self.tolerance))
+    }
+}
 
 /// Damping and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,45 +105,59 @@ impl Bench {
             condensations: AtomicUsize::new(0),
             operators_made: OperatorsMade::default(),
         };
-        let crossing = |job: &&Job| matches!(job.task, Task::Crossing { .. });
-        let crossings: Vec<&Job> = all.iter().copied().filter(crossing).collect();
+        let crossings: Vec<CrossingJob<'_>> = all.iter().filter_map(|job| job.as_crossing()).collect();
         progress.stage("modules: finite elements, condensation");
         let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
         let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
-        bench.modules = each(stop, &new, module_key, |job| bench.module(job));
+        bench.modules = each(stop, &new, |job| Some(module_key(job)), |job| bench.module(job));
         let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
         bench
             .modules
             .extend(taken.map(|(key, module)| (key.clone(), module.clone())));
         progress.stage("bridges: assembly");
         let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
-        bench.bridges = each(stop, &loaded, bridge_key, |job| bench.bridge(job, Ends::Supported));
+        let bridge = |job: &&Job| Some(bridge_key(job));
+        bench.bridges = each(stop, &loaded, bridge, |job| bench.bridge(job, Ends::Supported));
         progress.stage("damping: bending modes of the free bridge");
-        bench.damping = each(stop, &crossings, damping_key, |job| bench.damping_of(job));
+        bench.damping = each(
+            stop,
+            &crossings,
+            |job| Some(damping_key(job)),
+            |job| bench.damping_of(job),
+        );
         progress.stage("solvers: factors");
         let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
-        bench.statics = each(stop, &held, bridge_key, |job| {
-            StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?).map_err(text)
+        bench.statics = each(stop, &held, bridge, |job| {
+            Ok(StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?)?)
         });
-        let (operated, integrated): (Vec<&Job>, Vec<&Job>) = crossings.iter().partition(|job| job.by_operator());
-        let again = operated.iter().copied().filter(|job| job.verify().is_some());
-        let judged: Vec<&Job> = integrated.into_iter().chain(again).collect();
-        bench.crossings = each(stop, &judged, crossing_key, |job| bench.crossing_solver(job));
+        let integrated =
+            |crossing: &&CrossingJob<'_>| crossing.operator_tolerance().is_none() || crossing.verify().is_some();
+        let judged: Vec<CrossingJob<'_>> = crossings.iter().filter(integrated).copied().collect();
+        bench.crossings = each(
+            stop,
+            &judged,
+            |job| Some(crossing_key(job)),
+            |job| bench.crossing_solver(job),
+        );
         progress.stage("operators: modes and what they leave out");
-        bench.operators = each(stop, &operated, operator_key, |job| bench.operator(job, cache));
-        bench.operated = each(stop, &operated, Self::crew_key, |job| bench.operator_solver(job));
+        bench.operators = each(stop, &crossings, operator_key, |job| bench.operator(job, cache));
+        bench.operated = each(stop, &crossings, Self::crew_key, |job| bench.operator_solver(job));
         progress.stage("static peaks of creeping loads");
-        let creeping: Vec<&Job> = crossings.iter().copied().filter(|job| is_held(job)).collect();
+        let creeping: Vec<&Job> = crossings
+            .iter()
+            .map(|crossing| crossing.job)
+            .filter(|job| is_held(job))
+            .collect();
         bench.creeping = bench.creeping_peaks(stop, &creeping);
         bench
     }
 
-    fn module(&self, job: &Job) -> Result<PreparedModule, String> {
+    fn module(&self, job: &Job) -> Result<PreparedModule, JobFailure> {
         let model = model(job);
         if model == Model::SuperElement {
             self.condensations.fetch_add(1, Ordering::Relaxed);
         }
-        PreparedModule::new(&job.bridge.design, model).map_err(text)
+        Ok(PreparedModule::new(&job.bridge.design, model)?)
     }
 
     /// The module of a job.
@@ -134,28 +166,31 @@ impl Bench {
     }
 
     /// The bridge of a job, assembled anew.
-    pub(super) fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, String> {
-        Bridge::new(&job.bridge.design, &*shared(&self.modules, &module_key(job))?, ends).map_err(text)
+    pub(super) fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, JobFailure> {
+        let module = shared(&self.modules, &module_key(job))?;
+        Ok(Bridge::new(&job.bridge.design, &module, ends)?)
     }
 
-    fn damping_of(&self, job: &Job) -> Result<Damping, String> {
-        let spec = job.analysis.spec.damping.unwrap_or_default();
-        let frequencies_hz = match spec.frequencies_hz {
+    fn damping_of(&self, crossing: &CrossingJob<'_>) -> Result<Damping, JobFailure> {
+        let damping = crossing.analysis.damping;
+        let frequencies_hz = match damping.frequencies_hz {
             Some(stated) => stated,
-            None => bending_frequencies_hz(&self.bridge(job, Ends::Free)?)
-                .map_err(|e| format!("damping: {e}; state analysis.damping.frequencies_hz"))?,
+            None => bending_frequencies_hz(&self.bridge(crossing.job, Ends::Free)?)
+                .map_err(|e| JobFailure::from(e).said("damping: ", "; state analysis.damping.frequencies_hz"))?,
         };
         Ok(Damping {
             frequencies_hz,
-            coefficients: rayleigh(spec.ratio, frequencies_hz),
+            coefficients: rayleigh(damping.ratio, frequencies_hz),
         })
     }
 
-    /// The operator of a job, from the cache where it is there whole, else built and kept.
-    fn operator(&self, job: &Job, cache: Option<&Cache>) -> Result<BridgeOperator, String> {
-        let tolerance = job.analysis.spec.operator_tolerance.unwrap_or_default();
-        let (bridge, made) = (shared(&self.bridges, &bridge_key(job))?, &self.operators_made);
-        let name = Cache::name(&format!("{:?}", operator_key(job)));
+    /// The operator of a crossing, from the cache where it is there whole, else built and kept.
+    fn operator(&self, crossing: &CrossingJob<'_>, cache: Option<&Cache>) -> Result<BridgeOperator, JobFailure> {
+        let (Some(tolerance), Some(key)) = (crossing.operator_tolerance(), operator_key(crossing)) else {
+            return Err(JobFailure::of_program("an operator of the reference solver"));
+        };
+        let (bridge, made) = (shared(&self.bridges, &key.bridge)?, &self.operators_made);
+        let name = key.name();
         match cache.map_or(Found::Nothing, |cache| cache.read(&name, &bridge)) {
             Found::Whole(operator) => {
                 made.from_cache.fetch_add(1, Ordering::Relaxed);
@@ -165,7 +200,7 @@ impl Bench {
             Found::Nothing => 0,
         };
         made.built.fetch_add(1, Ordering::Relaxed);
-        let operator = BridgeOperator::new(&bridge, tolerance).map_err(text)?;
+        let operator = BridgeOperator::new(&bridge, tolerance)?;
         if let Some(cache) = cache {
             // a cache that cannot be written costs time at the next run, and nothing else
             let _ = cache.write(&name, &operator);
@@ -192,44 +227,45 @@ impl Bench {
         }
     }
 
-    fn operator_solver(&self, job: &Job) -> Result<OperatorSolver, String> {
-        let bridge = shared(&self.bridges, &bridge_key(job))?;
-        let operator = shared(&self.operators, &operator_key(job))?;
-        Ok(OperatorSolver::new(&bridge, &operator, &self.settings(job)?))
+    fn operator_solver(&self, crossing: &CrossingJob<'_>) -> Result<OperatorSolver, JobFailure> {
+        let bridge = shared(&self.bridges, &bridge_key(crossing.job))?;
+        let operator = self.operator_of(crossing)?;
+        Ok(OperatorSolver::new(&bridge, &operator, &self.settings(crossing)?))
     }
 
-    /// Crossings of one key are solved side by side.
-    pub(super) fn crew_key(job: &Job) -> CrewKey {
-        let spec = &job.analysis.spec;
-        let auto = match spec.time_step_s {
-            Some(TimeStepSpec::Auto(_)) => spec.time_step_tolerance.map(f64::to_bits),
-            _ => None,
-        };
-        (
-            crossing_key(job),
-            spec.operator_tolerance.unwrap_or_default().to_bits(),
-            auto,
-        )
+    fn operator_of(&self, crossing: &CrossingJob<'_>) -> Shared<BridgeOperator> {
+        let key = operator_key(crossing).ok_or_else(not_prepared)?;
+        shared(&self.operators, &key)
+    }
+
+    /// Crossings of one key are solved side by side; none of the reference solver's, which are solved one by one.
+    pub(super) fn crew_key(crossing: &CrossingJob<'_>) -> Option<CrewKey> {
+        let auto = crossing.analysis.time_step.tolerance().map(f64::to_bits);
+        let tolerance = crossing.operator_tolerance()?.to_bits();
+        Some((crossing_key(crossing), tolerance, auto))
     }
 
     /// The operator's solver of a crossing.
-    pub(super) fn operated(&self, job: &Job) -> Shared<OperatorSolver> {
-        shared(&self.operated, &Self::crew_key(job))
+    pub(super) fn operated(&self, crossing: &CrossingJob<'_>) -> Shared<OperatorSolver> {
+        shared(&self.operated, &Self::crew_key(crossing).ok_or_else(not_prepared)?)
     }
 
-    fn crossing_solver(&self, job: &Job) -> Result<CrossingSolver, String> {
-        CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &self.settings(job)?).map_err(text)
+    fn crossing_solver(&self, crossing: &CrossingJob<'_>) -> Result<CrossingSolver, JobFailure> {
+        let bridge = shared(&self.bridges, &bridge_key(crossing.job))?;
+        Ok(CrossingSolver::new(&bridge, &self.settings(crossing)?)?)
     }
 
     /// The reference solver of a crossing at half its time step, made anew.
-    pub(super) fn crossing_at_half_step(&self, job: &Job) -> Result<CrossingSolver, String> {
-        let mut settings = self.settings(job)?;
+    pub(super) fn crossing_at_half_step(&self, crossing: &CrossingJob<'_>) -> Result<CrossingSolver, JobFailure> {
+        let mut settings = self.settings(crossing)?;
         settings.time_step_s *= RETRY_STEP_SHARE;
-        CrossingSolver::new(&shared(&self.bridges, &bridge_key(job))?, &settings).map_err(text)
+        let bridge = shared(&self.bridges, &bridge_key(crossing.job))?;
+        Ok(CrossingSolver::new(&bridge, &settings)?)
     }
 
-    fn settings(&self, job: &Job) -> Result<CrossingSettings, String> {
-        Ok(job.settings(shared(&self.damping, &damping_key(job))?.coefficients))
+    fn settings(&self, crossing: &CrossingJob<'_>) -> Result<CrossingSettings, JobFailure> {
+        let damping = shared(&self.damping, &damping_key(crossing))?;
+        Ok(crossing.settings(damping.coefficients))
     }
 
     /// The static peaks of creeping loads; cases of one vehicle on one bridge share what it does at its places, which is let
@@ -241,12 +277,11 @@ impl Bench {
             vehicles.entry(key).or_default().push(job);
         }
         let peaks = |((bridge, _), jobs): ((BridgeKey, _), Vec<&Job>)| {
-            let load = guarded(|| Ok::<_, String>(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
-            each(stop, &jobs, creeping_key, |job| {
-                load.as_ref()
-                    .map_err(Clone::clone)?
-                    .peaks_m(&static_case(job, 0.0))
-                    .map_err(text)
+            let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
+            let key = |job: &&Job| Some(creeping_key(job));
+            each(stop, &jobs, key, |job| {
+                let load = load.as_ref().map_err(Clone::clone)?;
+                Ok(load.peaks_m(&static_case(job, 0.0))?)
             })
         };
         let vehicles: Vec<_> = vehicles.into_iter().collect();
@@ -255,8 +290,8 @@ impl Bench {
     }
 
     /// The solver of a crossing.
-    pub(super) fn crossing(&self, job: &Job) -> Shared<CrossingSolver> {
-        shared(&self.crossings, &crossing_key(job))
+    pub(super) fn crossing(&self, crossing: &CrossingJob<'_>) -> Shared<CrossingSolver> {
+        shared(&self.crossings, &crossing_key(crossing))
     }
 
     /// The solver of a static case.
@@ -266,13 +301,13 @@ impl Bench {
 
     /// The largest static deflection of each position under the job's load over its places `[m]`; none where the bridge is
     /// not held.
-    pub(super) fn creeping_peaks_m(&self, job: &Job) -> Result<Option<Arc<Vec<f64>>>, String> {
+    pub(super) fn creeping_peaks_m(&self, job: &Job) -> Result<Option<Arc<Vec<f64>>>, JobFailure> {
         if !is_held(job) {
             return Ok(None);
         }
         shared(&self.creeping, &creeping_key(job))
             .map(Some)
-            .map_err(|e| format!("static peak: {e}"))
+            .map_err(|failure| failure.said("static peak: ", ""))
     }
 
     /// The modules, for a later run.
@@ -295,8 +330,10 @@ impl Bench {
                 continue;
             }
             let module = shared(&self.modules, &module_key(job)).ok();
-            let damping = shared(&self.damping, &damping_key(job)).ok();
-            let operator = shared(&self.operators, &operator_key(job)).ok().map(|o| o.cutoff());
+            let crossing = job.as_crossing();
+            let damping = crossing.and_then(|crossing| shared(&self.damping, &damping_key(&crossing)).ok());
+            let operator = crossing.and_then(|crossing| self.operator_of(&crossing).ok());
+            let operator = operator.map(|operator| operator.cutoff());
             let report = BridgeReport {
                 blake3: job.bridge.hash.clone(),
                 name: job.bridge.design.name.clone(),
@@ -342,23 +379,25 @@ fn is_held(job: &Job) -> bool {
 }
 
 /// Makes one thing for each distinct key, in parallel; the first job with a key stands for the others.
-fn each<K: Ord + Send, T: Send + Sync>(
+fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
     stop: &Stop,
-    jobs: &[&Job],
-    key: impl Fn(&Job) -> K,
-    make: impl Fn(&Job) -> Result<T, String> + Sync,
+    jobs: &[J],
+    key: impl Fn(&J) -> Option<K>,
+    make: impl Fn(&J) -> Result<T, JobFailure> + Sync,
 ) -> BTreeMap<K, Shared<T>> {
-    let mut first: BTreeMap<K, &Job> = BTreeMap::new();
+    let mut first: BTreeMap<K, &J> = BTreeMap::new();
     for job in jobs {
-        first.entry(key(job)).or_insert(job);
+        if let Some(key) = key(job) {
+            first.entry(key).or_insert(job);
+        }
     }
-    let list: Vec<(K, &Job)> = first.into_iter().collect();
+    let list: Vec<(K, &J)> = first.into_iter().collect();
     let made: Vec<(K, Shared<T>)> = list
         .into_par_iter()
         .with_max_len(1)
         .map(|(key, job)| {
             let made = if stop.is_asked() {
-                Err("not prepared: the run was stopped".to_owned())
+                Err(Failure::new(FailureKind::Stopped, "not prepared: the run was stopped").into())
             } else {
                 guarded(|| make(job))
             };
@@ -369,17 +408,15 @@ fn each<K: Ord + Send, T: Send + Sync>(
 }
 
 fn shared<K: Ord, T>(map: &BTreeMap<K, Shared<T>>, key: &K) -> Shared<T> {
-    map.get(key)
-        .cloned()
-        .unwrap_or_else(|| Err("program error: not prepared".to_owned()))
+    map.get(key).cloned().unwrap_or_else(|| Err(not_prepared()))
 }
 
-fn text(error: impl ToString) -> String {
-    error.to_string()
+fn not_prepared() -> JobFailure {
+    JobFailure::of_program("not prepared")
 }
 
 fn model(job: &Job) -> Model {
-    job.analysis.spec.model.into()
+    job.model().into()
 }
 
 fn module_key(job: &Job) -> ModuleKey {
@@ -390,30 +427,27 @@ fn bridge_key(job: &Job) -> BridgeKey {
     (model(job), job.bridge.structure_key.clone())
 }
 
-fn damping_key(job: &Job) -> DampingKey {
-    let spec = job.analysis.spec.damping.unwrap_or_default();
+fn damping_key(crossing: &CrossingJob<'_>) -> DampingKey {
+    let damping = crossing.analysis.damping;
     (
-        bridge_key(job),
-        spec.ratio.to_bits(),
-        spec.frequencies_hz.map(|f| f.map(f64::to_bits)),
+        bridge_key(crossing.job),
+        damping.ratio.to_bits(),
+        damping.frequencies_hz.map(|f| f.map(f64::to_bits)),
     )
 }
 
-fn crossing_key(job: &Job) -> CrossingKey {
-    let bits = |x: Option<f64>| x.unwrap_or_default().to_bits();
-    let spec = &job.analysis.spec;
-    let scheme = [
-        bits(spec.time_step_s.map(TimeStepSpec::seconds)),
-        bits(spec.spectral_radius),
-    ];
-    (damping_key(job), scheme, [spec.newton_limit, spec.bisection_limit])
+fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
+    let analysis = crossing.analysis;
+    let scheme = [analysis.time_step.seconds(), analysis.spectral_radius].map(f64::to_bits);
+    let limits = [analysis.newton_limit, analysis.bisection_limit];
+    (damping_key(crossing), scheme, limits)
 }
 
-fn operator_key(job: &Job) -> OperatorKey {
-    (
-        bridge_key(job),
-        job.analysis.spec.operator_tolerance.unwrap_or_default().to_bits(),
-    )
+fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
+    Some(OperatorKey {
+        bridge: bridge_key(crossing.job),
+        tolerance: crossing.operator_tolerance()?.to_bits(),
+    })
 }
 
 fn creeping_key(job: &Job) -> CreepingKey {

@@ -4,92 +4,75 @@
 //! columns, or how a crossing is stepped.
 
 use super::bench::Bench;
-use super::retry::half_step_may_help;
+use super::failure::JobFailure;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
-use pontoon_core::response::{CrossingResponse, ForcePeaks, Peak, Quantity, Record};
+use pontoon_core::response::{CrossingResponse, ForcePeaks, JointPeaks, Peak, PositionPeaks, Quantity, Record};
 use pontoon_core::vehicle::Vehicle;
-use pontoon_plan::job::Job;
-use pontoon_plan::study_file::TimeStepSpec;
-use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
-
-/// Why a job failed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Failure {
-    /// In words.
-    pub reason: String,
-    /// Whether half the time step may help.
-    pub half_step_may_help: bool,
-}
-
-impl From<String> for Failure {
-    fn from(reason: String) -> Self {
-        Self {
-            reason,
-            half_step_may_help: false,
-        }
-    }
-}
-
-impl From<AnalysisError> for Failure {
-    fn from(error: AnalysisError) -> Self {
-        Self {
-            half_step_may_help: half_step_may_help(&error),
-            reason: error.to_string(),
-        }
-    }
-}
+use pontoon_plan::job::{CrossingJob, Job};
+use pontoon_results::{ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// A job's record or why it failed.
-pub(super) type Solved = Result<JobRecord, Failure>;
+pub(super) type Solved = Result<JobRecord, JobFailure>;
 
-/// Solves the crossing of a job by the reference solver.
-pub(super) fn solve(job: &Job, record: Record, bench: &Bench) -> Solved {
-    let solved = bench.crossing(job)?.solve(&job.vehicle.vehicle, &job.crossing(record));
-    Ok(recorded(job, solved?, bench)?)
+/// Solves a crossing by the reference solver.
+pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, bench: &Bench) -> Solved {
+    let solver = bench.crossing(crossing)?;
+    let response = solver.solve(crossing.vehicle(), &crossing.input(record))?;
+    recorded(crossing.job, response, bench)
 }
 
 /// Solves a crossing that failed once more at half its time step.
-pub(super) fn again_at_half_step(job: &Job, record: Record, bench: &Bench, failure: &Failure) -> Solved {
-    let (vehicle, crossing) = (&job.vehicle.vehicle, job.crossing(record));
-    let again = if job.by_operator() {
-        let mut answers = bench.operated(job)?.solve_all(&[(vehicle, &crossing)], 1);
-        answers.pop().ok_or_else(|| "program error: no answer".to_owned())?
+pub(super) fn again_at_half_step(
+    crossing: &CrossingJob<'_>,
+    record: Record,
+    bench: &Bench,
+    failed: &JobFailure,
+) -> Solved {
+    let (vehicle, input) = (crossing.vehicle(), crossing.input(record));
+    let again = if crossing.operator_tolerance().is_some() {
+        let mut answers = bench.operated(crossing)?.solve_all(&[(vehicle, &input)], 1);
+        answers.pop().ok_or_else(|| JobFailure::of_program("no answer"))?
     } else {
-        bench.crossing_at_half_step(job)?.solve(vehicle, &crossing)
+        bench.crossing_at_half_step(crossing)?.solve(vehicle, &input)
     };
-    let again = again.map_err(|error| format!("{}; at half the time step: {error}", failure.reason))?;
-    let mut record = recorded(job, again, bench)?;
-    record.summary.retried = Some(format!("at half the time step; at its own: {}", failure.reason));
+    let again = again.map_err(|error| {
+        let behind = format!("; at half the time step: {error}");
+        JobFailure::from(failed.failure.clone().said("", &behind))
+    })?;
+    let mut record = recorded(crossing.job, again, bench)?;
+    record.retried = Some(failed.failure.clone());
     Ok(record)
 }
 
 /// Solves crossings that share a solver by the operator.
-pub(super) fn solve_crew(crew: &[(&Job, Record)], bench: &Bench) -> Vec<Solved> {
+pub(super) fn solve_crew(crew: &[(CrossingJob<'_>, Record)], bench: &Bench) -> Vec<Solved> {
     let Some((first, _)) = crew.first() else {
         return Vec::new();
     };
     let solver = match bench.operated(first) {
         Ok(solver) => solver,
-        Err(reason) => return crew.iter().map(|_| Err(reason.clone().into())).collect(),
+        Err(failure) => return crew.iter().map(|_| Err(failure.clone())).collect(),
     };
-    let crossings: Vec<Crossing> = crew.iter().map(|(job, record)| job.crossing(record.clone())).collect();
+    let inputs: Vec<Crossing> = crew
+        .iter()
+        .map(|(crossing, record)| crossing.input(record.clone()))
+        .collect();
     let asked: Vec<(&Vehicle, &Crossing)> = crew
         .iter()
-        .zip(&crossings)
-        .map(|((job, _), crossing)| (&job.vehicle.vehicle, crossing))
+        .zip(&inputs)
+        .map(|((crossing, _), input)| (crossing.vehicle(), input))
         .collect();
-    let auto = matches!(first.analysis.spec.time_step_s, Some(TimeStepSpec::Auto(_)));
-    let answers = if auto {
-        let tolerance = first.analysis.spec.time_step_tolerance.unwrap_or_default();
-        refined(&solver, &asked, tolerance)
-    } else {
-        let plain = |answer: Result<CrossingResponse, AnalysisError>| Ok((answer?, None));
-        solver.solve_all(&asked, 0).into_iter().map(plain).collect()
+    let answers = match first.analysis.time_step.tolerance() {
+        Some(tolerance) => refined(&solver, &asked, tolerance),
+        None => {
+            let plain = |answer: Result<CrossingResponse, AnalysisError>| Ok((answer?, None));
+            solver.solve_all(&asked, 0).into_iter().map(plain).collect()
+        }
     };
-    let record = |((job, _), answer): (&(&Job, Record), Result<Answer, Failure>)| {
+    let record = |((crossing, _), answer): (&(CrossingJob<'_>, Record), Result<Answer, JobFailure>)| {
         let (response, time_step_s) = answer?;
-        let mut record = recorded(job, response, bench)?;
+        let mut record = recorded(crossing.job, response, bench)?;
         record.summary.time_step_s = time_step_s;
         Ok(record)
     };
@@ -102,8 +85,12 @@ type Answer = (CrossingResponse, Option<f64>);
 /// Solves crossings at half the time step again and again, each until its peak force has settled: the last halving changed
 /// it by no more than half the tolerance and the one before by no more than the tolerance. One small change alone may be
 /// chance where contacts decide.
-fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: f64) -> Vec<Result<Answer, Failure>> {
-    let mut answers: Vec<Option<Result<Answer, Failure>>> = vec![None; asked.len()];
+fn refined(
+    solver: &OperatorSolver,
+    asked: &[(&Vehicle, &Crossing)],
+    tolerance: f64,
+) -> Vec<Result<Answer, JobFailure>> {
+    let mut answers: Vec<Option<Result<Answer, JobFailure>>> = vec![None; asked.len()];
     // peak force at the last step and by how much it had changed there
     let mut before = vec![(f64::NAN, f64::NAN); asked.len()];
     let mut open: Vec<usize> = (0..asked.len()).collect();
@@ -120,7 +107,10 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
                     continue;
                 }
                 Err(error) => {
-                    answers[place] = Some(Err(error.to_string().into()));
+                    answers[place] = Some(Err(JobFailure {
+                        half_step_may_help: false,
+                        ..error.into()
+                    }));
                     continue;
                 }
             };
@@ -130,9 +120,7 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
             if change <= 0.5 * tolerance * peak && last_change <= tolerance * peak {
                 answers[place] = Some(Ok((response, Some(h))));
             } else if refinement == REFINEMENTS {
-                let share = change / peak;
-                let reason = format!("peak force still changes by {share:.1e} of itself at a time step of {h} s");
-                answers[place] = Some(Err(reason.into()));
+                answers[place] = Some(Err(not_settled(change / peak, h).into()));
             } else {
                 before[place] = (peak, change);
                 next.push(place);
@@ -140,8 +128,16 @@ fn refined(solver: &OperatorSolver, asked: &[(&Vehicle, &Crossing)], tolerance: 
         }
         open = next;
     }
-    let lost = || Err("program error: no answer".to_owned().into());
+    let lost = || Err(JobFailure::of_program("no answer"));
     answers.into_iter().map(|answer| answer.unwrap_or_else(lost)).collect()
+}
+
+/// The peak force still changes by a share of itself at the finest time step `[s]`.
+fn not_settled(share: f64, time_step_s: f64) -> Failure {
+    let text = format!("peak force still changes by {share:.1e} of itself at a time step of {time_step_s} s");
+    Failure::new(FailureKind::PeakForceNotSettled, text)
+        .with("share", share)
+        .with("time_step_s", time_step_s)
 }
 
 /// Largest force of any joint `[N]`.
@@ -153,7 +149,7 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
     of_joint.fold(0.0, f64::max)
 }
 
-fn recorded(job: &Job, response: CrossingResponse, bench: &Bench) -> Result<JobRecord, String> {
+fn recorded(job: &Job, response: CrossingResponse, bench: &Bench) -> Solved {
     let static_peaks_m = bench.creeping_peaks_m(job)?;
     Ok(rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice)))
 }
@@ -172,31 +168,33 @@ fn peaks_row(joint: usize, y_m: Option<f64>, peaks: &ForcePeaks) -> ConnectorRow
     }
 }
 
-fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
-    let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
-    let positions: Vec<PositionRow> = response
-        .positions
-        .iter()
-        .enumerate()
-        .map(|(i, p)| PositionRow {
-            position: p.position,
-            x_m: p.x_m,
-            deflection: extreme(p.deflection),
-            uplift: extreme(p.uplift),
-            static_deflection_m: None,
-            static_peak_deflection_m: static_peaks_m.map(|peaks| peaks[i]),
-        })
-        .collect();
-    let mut connectors = Vec::new();
-    for joint in &response.joints {
-        connectors.push(peaks_row(joint.joint, None, &joint.sum));
-        connectors.extend(
-            joint
-                .connectors
-                .iter()
-                .map(|(y_m, peaks)| peaks_row(joint.joint, Some(*y_m), peaks)),
-        );
+fn position_row(peaks: &PositionPeaks, static_peak_deflection_m: Option<f64>) -> PositionRow {
+    PositionRow {
+        position: peaks.position,
+        x_m: peaks.x_m,
+        deflection: extreme(peaks.deflection),
+        uplift: extreme(peaks.uplift),
+        static_deflection_m: None,
+        static_peak_deflection_m,
     }
+}
+
+/// The rows of a joint: the sum of its connectors, then each of them.
+fn joint_rows(joint: &JointPeaks) -> impl Iterator<Item = ConnectorRow> {
+    let each = joint
+        .connectors
+        .iter()
+        .map(|(y_m, peaks)| peaks_row(joint.joint, Some(*y_m), peaks));
+    std::iter::once(peaks_row(joint.joint, None, &joint.sum)).chain(each)
+}
+
+fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
+    let positions: Vec<PositionRow> = (0..)
+        .zip(&response.positions)
+        .map(|(i, peaks): (usize, _)| position_row(peaks, static_peaks_m.map(|of| of[i])))
+        .collect();
+    let connectors: Vec<ConnectorRow> = response.joints.iter().flat_map(joint_rows).collect();
+    let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
     let mut summary = Summary {
         peak_edge_deflection_m: Some(response.peak_edge_deflection_m),
         peak_roll_rad: Some(response.peak_roll_rad),
@@ -216,6 +214,19 @@ fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) 
         .peak_deflection_m
         .zip(static_peak_m.filter(|&peak| peak > 0.0))
         .map(|(moving, creeping)| moving / creeping);
+    JobRecord {
+        job,
+        failure: None,
+        retried: None,
+        summary,
+        positions,
+        connectors,
+        histories: history_rows(response),
+        modes: Vec::new(),
+    }
+}
+
+fn history_rows(response: CrossingResponse) -> HistoryRows {
     let series = response.histories.into_iter().map(|history| {
         let quantity = match history.quantity {
             Quantity::Deflection => "deflection_m",
@@ -223,17 +234,8 @@ fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) 
         };
         (quantity.to_owned(), history.position, history.values)
     });
-    let histories = HistoryRows {
+    HistoryRows {
         time_s: response.history_time_s,
         series: series.collect(),
-    };
-    JobRecord {
-        job,
-        reason: None,
-        summary,
-        positions,
-        connectors,
-        histories,
-        modes: Vec::new(),
     }
 }

@@ -3,7 +3,7 @@
 //! Knows how many rows a job leaves. Does not know threads: the cuts depend on the study and its jobs alone, as the row
 //! groups of the tables follow them.
 
-use pontoon_plan::job::{Job, Task};
+use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
 
 /// What a batch holds at most; a single job is a batch of its own however many rows it has.
@@ -45,9 +45,9 @@ pub(super) fn cut<'a>(study: &'a Study, jobs: &'a [Job], batch: Batch) -> impl I
 
 /// Rows that a job leaves, those that bisected steps add to its histories apart.
 fn rows(study: &Study, job: &Job) -> usize {
-    let (record, design) = (&study.spec.record, &job.bridge.design);
-    if job.task == Task::Modes {
-        return 1 + job.analysis.spec.count.unwrap_or_default();
+    let (record, design) = (&study.record, &job.bridge.design);
+    if let Some(modes) = job.as_modes() {
+        return 1 + modes.count;
     }
     let positions = if record.positions { design.positions() } else { 0 };
     let of_joint = if record.connectors {

@@ -1,13 +1,13 @@
 //! A panic inside a job is that job's failure and nobody else's.
 
+use super::failure::JobFailure;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs `f`; a panic becomes an error with its message. What `f` touched is either its own or read-only, so nothing
 /// half-done is seen afterwards.
-pub(super) fn guarded<T, E: From<String>>(f: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
-    catch_unwind(AssertUnwindSafe(f))
-        .unwrap_or_else(|panic| Err(format!("program error: {}", message(panic.as_ref())).into()))
+pub(super) fn guarded<T>(f: impl FnOnce() -> Result<T, JobFailure>) -> Result<T, JobFailure> {
+    catch_unwind(AssertUnwindSafe(f)).unwrap_or_else(|panic| Err(JobFailure::of_program(message(panic.as_ref()))))
 }
 
 fn message(panic: &(dyn Any + Send)) -> &str {
@@ -24,9 +24,9 @@ mod tests {
 
     #[test]
     fn a_panic_becomes_a_reason_and_a_result_passes() {
-        assert_eq!(guarded(|| Ok::<_, String>(3)), Ok(3));
+        assert_eq!(guarded(|| Ok(3)), Ok(3));
         let list: Vec<usize> = Vec::new();
-        let reason: String = guarded(|| Ok::<_, String>(list[list.len()])).unwrap_err();
+        let reason = guarded(|| Ok(list[list.len()])).unwrap_err().failure.text;
         assert!(reason.starts_with("program error: index out of bounds"), "{reason}");
     }
 }

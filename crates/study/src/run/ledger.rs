@@ -99,7 +99,7 @@ impl<'a> Ledger<'a> {
                 what: format!("the record of job {}", job.number),
                 cause: cause.to_string(),
             });
-            Ok((record_key(job), record.reason.is_some(), bytes?))
+            Ok((record_key(job), record.failure.is_some(), bytes?))
         };
         let encoded: Vec<(RecordKey, bool, Vec<u8>)> = records.map(encode).collect::<Result<_, JournalError>>()?;
         writer.record(encoded.iter().map(|(key, failed, left)| NewRecord {

@@ -5,7 +5,8 @@
 //! | `bench`, `cache` | what jobs share, prepared once; operators on disk |
 //! | `cut`, `batch`, `pool` | which jobs are solved together, and on which threads |
 //! | `crossing`, `statics`, `modes`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
-//! | `verify`, `canary`, `guard` | the reference solver as judge; a crossing whose answer is known; panics made reasons |
+//! | `verify`, `canary` | the reference solver as judge; a crossing whose answer is known |
+//! | `failure`, `guard` | an error of the mechanics as the failure that a record keeps; panics made failures |
 //! | `ledger` | records in the journal, and back |
 //! | `watch`, `progress`, `stop`, `probe` | who is told, who may stop it, how long it will take |
 //! | `error` | why a run did not come to its end |
@@ -20,6 +21,7 @@ pub mod canary;
 mod crossing;
 mod cut;
 mod error;
+mod failure;
 mod guard;
 mod ledger;
 mod modes;
@@ -49,7 +51,7 @@ use batch::Untold;
 use bench::Bench;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
-use pontoon_results::{Failures, JobRecord, Outcome, Verification};
+use pontoon_results::{Failure, Failures, JobRecord, Outcome, Verification};
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::time::Instant;
@@ -75,8 +77,8 @@ pub struct Setting<'a> {
     pub apart: bool,
     /// Failed jobs beyond which the run stops; none: it goes on.
     pub most_failures: Option<usize>,
-    /// Numbers of jobs that are not to be solved, with the reason why they failed.
-    pub passed_over: BTreeMap<usize, String>,
+    /// Numbers of jobs that are not to be solved, with why they failed.
+    pub passed_over: BTreeMap<usize, Failure>,
 }
 
 /// Where the records of a batch go, in the order of jobs.
@@ -205,8 +207,8 @@ pub fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: imp
         let modules = job.bridge.design.modules;
         whole.entry(modules).or_insert_with(|| {
             let mut study = study.clone();
-            study.spec.record.histories.positions = (1..=modules + 1).collect();
-            study.spec.record.histories.joints = (2..=modules).collect();
+            study.record.histories.positions = (1..=modules + 1).collect();
+            study.record.histories.joints = (2..=modules).collect();
             study
         });
     }

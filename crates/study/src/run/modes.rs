@@ -3,28 +3,26 @@
 //! Knows which mode fills which row. Does not know columns, or how modes are found.
 
 use super::bench::Bench;
+use super::failure::JobFailure;
 use crate::modes::rows;
 use pontoon_core::bridge::Ends;
 use pontoon_plan::job::Job;
+use pontoon_plan::study_file::ModesAnalysis;
 use pontoon_results::{HistoryRows, JobRecord, Summary};
 
 /// Finds the modes of a job.
-pub(super) fn solve(job: &Job, bench: &Bench) -> Result<JobRecord, String> {
-    let spec = &job.analysis.spec;
-    let ends = if spec.supports.unwrap_or_default() {
-        Ends::Supported
-    } else {
-        Ends::Free
-    };
+pub(super) fn solve(job: &Job, asked: &ModesAnalysis, bench: &Bench) -> Result<JobRecord, JobFailure> {
+    let ends = if asked.supports { Ends::Supported } else { Ends::Free };
     let bridge = bench.bridge(job, ends)?;
-    let modes = rows(&bridge, spec.count.unwrap_or_default()).map_err(|e| e.to_string())?;
+    let modes = rows(&bridge, asked.count)?;
     let summary = Summary {
         structural_mass_kg: Some(bench.module_of(job)?.structural_mass_kg()),
         ..Summary::default()
     };
     Ok(JobRecord {
         job: job.number,
-        reason: None,
+        failure: None,
+        retried: None,
         summary,
         positions: Vec::new(),
         connectors: Vec::new(),

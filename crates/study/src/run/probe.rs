@@ -35,7 +35,8 @@ pub struct Measured {
 /// thread. None where they are too long, or fail.
 pub fn measure(study: &Study, jobs: &[Job], cache: Option<&Cache>) -> Option<Measured> {
     let first = jobs.first()?;
-    let alike = |job: &&Job| job.by_operator() == first.by_operator() && Bench::crew_key(job) == Bench::crew_key(first);
+    let crew = |job: &Job| job.as_crossing().as_ref().and_then(Bench::crew_key);
+    let alike = |job: &&Job| crew(job) == crew(first);
     let mut tried: Vec<&Job> = jobs.iter().filter(alike).collect();
     tried.sort_by_key(|job| job.steps());
     tried.truncate(if first.by_operator() { TRIED } else { 1 });
@@ -50,7 +51,7 @@ pub fn measure(study: &Study, jobs: &[Job], cache: Option<&Cache>) -> Option<Mea
     let start = Instant::now();
     let records = pool.install(|| solve(&list, false, &bench, &Untold));
     let job_s = start.elapsed().as_secs_f64() / tried.len() as f64;
-    let failed = records.iter().any(|record| record.reason.is_some());
+    let failed = records.iter().any(|record| record.failure.is_some());
     (!failed).then(|| Measured {
         bridge_s,
         job_s,

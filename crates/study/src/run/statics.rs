@@ -3,16 +3,16 @@
 //! Knows which number of a response fills which field of a record. Does not know columns, or how a case is solved.
 
 use super::bench::{Bench, static_case};
+use super::failure::JobFailure;
 use pontoon_core::response::StaticResponse;
 use pontoon_plan::job::{Job, Load};
 use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// Solves the static case of a job.
-pub(super) fn solve(job: &Job, load: Load, bench: &Bench) -> Result<JobRecord, String> {
+pub(super) fn solve(job: &Job, load: Load, bench: &Bench) -> Result<JobRecord, JobFailure> {
     let response = bench
         .statics(job)?
-        .solve(&job.vehicle.vehicle, &static_case(job, load.x_m))
-        .map_err(|e| e.to_string())?;
+        .solve(&job.vehicle.vehicle, &static_case(job, load.x_m))?;
     Ok(rows(job, &response))
 }
 
@@ -50,7 +50,8 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
     summary.take_peaks(&positions, &connectors);
     JobRecord {
         job: job.number,
-        reason: None,
+        failure: None,
+        retried: None,
         summary,
         positions,
         connectors,

@@ -2,7 +2,7 @@
 
 use super::*;
 use pontoon_plan::job::Jobs;
-use pontoon_results::Failures;
+use pontoon_results::{FailureKind, Failures};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Mutex;
@@ -123,7 +123,7 @@ fn failures_are_counted_and_the_first_ten_told() {
     let (_, jobs) = seven();
     let mut failures = Failures::default();
     for batch in 0..3 {
-        let reason = |job: &Job| format!("{batch} {}", job.number);
+        let reason = |job: &Job| Failure::new(FailureKind::NotFinite, format!("{batch} {}", job.number));
         let records: Vec<JobRecord> = jobs.iter().map(|job| JobRecord::failed(job, reason(job))).collect();
         failures.take(&records);
     }

@@ -10,10 +10,13 @@ use pontoon_results::{JobRecord, Summary};
 
 /// Solves a job again by the reference solver, where that is asked for, and notes how far the operator is off.
 pub(super) fn judge(job: &Job, record: &mut JobRecord, bench: &Bench) {
-    let (Some(verify), None) = (job.verify(), &record.reason) else {
+    let asked = job
+        .as_crossing()
+        .and_then(|crossing| Some((crossing, crossing.verify()?)));
+    let Some((crossing_job, verify)) = asked.filter(|_| record.failure.is_none()) else {
         return;
     };
-    let again = guard::guarded(|| crossing::solve(job, Record::default(), bench));
+    let again = guard::guarded(|| crossing::solve(&crossing_job, Record::default(), bench));
     let of = |summary: &Summary| {
         let all = [
             summary.peak_deflection_m,

@@ -10,7 +10,7 @@ use super::progress::{Progress, Tally};
 use super::stop::{Stop, Why};
 use pontoon_journal::{JournalError, fault};
 use pontoon_plan::job::Job;
-use pontoon_results::{JobRecord, Preparation};
+use pontoon_results::{Failure, FailureKind, JobRecord, Preparation};
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,7 +20,7 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct Watch<'a> {
     ledger: Option<&'a Ledger<'a>>,
     pub(super) apart: bool,
-    passed_over: &'a BTreeMap<usize, String>,
+    passed_over: &'a BTreeMap<usize, Failure>,
     most_failures: Option<usize>,
     stop: &'a Stop,
     progress: &'a dyn Progress,
@@ -108,20 +108,23 @@ impl<'a> Watch<'a> {
     }
 
     /// Why a job is not to be solved; none where it is.
-    pub(super) fn passes_over(&self, job: &Job) -> Option<String> {
-        let over = |limit: &usize| job.steps() > *limit;
-        let limit = job.analysis.spec.step_limit.filter(over);
-        let too_long = |limit| format!("{} time steps, the limit is {limit}", job.steps());
-        self.passed_over
-            .get(&job.number)
-            .cloned()
-            .or_else(|| limit.map(too_long))
+    pub(super) fn passes_over(&self, job: &Job) -> Option<Failure> {
+        let too_long = || {
+            let crossing = job.as_crossing()?;
+            let (steps, limit) = (crossing.steps(), crossing.analysis.step_limit?);
+            let text = format!("{steps} time steps, the limit is {limit}");
+            (steps > limit).then(|| {
+                let failure = Failure::new(FailureKind::TooManySteps, text);
+                failure.with("steps", steps as f64).with("limit", limit as f64)
+            })
+        };
+        self.passed_over.get(&job.number).cloned().or_else(too_long)
     }
 
     /// The failures of jobs that are not to be solved.
     pub(super) fn pass_over(&self, jobs: &[&Job]) -> Vec<JobRecord> {
-        let failed = |job: &&Job| JobRecord::failed(job, self.passes_over(job).unwrap_or_default());
-        let records: Vec<JobRecord> = jobs.iter().map(failed).collect();
+        let failed = |job: &&Job| Some(JobRecord::failed(job, self.passes_over(job)?));
+        let records: Vec<JobRecord> = jobs.iter().filter_map(failed).collect();
         self.end(jobs, &records);
         records
     }
@@ -179,7 +182,7 @@ impl Told for Watch<'_> {
         if let Some(ledger) = self.ledger {
             self.note(ledger.keep(jobs.iter().copied().zip(records)));
         }
-        let fails = records.iter().filter(|record| record.reason.is_some()).count();
+        let fails = records.iter().filter(|record| record.failure.is_some()).count();
         let failed = self.failed.fetch_add(fails, Ordering::Relaxed) + fails;
         self.done.fetch_add(records.len(), Ordering::Relaxed);
         self.ran.fetch_add(records.len(), Ordering::Relaxed);

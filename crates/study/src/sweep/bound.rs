@@ -5,7 +5,7 @@
 use super::SweepSetting;
 use crate::run::instruction_path;
 use pontoon_journal::{Binding, FORM, Session};
-use pontoon_plan::input::{Refusal, to_value};
+use pontoon_plan::input::{Document, Refusal, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
 use pontoon_results::Moment;
@@ -13,19 +13,18 @@ use std::path::Path;
 
 /// What the records of a study are bound to.
 pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
-    let spec = &study.spec;
-    let vehicle = filled_vehicle(&spec.vehicle).map_or_else(|_| to_value(&spec.vehicle), |filled| to_value(&filled));
-    let analysis = spec.analysis.clone().checked();
+    let written = &study.vehicle;
+    let vehicle = filled_vehicle(written).map_or_else(|_| to_value(written), |filled| to_value(&filled));
     Binding {
         form: FORM,
-        name: spec.name.clone(),
+        name: study.name.clone(),
         numerics: format!("{} {}", pontoon_results::VERSION, crate::NUMERICS),
         instruction_path: instruction_path().to_owned(),
         shard: shard.map(|shard| shard.to_string()),
         bridge: to_value(&study.bridge.design),
         vehicle,
-        analysis: analysis.map_or_else(|_| to_value(&spec.analysis), |checked| to_value(&checked)),
-        record: to_value(&spec.record),
+        analysis: to_value(&study.analysis.written()),
+        record: to_value(&study.record),
     }
 }
 
@@ -48,9 +47,9 @@ pub(super) fn session(
         jobs,
         known,
         apart,
-        study: study.document.clone(),
-        study_blake3: study.text_and_hash().1,
-        bridge: study.bridge.document.clone(),
+        study: study.document.value(),
+        study_blake3: study.document.hash(),
+        bridge: study.bridge.document.value(),
     }
 }
 
@@ -61,7 +60,7 @@ pub(super) fn session(
 pub(super) fn study_of(session: &Session, folder: &Path) -> Result<Study, Refusal> {
     Study::of_documents(
         &folder.join("study.json"),
-        session.study.clone(),
-        session.bridge.clone(),
+        Document::from(&session.study),
+        Document::from(&session.bridge),
     )
 }

@@ -15,13 +15,14 @@ use pontoon_journal::{Book, RecordKey, Writer};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
+use pontoon_results::{Failure, FailureKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Deaths after which a job is solved in a process of its own.
 const SUSPECT: usize = 2;
 
-/// Numbers of jobs that are not to be solved, with the reason.
-pub(super) type PassedOver = BTreeMap<usize, String>;
+/// Numbers of jobs that are not to be solved, with why they failed.
+pub(super) type PassedOver = BTreeMap<usize, Failure>;
 
 /// How a process ended that solved jobs apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,15 +80,18 @@ pub(super) fn settle(
                 before.clear();
                 continue;
             }
-            let reason = "the process died 3 times while this job ran, the last time with no other beside it";
-            over.insert(job.number, reason.to_owned());
+            let text = "the process died 3 times while this job ran, the last time with no other beside it";
+            over.insert(
+                job.number,
+                Failure::new(FailureKind::ProcessDied, text).with("deaths", 3.0),
+            );
         }
     }
 }
 
 /// What tells a study and its bridge from any other.
 pub(super) fn hash_of(study: &Study) -> String {
-    let both = study.text_and_hash().1 + &study.bridge_text_and_hash().1;
+    let both = study.document.hash() + &study.bridge.document.hash();
     blake3::hash(both.as_bytes()).to_hex().to_string()
 }
 

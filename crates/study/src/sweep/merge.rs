@@ -76,7 +76,7 @@ pub fn merge<'a>(
     watcher: &dyn Watcher,
 ) -> Result<Swept<'a>, SweepError> {
     let Merged { study, jobs } = merged;
-    pontoon_results::check_own(&setting.out, &study.spec.name)?;
+    pontoon_results::check_own(&setting.out, &study.name)?;
     let started = Moment::now();
     check_distinct(folders, &setting.out)?;
     check_folder(&setting.out)?;

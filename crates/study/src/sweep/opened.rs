@@ -7,7 +7,7 @@ use super::bound::binding;
 use super::{SweepError, SweepSetting, Watcher};
 use pontoon_journal::place::Folder;
 use pontoon_journal::{Binding, Book, Damage, Ending, FOLDER, Lock, Session};
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{OwnFiles, Preparation, SessionNote};
 use std::collections::BTreeSet;
@@ -27,7 +27,7 @@ impl Opened {
     pub(super) fn take(study: &Study, setting: &SweepSetting, watcher: &dyn Watcher) -> Result<Self, SweepError> {
         check_folder(&setting.out)?;
         if !setting.fresh {
-            pontoon_results::check_own(&setting.out, &study.spec.name)?;
+            pontoon_results::check_own(&setting.out, &study.name)?;
         }
         let folder = Folder::create(&setting.out)?;
         let lock = Lock::take(&setting.out)?;
@@ -56,8 +56,8 @@ impl Opened {
     pub(super) fn is_of(&self, study: &Study) -> bool {
         self.book.newest().is_some_and(|(then, session)| {
             then.shard == self.binding.shard
-                && session.study == study.document
-                && session.bridge == study.bridge.document
+                && Document::from(&session.study) == study.document
+                && Document::from(&session.bridge) == study.bridge.document
         })
     }
 

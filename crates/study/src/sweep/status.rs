@@ -10,6 +10,7 @@ use pontoon_journal::{Binding, Book, Lock, Session, Standing};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs, Shard};
 use pontoon_plan::study_file::Study;
+use pontoon_results::Failure;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -88,7 +89,7 @@ fn counted(folder: &Path) -> Result<Standing, SweepError> {
         .and_then(|written| written.ending.as_ref())
         .map(|ending| ending.how.as_str());
     let standing = Standing {
-        study: study.spec.name.clone(),
+        study: study.name.clone(),
         shard: binding.shard.clone(),
         jobs: asked.len(),
         done: ledger.known(),
@@ -120,8 +121,10 @@ pub struct Explanation {
     pub axes: Map<String, Value>,
     /// `ok`, `failed` or `missing`.
     pub state: &'static str,
-    /// Why it failed.
+    /// Why it failed, in words.
     pub reason: Option<String>,
+    /// Why it failed: kind, numbers and words.
+    pub failure: Option<Failure>,
     /// In a sentence.
     pub why: String,
     /// The share of the jobs that it is of, where the folder is of a share.
@@ -152,8 +155,8 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
         return Err(Refusal::new(folder, "job", number, allowed).into());
     };
     let key = record_key(job);
-    let axes = pontoon_results::axis_names(&study);
-    let axes = axes.into_iter().map(|name| (name.clone(), job.column(&name))).collect();
+    let axes = study.axis_columns().into_iter();
+    let axes = axes.map(|name| (name.clone(), job.column(&name).value())).collect();
     let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
     let running = Lock::is_held(folder);
     let deaths = if running {
@@ -167,6 +170,7 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
         axes,
         state: "missing",
         reason: None,
+        failure: None,
         why: String::new(),
         shard: shard.map(|shard| shard.to_string()),
         recorded: None,
@@ -181,7 +185,8 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
             let record = ledger.record(0, job)?;
             let written = book.file_of(entry.place);
             told.state = if entry.failed { "failed" } else { "ok" };
-            told.reason = record.and_then(|record| record.reason);
+            told.failure = record.and_then(|record| record.failure);
+            told.reason = told.failure.as_ref().map(|failure| failure.text.clone());
             told.recorded = Some(pontoon_results::Moment::of_unix_ms(book.record(entry.place)?.unix_ms).text());
             told.by = written
                 .session

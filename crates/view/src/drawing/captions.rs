@@ -3,7 +3,7 @@
 //! Knows what Markdown would read as its own. Does not know figures.
 
 use crate::figures::Figures;
-use crate::labels::printable;
+use pontoon_results::labels::printable;
 
 /// The captions of all figures, and what none holds.
 pub(super) fn markdown(figures: &Figures) -> String {

@@ -154,11 +154,9 @@ impl Passage<'_> {
     ) -> Result<[Part; 3], ExportError> {
         let pictures = Pictures::of(self.ready);
         let solver = self.ready.solver(settings)?;
-        let (vehicle, crossing) = (
-            &self.wanted.job.vehicle.vehicle,
-            self.wanted.job.crossing(Record::default()),
-        );
-        let mut under = solver.begin(vehicle, &crossing);
+        let crossing = self.wanted.crossing()?;
+        let input = crossing.input(Record::default());
+        let mut under = solver.begin(crossing.vehicle(), &input);
         let steps = under.steps();
         let instants = 1 + steps.div_ceil(every);
         let at_rest = grids(&pictures, self.ready, &under.snapshot());

@@ -37,16 +37,16 @@ impl Ready {
     /// # Errors
     /// [`ExportError`].
     pub(super) fn of_crossing(wanted: &CrossingWanted) -> Result<(Self, CrossingSettings), ExportError> {
-        let (design, spec) = (&wanted.job.bridge.design, &wanted.job.analysis.spec);
-        let module = PreparedModule::new(design, spec.model.into())?;
-        let damping = spec.damping.unwrap_or_default();
+        let (design, crossing) = (&wanted.job.bridge.design, wanted.crossing()?);
+        let module = PreparedModule::new(design, wanted.job.model().into())?;
+        let damping = crossing.analysis.damping;
         let frequencies_hz = match damping.frequencies_hz {
             Some(stated) => stated,
             None => bending_frequencies_hz(&Bridge::new(design, &module, Ends::Free)?)?,
         };
         let settings = CrossingSettings {
             time_step_s: wanted.time_step_s,
-            ..wanted.job.settings(rayleigh(damping.ratio, frequencies_hz))
+            ..crossing.settings(rayleigh(damping.ratio, frequencies_hz))
         };
         Ok((Self::of(design, &module, Ends::Supported)?, settings))
     }

@@ -7,8 +7,8 @@ use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
-use pontoon_plan::input::Refusal;
-use pontoon_plan::job::{Job, Jobs, Task};
+use pontoon_plan::input::{Document, Refusal, RefusalKind};
+use pontoon_plan::job::{CrossingJob, Job, Jobs, Task};
 use pontoon_plan::study_file::{ModelSpec, Study, read_bridge};
 use pontoon_results::{Results, Table};
 use pontoon_study::run::RETRY_STEP_SHARE;
@@ -55,6 +55,17 @@ pub(super) struct CrossingWanted {
     pub every: Option<usize>,
     /// The time step that its answer in the table was found with `[s]`.
     pub time_step_s: f64,
+}
+
+impl CrossingWanted {
+    /// The job as a crossing, which it is.
+    ///
+    /// # Errors
+    /// [`ExportError::Refused`].
+    pub(super) fn crossing(&self) -> Result<CrossingJob<'_>, ExportError> {
+        let no_crossing = || Refusal::new(Path::new("job"), "", "no crossing", "a crossing");
+        Ok(self.job.as_crossing().ok_or_else(no_crossing)?)
+    }
 }
 
 impl Subject {
@@ -118,81 +129,32 @@ impl Subject {
 
     fn of_results(source: &Path, request: &Request) -> Result<Self, ExportError> {
         let results = Results::read(source)?;
-        let study = Study::of_documents(source, results.study.clone(), results.bridge.clone())?;
-        let table = results.jobs();
-        let number = match request.job {
-            Some(number) => number,
-            None => largest(source, &results)?,
-        };
-        let rows = table.rows();
-        let row = results.row_of_job(number as u64).ok_or_else(|| {
-            let allowed = format!("the number of a job, {rows} of which are there, from 0");
-            Refusal::new(source, "--job", number, allowed)
-        })?;
-        if results.is_failed(row) {
-            let reason = table.cell("reason", row);
-            let found = format!("job {number}, which failed: {}", reason.as_str().unwrap_or("no reason"));
-            return Err(Refusal::new(source, "--job", found, "a job that did not fail").into());
-        }
-        let job = Jobs::new(&study).find(|job| job.as_ref().map_or(true, |job| job.number == number));
-        let job = job.transpose()?.ok_or_else(|| {
-            let allowed = "results of a study that this version reads as the one that ran it did";
-            Refusal::new(
-                source,
-                "",
-                format!("no job {number} in the study of the results"),
-                allowed,
-            )
-        })?;
-        let design = job.bridge.design.clone();
-        let spec = &job.analysis.spec;
-        let own = job.task == Task::Modes;
-        let count = request.count.or(spec.count.filter(|_| own)).unwrap_or(MODES);
-        let modes = (count > 0).then_some(ModesWanted {
-            model: if own { spec.model.into() } else { Model::Full },
-            count,
-            supports: request.supports || (own && spec.supports.unwrap_or_default()),
+        let documents = [&results.study, &results.bridge].map(Document::from);
+        let [study, bridge] = documents;
+        let study = Study::of_documents(source, study, bridge)?;
+        let (job, row) = job_of(source, &results, &study, request.job)?;
+        let modes = modes_of(&job, request);
+        let crossing = job.as_crossing().map(|crossing| CrossingWanted {
+            every: request.every,
+            time_step_s: time_step_s(&crossing, results.jobs(), row),
+            job: job.clone(),
         });
-        let crossing = match job.task {
-            Task::Crossing { .. } => Some(CrossingWanted {
-                every: request.every,
-                time_step_s: time_step_s(&job, table, row),
-                job: job.clone(),
-            }),
-            _ => None,
-        };
         if let (None, Some(every)) = (&crossing, request.every) {
             let allowed = "results of a study of crossings with it";
             return Err(Refusal::new(source, "--every", every, allowed).into());
         }
-        let statics = match (&request.load, job.task) {
-            (Some(load), Task::Static(_)) => {
-                let allowed = "no load of its own with results of a static study: --job says which of its cases";
-                return Err(Refusal::new(source, "--load-n", load.load_n, allowed).into());
-            }
-            (None, Task::Static(load)) => Some(StaticWanted {
-                model: spec.model.into(),
-                vehicle: job.vehicle.vehicle.clone(),
-                case: StaticCase {
-                    connection: job.connection,
-                    connector_stiffness_n_m: design.connectors.stiffness_n_m,
-                    load_n: job.load_n,
-                    load_x_m: load.x_m,
-                },
-            }),
-            (Some(load), _) => Some(static_case(source, &design, job.vehicle.vehicle.clone(), load)?),
-            (None, _) => None,
-        };
+        let statics = static_of(source, &job, request)?;
         if let Some(modes) = modes {
-            let size = design.check_size(modes.model);
+            let size = job.bridge.design.check_size(modes.model);
             size.map_err(|mut refused| {
                 refused.allowed += ", or --count 0: no modes";
                 Refusal::of(source, "bridge", refused)
             })?;
         }
+        let design = job.bridge.design.clone();
         Ok(Self {
             source: source.to_owned(),
-            words: json!({ "study": study.spec.name, "job": number, "bridge": design.name, "axes": axes(&results, &job) }),
+            words: json!({ "study": study.name, "job": job.number, "bridge": design.name, "axes": axes(&results, &job) }),
             design,
             modes,
             statics,
@@ -201,10 +163,71 @@ impl Subject {
     }
 }
 
+/// The job that is asked for, or the one with the largest deflection, and its row in the table of jobs.
+fn job_of(source: &Path, results: &Results, study: &Study, asked: Option<usize>) -> Result<(Job, usize), Refusal> {
+    let table = results.jobs();
+    let number = match asked {
+        Some(number) => number,
+        None => largest(source, results)?,
+    };
+    let row = results.row_of_job(number as u64).ok_or_else(|| {
+        let rows = table.rows();
+        let allowed = format!("the number of a job, {rows} of which are there, from 0");
+        Refusal::new(source, "--job", number, allowed)
+    })?;
+    if results.is_failed(row) {
+        let reason = table.cell("reason", row);
+        let found = format!("job {number}, which failed: {}", reason.word().unwrap_or("no reason"));
+        return Err(Refusal::new(source, "--job", found, "a job that did not fail"));
+    }
+    let job = Jobs::new(study).find(|job| job.as_ref().map_or(true, |job| job.number == number));
+    let job = job.transpose()?.ok_or_else(|| {
+        let found = format!("no job {number} in the study of the results");
+        let allowed = "results of a study that this version reads as the one that ran it did";
+        Refusal::new(source, "", found, allowed)
+    })?;
+    Ok((job, row))
+}
+
+/// The modes that are asked for, of a job of modes those that it asks for.
+fn modes_of(job: &Job, request: &Request) -> Option<ModesWanted> {
+    let own = job.as_modes();
+    let count = request.count.or(own.map(|own| own.count)).unwrap_or(MODES);
+    (count > 0).then_some(ModesWanted {
+        model: own.map_or(Model::Full, |own| own.model.into()),
+        count,
+        supports: request.supports || own.is_some_and(|own| own.supports),
+    })
+}
+
+/// The static case that is asked for, or the job's own.
+fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<StaticWanted>, Refusal> {
+    let (design, vehicle) = (&job.bridge.design, &job.vehicle.vehicle);
+    match (&request.load, job.task) {
+        (Some(load), Task::Static(_)) => {
+            let allowed = "no load of its own with results of a static study: --job says which of its cases";
+            let refused = Refusal::new(source, "--load-n", load.load_n, allowed);
+            Err(refused.because(RefusalKind::Misplaced))
+        }
+        (None, Task::Static(load)) => Ok(Some(StaticWanted {
+            model: job.model().into(),
+            vehicle: vehicle.clone(),
+            case: StaticCase {
+                connection: job.connection,
+                connector_stiffness_n_m: design.connectors.stiffness_n_m,
+                load_n: job.load_n,
+                load_x_m: load.x_m,
+            },
+        })),
+        (Some(load), _) => static_case(source, design, vehicle.clone(), load).map(Some),
+        (None, _) => Ok(None),
+    }
+}
+
 /// The values of a job's axes.
 fn axes(results: &Results, job: &Job) -> Value {
     let axes = results.axes().into_iter();
-    Value::Object(axes.map(|name| (name.clone(), job.column(&name))).collect())
+    Value::Object(axes.map(|name| (name.clone(), job.column(&name).value())).collect())
 }
 
 /// The job with the largest deflection, the first of equals; of modes the first.
@@ -218,7 +241,7 @@ fn largest(source: &Path, results: &Results) -> Result<usize, Refusal> {
         }
     }
     best.map(|(_, row)| results.job_of_row(row) as usize).ok_or_else(|| {
-        let reason = (0..table.rows()).find_map(|row| table.cell("reason", row).as_str().map(str::to_owned));
+        let reason = (0..table.rows()).find_map(|row| table.cell("reason", row).word().map(str::to_owned));
         let found = match reason {
             Some(reason) => format!("failed jobs alone, the first of them: {reason}"),
             None => "no jobs".to_owned(),
@@ -229,12 +252,13 @@ fn largest(source: &Path, results: &Results) -> Result<usize, Refusal> {
 
 /// The time step of a job's answer: the one that was found for it or its analysis's, or half of it where a reason says that
 /// its contacts had not settled before.
-fn time_step_s(job: &Job, table: &Table, row: usize) -> f64 {
-    let own_s = table.number("time_step_s", row).unwrap_or_else(|| job.time_step_s());
-    if table.cell("reason", row).is_string() {
-        RETRY_STEP_SHARE * own_s
-    } else {
+fn time_step_s(crossing: &CrossingJob<'_>, table: &Table, row: usize) -> f64 {
+    let stated_s = crossing.analysis.time_step.seconds();
+    let own_s = table.number("time_step_s", row).unwrap_or(stated_s);
+    if table.cell("reason", row).is_nothing() {
         own_s
+    } else {
+        RETRY_STEP_SHARE * own_s
     }
 }
 

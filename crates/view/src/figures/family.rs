@@ -4,9 +4,9 @@
 //! not know what is drawn.
 
 use super::sheet::{Sheet, said};
-use crate::labels;
 use crate::thinning::spread;
-use serde_json::Value;
+use pontoon_plan::input::Cell;
+use pontoon_results::labels::{self, SHOWN};
 use std::collections::HashMap;
 
 /// Axes that the linear connection does not have.
@@ -237,7 +237,7 @@ fn all_jobs(sheet: &Sheet<'_>, varying: &[String], groups: Vec<Vec<usize>>) -> F
 
 /// A job in the words of the axes that vary.
 fn label(sheet: &Sheet<'_>, varying: &[String], row: usize) -> String {
-    let has = |axis: &str| varying.iter().any(|name| name == axis) && !sheet.cell(axis, row).is_null();
+    let has = |axis: &str| varying.iter().any(|name| name == axis) && !sheet.cell(axis, row).is_nothing();
     let both = GAPS.iter().all(|gap| has(gap));
     let mut said_of: Vec<String> = Vec::new();
     if both {
@@ -268,11 +268,10 @@ fn label(sheet: &Sheet<'_>, varying: &[String], row: usize) -> String {
     }
 }
 
-fn text(value: &Value) -> String {
-    match value {
-        Value::String(word) => word.clone(),
-        Value::Number(number) => labels::number(number.as_f64().unwrap_or_default()),
-        other => other.to_string(),
+fn text(cell: &Cell<'_>) -> String {
+    match cell.number() {
+        Some(number) => labels::number(number, SHOWN),
+        None => cell.text(),
     }
 }
 

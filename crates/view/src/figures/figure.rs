@@ -3,6 +3,7 @@
 //! Knows nothing of tables or of drawing.
 
 use super::marks::Origin;
+use pontoon_results::Curve;
 use serde::Serialize;
 
 /// A figure.
@@ -90,10 +91,22 @@ pub struct PlottedMark {
 /// A place across a panel where something happens.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moment {
+    /// What kind of place it is.
+    #[serde(skip)]
+    pub(super) kind: MomentKind,
     /// What happens.
     pub label: String,
     /// Where.
     pub x: f64,
+}
+
+/// What kind of place a moment is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MomentKind {
+    /// The vehicle stands there.
+    Standing,
+    /// The vehicle's centre is at the position then.
+    Arrival,
 }
 
 /// A quantity as figures have it: its words, its unit, what a number of the tables is multiplied by.
@@ -106,6 +119,11 @@ pub(super) struct Measure {
 }
 
 impl Measure {
+    /// What a curve of the registry counts.
+    pub(super) fn of(curve: &Curve) -> Self {
+        Self::up(curve.label, curve.unit, curve.factor)
+    }
+
     const fn up(label: &'static str, unit: &'static str, factor: f64) -> Self {
         Self {
             label,
@@ -122,12 +140,8 @@ impl Measure {
         factor: 100.0,
         down: true,
     };
-    pub(super) const PEAK_DEFLECTION: Self = Self::up("Peak deflection", "cm", 100.0);
-    pub(super) const PEAK_UPLIFT: Self = Self::up("Peak uplift", "cm", 100.0);
     /// A joint's force, tension upward.
     pub(super) const FORCE: Self = Self::up("Joint force, tension positive", "kN", 1e-3);
-    pub(super) const PEAK_COMPRESSION: Self = Self::up("Peak compression of a joint", "kN", 1e-3);
-    pub(super) const PEAK_TENSION: Self = Self::up("Peak tension of a joint", "kN", 1e-3);
     pub(super) const ALONG: Self = Self::up("Distance along the bridge", "m", 1.0);
     pub(super) const TIME: Self = Self::up("Time", "s", 1.0);
     pub(super) const SPEED: Self = Self::up("Speed", "m/s", 1.0);

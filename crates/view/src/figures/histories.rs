@@ -3,12 +3,12 @@
 //! Knows the table of histories. Does not know which jobs belong together.
 
 use super::family::families;
-use super::figure::{Figure, Line, Measure, Moment, Panel};
+use super::figure::{Figure, Line, Measure, Moment, MomentKind, Panel};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
 use super::sheet::{Asked, Sheet};
 use crate::thinning::thinned;
-use pontoon_judge::compare::moments_of;
+use pontoon_judge::quantity::moments_of;
 use pontoon_results::{Table, TableName};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
@@ -149,6 +149,7 @@ fn arrival(sheet: &Sheet<'_>, rows: &[usize], position: u32) -> Vec<Moment> {
     };
     match times.split_first() {
         Some((first, others)) if others.iter().all(|time| (time - first).abs() < SAME_ARRIVAL_S) => vec![Moment {
+            kind: MomentKind::Arrival,
             label: format!("vehicle at {position}"),
             x: *first,
         }],

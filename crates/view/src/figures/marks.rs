@@ -3,14 +3,13 @@
 //! Knows what was measured and which checks say what a position, a joint or a job should have. Does not know which figure a
 //! mark ends in, and judges nothing.
 
-use pontoon_judge::reference::{
-    Against, CheckKind, CheckSpec, CurveCheck, MeasuredSpec, Quantity, Reference, SelectQuantity,
-};
-use pontoon_plan::input::Refusal;
+use pontoon_judge::checks::{Check, Curve, Expectation};
+use pontoon_judge::quantity::SelectQuantity;
+use pontoon_judge::reference::{Against, MeasuredSpec, Reference};
 use pontoon_plan::input::filter::{Allowed, Filter};
-use pontoon_results::{Results, Table, TableName};
+use pontoon_plan::input::{Cell, Refusal};
+use pontoon_results::{Column, Results, Role, Table, TableName};
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// What a mark is drawn in.
@@ -55,7 +54,7 @@ pub struct Mark {
     /// Position or joint number, where it is one's.
     pub position: Option<u32>,
     /// The axes that are fixed for it. A job to which the mark belongs has these values.
-    pub axes: BTreeMap<String, Value>,
+    pub axes: BTreeMap<String, Cell<'static>>,
     /// Words for a legend.
     pub label: String,
     /// What else is said of it.
@@ -65,7 +64,7 @@ pub struct Mark {
 impl Mark {
     /// Whether the job in a row of the table of jobs has the axes that are fixed for the mark.
     pub fn belongs_to(&self, jobs: &Table, row: usize) -> bool {
-        let fits = |(axis, value): (&String, &Value)| jobs.has(axis) && same_value(value, &jobs.cell(axis, row));
+        let fits = |(axis, value): (&String, &Cell<'_>)| jobs.has(axis) && same_value(value, &jobs.cell(axis, row));
         self.axes.iter().all(fits)
     }
 }
@@ -77,19 +76,19 @@ impl Mark {
 /// [`Refusal`] where a measurement names an axis that the study does not have.
 pub fn marks(results: &Results, reference: &Reference) -> Result<Vec<Mark>, Refusal> {
     let mut found = Vec::new();
-    for (i, group) in reference.spec.measured.iter().enumerate() {
+    for (i, group) in reference.measured.iter().enumerate() {
         let known = results.axes();
         let place = group.place();
         for (name, _) in &group.filter.0 {
             if Some(name.as_str()) != place && !known.contains(name) {
                 let key = format!("measured[{i}].where.{name}");
-                return Err(Refusal::unknown(&reference.file, key, name, &known));
+                return Err(Refusal::unknown_key(&reference.file, key, name, &known));
             }
         }
         found.extend(of_measured(group));
     }
     let places = Places::new(results);
-    for check in &reference.spec.checks {
+    for check in &reference.checks {
         let expected = of_check(&places, check);
         let new: Vec<Mark> = expected
             .into_iter()
@@ -110,12 +109,12 @@ fn same_point(a: &Mark, b: &Mark) -> bool {
         (Some(a), Some(b)) => near(a, b),
         (a, b) => a == b,
     };
-    let agree = |(axis, value): (&String, &Value)| b.axes.get(axis).is_none_or(|other| same_value(value, other));
+    let agree = |(axis, value): (&String, &Cell<'_>)| b.axes.get(axis).is_none_or(|other| same_value(value, other));
     (a.chart, &a.column) == (b.chart, &b.column) && same_x && near(a.y, b.y) && a.axes.iter().all(agree)
 }
 
-fn same_value(a: &Value, b: &Value) -> bool {
-    Allowed::OneOf(vec![a.clone()]).allows(b)
+fn same_value(a: &Cell<'_>, b: &Cell<'_>) -> bool {
+    Allowed::one(a).allows(b)
 }
 
 fn of_measured(group: &MeasuredSpec) -> impl Iterator<Item = Mark> {
@@ -141,29 +140,32 @@ fn of_measured(group: &MeasuredSpec) -> impl Iterator<Item = Mark> {
 }
 
 /// What a check expects, where that is a point of a chart.
-fn of_check(places: &Places<'_>, check: &CheckSpec) -> Vec<Mark> {
+fn of_check(places: &Places<'_>, check: &Check) -> Vec<Mark> {
     if !check.each.is_empty() {
         return Vec::new();
     }
-    match check.kind() {
-        Some(CheckKind::Value(value)) => match (&value.of, value.expected) {
-            (Quantity::Select(select), Some(y)) => of_select(places, check, select, y, Origin::Expected),
-            _ => Vec::new(),
-        },
-        Some(CheckKind::Measured(measured)) => match &measured.of {
-            Quantity::Select(select) => of_select(places, check, select, measured.value, Origin::Measured),
-            _ => Vec::new(),
-        },
-        Some(CheckKind::Curve(curve)) => of_curve(check, curve),
-        _ => Vec::new(),
+    match check.expectation() {
+        Expectation::Value {
+            select,
+            value,
+            measured,
+        } => {
+            let origin = if measured { Origin::Measured } else { Origin::Expected };
+            of_select(places, check, select, value, origin)
+        }
+        Expectation::Curve(curve) => of_curve(check, &curve),
+        Expectation::Mode { .. } | Expectation::None => Vec::new(),
     }
 }
 
-fn of_select(places: &Places<'_>, check: &CheckSpec, select: &SelectQuantity, y: f64, origin: Origin) -> Vec<Mark> {
+fn of_select(places: &Places<'_>, check: &Check, select: &SelectQuantity, y: f64, origin: Origin) -> Vec<Mark> {
     let Some((position, mut axes)) = place_and_axes(&select.filter.within(&check.filter)) else {
         return Vec::new();
     };
-    let mark = |chart: Chart, x: Option<f64>, axes: BTreeMap<String, Value>| Mark {
+    if !Column::of(select.table, &select.column).is_some_and(|column| column.drawn) {
+        return Vec::new();
+    }
+    let mark = |chart: Chart, x: Option<f64>, axes: BTreeMap<String, Cell<'static>>| Mark {
         id: check.id.clone(),
         origin,
         chart,
@@ -176,28 +178,22 @@ fn of_select(places: &Places<'_>, check: &CheckSpec, select: &SelectQuantity, y:
         label: check.id.clone(),
         note: check.note.clone().or_else(|| check.statement.clone()),
     };
-    let of_time = select.column.ends_with("_time_s");
-    let drawn =
-        ["_m", "_n"].iter().any(|unit| select.column.ends_with(unit)) || select.column == "dynamic_amplification";
-    if of_time || !drawn || select.column == "influential_length_m" {
-        return Vec::new();
-    }
     let mut marks = Vec::new();
     if let (TableName::Positions, Some(position)) = (select.table, position) {
         marks.push(mark(Chart::Profile, places.x_m(position, &axes), axes.clone()));
     }
     let placed = position.is_some() || select.table == TableName::Jobs;
-    if placed && let Some(speed_m_s) = axes.remove("speed_m_s").as_ref().and_then(Value::as_f64) {
+    if placed && let Some(speed_m_s) = axes.remove("speed_m_s").as_ref().and_then(Cell::number) {
         marks.push(mark(Chart::Speed, Some(speed_m_s), axes));
     }
     marks
 }
 
-fn of_curve(check: &CheckSpec, curve: &CurveCheck) -> Vec<Mark> {
+fn of_curve(check: &Check, curve: &Curve<'_>) -> Vec<Mark> {
     let Some((position, axes)) = place_and_axes(&check.filter) else {
         return Vec::new();
     };
-    let chart = match (curve.table, curve.against.as_str()) {
+    let chart = match (curve.table, curve.against) {
         (TableName::Positions, "x_m") => Chart::Profile,
         (TableName::Positions | TableName::Connectors, "speed_m_s") if position.is_some() => Chart::Speed,
         (TableName::Jobs, "speed_m_s") => Chart::Speed,
@@ -208,7 +204,7 @@ fn of_curve(check: &CheckSpec, curve: &CurveCheck) -> Vec<Mark> {
         origin: Origin::Expected,
         chart,
         table: curve.table,
-        column: curve.column.clone(),
+        column: curve.column.to_owned(),
         x: Some(x),
         y,
         position,
@@ -220,18 +216,18 @@ fn of_curve(check: &CheckSpec, curve: &CurveCheck) -> Vec<Mark> {
 }
 
 /// The position or joint and the axes of a filter; none where it names several values of one, or what is no axis.
-fn place_and_axes(filter: &Filter) -> Option<(Option<u32>, BTreeMap<String, Value>)> {
+fn place_and_axes(filter: &Filter) -> Option<(Option<u32>, BTreeMap<String, Cell<'static>>)> {
     let (mut position, mut axes) = (None, BTreeMap::new());
     for (name, allowed) in &filter.0 {
-        let Allowed::OneOf(values) = allowed else { return None };
-        let [value] = values.as_slice() else { return None };
+        let value = allowed.single()?;
+        let role = Column::named(name).map(|column| column.role);
         match name.as_str() {
             "position" | "joint" => {
-                let number = value.as_f64().filter(|n| *n >= 1.0 && n.fract() == 0.0)?;
+                let number = value.number().filter(|n| *n >= 1.0 && n.fract() == 0.0)?;
                 position = Some(number as u32);
             }
-            "y_m" if value.is_null() => {}
-            "job" | "status" | "y_m" | "quantity" => return None,
+            "y_m" if value.is_nothing() => {}
+            _ if matches!(role, Some(Role::Key | Role::State)) => return None,
             _ => {
                 axes.insert(name.clone(), value.clone());
             }
@@ -262,7 +258,7 @@ impl<'a> Places<'a> {
     }
 
     /// Where a position is in the first job that has the axes.
-    fn x_m(&self, position: u32, axes: &BTreeMap<String, Value>) -> Option<f64> {
+    fn x_m(&self, position: u32, axes: &BTreeMap<String, Cell<'static>>) -> Option<f64> {
         let jobs = self.results.jobs();
         let has = |row: usize| {
             axes.iter()

@@ -111,7 +111,7 @@ impl Figures {
         distinct(&mut figures);
         Ok(Self {
             study: results.name.clone(),
-            reference: reference.map(|reference| format!("{}: {}", reference.spec.name, reference.spec.source)),
+            reference: reference.map(|reference| format!("{}: {}", reference.name, reference.source)),
             figures,
             left_out,
         })

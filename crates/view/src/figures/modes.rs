@@ -7,7 +7,8 @@ use super::figure::{Axis, Figure, Line, Measure, Panel, PlottedMark};
 use super::marks::Origin;
 use super::panels::caption;
 use super::sheet::{Sheet, rows_by_job};
-use pontoon_judge::reference::{CheckKind, Reference};
+use pontoon_judge::checks::Expectation;
+use pontoon_judge::reference::Reference;
 use pontoon_results::{Table, TableName};
 
 /// The axis of models.
@@ -45,7 +46,7 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
         let point = |row: usize| {
             Some([
                 table.number("frequency_hz", row)?,
-                place(table.cell("shape", row).as_str()?)?,
+                place(table.cell("shape", row).word()?)?,
             ])
         };
         let line = |line: &FamilyLine| Line {
@@ -92,7 +93,7 @@ fn shapes(table: &Table, family: &Family, of_line: &dyn Fn(&FamilyLine) -> Vec<u
     for row in family.lines.iter().flat_map(of_line) {
         let (Some(frequency_hz), Some(shape)) = (
             table.number("frequency_hz", row),
-            table.cell("shape", row).as_str().map(str::to_owned),
+            table.cell("shape", row).word().map(str::to_owned),
         ) else {
             continue;
         };
@@ -114,8 +115,8 @@ fn marks(
 ) -> Vec<PlottedMark> {
     let jobs = sheet.results.jobs();
     let mut marks: Vec<PlottedMark> = Vec::new();
-    for check in &reference.spec.checks {
-        let Some(CheckKind::Mode(mode)) = check.kind() else {
+    for check in &reference.checks {
+        let Expectation::Mode { shape, frequency_hz } = check.expectation() else {
             continue;
         };
         let fits = |row: &usize| {
@@ -125,10 +126,10 @@ fn marks(
                 .iter()
                 .all(|(column, allowed)| allowed.allows(&jobs.cell(column, *row)))
         };
-        let Some(place) = place(&mode.shape).filter(|_| family.rows().iter().any(fits)) else {
+        let Some(place) = place(shape).filter(|_| family.rows().iter().any(fits)) else {
             continue;
         };
-        let point = [mode.expected_hz, place];
+        let point = [frequency_hz, place];
         if !marks.iter().any(|mark| mark.point == point) {
             marks.push(PlottedMark {
                 label: "reference value".to_owned(),

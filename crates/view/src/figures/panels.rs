@@ -3,10 +3,10 @@
 //! Knows families and speeds. Does not know tables.
 
 use super::family::Family;
-use super::figure::Panel;
+use super::figure::{MomentKind, Panel};
 use super::sheet::{Sheet, listed};
-use crate::labels;
 use crate::thinning::spread;
+use pontoon_results::labels::{self, SHOWN};
 use std::collections::BTreeMap;
 
 /// Panels of a figure.
@@ -53,7 +53,7 @@ pub(super) fn by_speed(sheet: &Sheet<'_>, family: &Family, name: &str) -> (Vec<S
     let mut splits: Vec<Option<Split>> = speeds
         .into_iter()
         .map(|(speed_m_s, lines)| {
-            let title = format!("{} m/s", labels::number(speed_m_s));
+            let title = format!("{} m/s", labels::number(speed_m_s, SHOWN));
             Some(Split { title, lines })
         })
         .collect();
@@ -71,16 +71,12 @@ pub(super) fn by_speed(sheet: &Sheet<'_>, family: &Family, name: &str) -> (Vec<S
 /// What a paper would write under a figure: what is drawn, for what, under which conditions, what panels and marks are.
 pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[Panel]) -> String {
     let mut text = what.to_owned();
-    let rows = family.rows();
+    let linear = family.lines.iter().any(|line| line.style == 0);
     if let Some(by) = &family.by {
-        let gaps: Vec<String> = family
-            .lines
-            .iter()
-            .filter(|line| line.style > 0)
-            .map(|line| line.label.clone())
-            .collect();
-        text += &format!(", for a {} of {}", labels::label(by), listed(&gaps));
-        if family.lines.iter().any(|line| line.style == 0) {
+        let others = family.lines.iter().filter(|line| line.style > 0);
+        let values: Vec<String> = others.map(|line| line.label.clone()).collect();
+        text += &format!(", for a {} of {}", labels::label(by), listed(&values));
+        if linear {
             text += " and for the linear connection";
         }
     }
@@ -88,32 +84,38 @@ pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[
     if panels.len() > 1 {
         told.push("speed_m_s");
     }
-    if family.lines.iter().any(|line| line.style == 0) {
+    if linear {
         told.push("connection");
     }
-    let alike = sheet.alike(&rows, &told);
+    let alike = sheet.alike(&family.rows(), &told);
     if !alike.is_empty() {
         text += &format!("; {}", alike.join(", "));
     }
-    text += ".";
-    if panels.len() > 1 {
-        let named = panels
-            .iter()
-            .zip('a'..)
-            .map(|(panel, letter)| format!("({letter}) {}", panel.title));
-        text += &format!(" {}.", named.collect::<Vec<_>>().join("; "));
+    text + "." + &of_panels(panels) + of_moments(panels) + &of_marks(panels)
+}
+
+/// What the panels are, where there are several.
+fn of_panels(panels: &[Panel]) -> String {
+    if panels.len() < 2 {
+        return String::new();
     }
-    let mut moments: Vec<&str> = panels
-        .iter()
-        .flat_map(|panel| &panel.moments)
-        .map(|moment| moment.label.as_str())
-        .collect();
-    moments.dedup();
-    match moments.first() {
-        Some(&"vehicle") => text += " Vertical line: the vehicle's centre.",
-        Some(_) => text += " Vertical line: the vehicle's centre is at the position.",
-        None => {}
+    let panels = panels.iter().zip('a'..);
+    let named = panels.map(|(panel, letter)| format!("({letter}) {}", panel.title));
+    format!(" {}.", named.collect::<Vec<_>>().join("; "))
+}
+
+/// What vertical lines are.
+fn of_moments(panels: &[Panel]) -> &'static str {
+    let mut moments = panels.iter().flat_map(|panel| &panel.moments);
+    match moments.next().map(|moment| moment.kind) {
+        Some(MomentKind::Standing) => " Vertical line: the vehicle's centre.",
+        Some(MomentKind::Arrival) => " Vertical line: the vehicle's centre is at the position.",
+        None => "",
     }
+}
+
+/// What marks are.
+fn of_marks(panels: &[Panel]) -> String {
     let mut marks: Vec<String> = Vec::new();
     for mark in panels.iter().flat_map(|panel| &panel.marks) {
         let said = if mark.label == mark.id {
@@ -125,8 +127,8 @@ pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[
             marks.push(said);
         }
     }
-    if !marks.is_empty() {
-        text += &format!(" Marks: {}.", marks.join("; "));
+    match marks.as_slice() {
+        [] => String::new(),
+        marks => format!(" Marks: {}.", marks.join("; ")),
     }
-    text
 }

@@ -3,7 +3,7 @@
 //! Knows the table of positions. Does not know which jobs belong together.
 
 use super::family::{Family, families};
-use super::figure::{Figure, Line, Measure, Moment, Panel};
+use super::figure::{Figure, Line, Measure, Moment, MomentKind, Panel};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
 use super::sheet::{Asked, Sheet, rows_by_job};
@@ -155,6 +155,7 @@ fn load_of(sheet: &Sheet<'_>, table: &Table, rows: &[usize], of_job: &HashMap<u6
     let mut places = places.into_iter();
     match (places.next(), places.next()) {
         (Some(place), None) => vec![Moment {
+            kind: MomentKind::Standing,
             label: "vehicle".to_owned(),
             x: f64::from_bits(place),
         }],

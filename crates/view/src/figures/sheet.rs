@@ -4,10 +4,8 @@
 
 use super::figure::{Measure, PlottedMark};
 use super::marks::{Chart, Mark, Origin};
-use crate::labels;
-use pontoon_plan::input::canonical_text;
-use pontoon_results::{Results, Table, TableName};
-use serde_json::Value;
+use pontoon_plan::input::Cell;
+use pontoon_results::{Results, Seen, Table, TableName, labels};
 use std::collections::{BTreeMap, HashMap};
 
 /// Jobs to be drawn.
@@ -39,12 +37,7 @@ impl<'a> Sheet<'a> {
         let axes = results.axes();
         let codes: BTreeMap<String, Vec<Option<u32>>> =
             axes.iter().map(|axis| (axis.clone(), jobs.codes(axis))).collect();
-        let several = |axis: &&String| {
-            let codes = &codes[*axis];
-            let mut values = rows.iter().filter_map(|row| codes[*row]);
-            let first = values.next();
-            values.any(|value| Some(value) != first)
-        };
+        let several = |axis: &&String| Seen::of(rows.iter().map(|row| jobs.cell(axis, *row))).has_several();
         let varying = axes.iter().filter(several).cloned().collect();
         let connection = jobs.word_cells("connection").unwrap_or_default().iter();
         let mut linear: Vec<bool> = connection.map(|word| word.as_deref() == Some("linear")).collect();
@@ -61,7 +54,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    pub(super) fn cell(&self, axis: &str, row: usize) -> Value {
+    pub(super) fn cell(&self, axis: &str, row: usize) -> Cell<'_> {
         self.results.jobs().cell(axis, row)
     }
 
@@ -104,15 +97,8 @@ impl<'a> Sheet<'a> {
     /// What all of some rows have alike, in words: `compression gap 5.5 mm, load 230.3 kN`. Axes of `told` are not said.
     pub(super) fn alike(&self, rows: &[usize], told: &[&str]) -> Vec<String> {
         let of = |axis: &String| {
-            let mut cells = rows
-                .iter()
-                .map(|row| self.cell(axis, *row))
-                .filter(|cell| !cell.is_null());
-            let first = cells.next()?;
-            let same = canonical_text(&first);
-            cells
-                .all(|cell| canonical_text(&cell) == same)
-                .then(|| said(axis, &first))
+            let seen = Seen::of(rows.iter().map(|row| self.cell(axis, *row)));
+            seen.only().map(|cell| said(axis, cell))
         };
         // of a load at a position its place is said
         let placed = rows.iter().any(|row| self.number("load_position", *row).is_some());
@@ -171,7 +157,7 @@ pub(super) struct Asked<'a> {
 }
 
 /// An axis with its value in words.
-pub(super) fn said(axis: &str, value: &Value) -> String {
+pub(super) fn said(axis: &str, value: &Cell<'_>) -> String {
     match axis {
         "connection" => format!("{} connection", labels::value(axis, value)),
         _ => format!("{} {}", labels::label(axis), labels::value(axis, value)),
@@ -199,7 +185,7 @@ mod tests {
             [listed(&words), listed(&words[..1]), listed(&[])],
             ["a, b and c", "a", ""]
         );
-        assert_eq!(said("gap_tension_m", &json!(0.028)), "tension gap 28 mm");
-        assert_eq!(said("connection", &json!("linear")), "linear connection");
+        assert_eq!(said("gap_tension_m", &Cell::of(&json!(0.028))), "tension gap 28 mm");
+        assert_eq!(said("connection", &Cell::of(&json!("linear"))), "linear connection");
     }
 }

@@ -8,33 +8,32 @@ use super::marks::Chart;
 use super::panels::caption;
 use super::sheet::{Asked, Sheet};
 use crate::thinning::spread;
-use pontoon_results::TableName;
+use pontoon_results::{Column, SpeedFigure, TableName};
 
 /// Jobs that are points of a figure without lines.
 const MOST_POINTS: usize = 2000;
 
-/// A panel: its column and what that is.
-type Peak = (&'static str, Measure);
+/// The name of a figure and what is drawn in it.
+fn words(figure: SpeedFigure) -> (&'static str, &'static str) {
+    match figure {
+        SpeedFigure::Deflection => (
+            "peak-deflection",
+            "Largest deflection and largest uplift of the bridge against speed",
+        ),
+        SpeedFigure::Force => (
+            "peak-force",
+            "Largest compression and largest tension of a joint against speed",
+        ),
+    }
+}
 
-/// The figures: name, what is drawn, panels.
-const FIGURES: [(&str, &str, [Peak; 2]); 2] = [
-    (
-        "peak-deflection",
-        "Largest deflection and largest uplift of the bridge against speed",
-        [
-            ("peak_deflection_m", Measure::PEAK_DEFLECTION),
-            ("peak_uplift_m", Measure::PEAK_UPLIFT),
-        ],
-    ),
-    (
-        "peak-force",
-        "Largest compression and largest tension of a joint against speed",
-        [
-            ("peak_compression_n", Measure::PEAK_COMPRESSION),
-            ("peak_tension_n", Measure::PEAK_TENSION),
-        ],
-    ),
-];
+/// The columns of a figure, each with what it counts.
+fn columns(figure: SpeedFigure) -> impl Iterator<Item = (&'static str, Measure)> {
+    let curves = Column::measures().filter_map(|column| Some((column.name, column.curve?)));
+    curves
+        .filter(move |(_, curve)| curve.figure == figure)
+        .map(|(name, curve)| (name, Measure::of(&curve)))
+}
 
 /// Peaks against speed, a line each value of an axis; of jobs that have nothing alike a point each.
 pub(super) fn speeds(sheet: &mut Sheet<'_>) -> Vec<Figure> {
@@ -49,9 +48,9 @@ pub(super) fn speeds(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     }
     let mut figures = Vec::new();
     for family in &families {
-        for (stem, what, panels) in FIGURES {
-            let panels: Vec<Panel> = panels
-                .into_iter()
+        for figure in SpeedFigure::ALL {
+            let (stem, what) = words(figure);
+            let panels: Vec<Panel> = columns(figure)
                 .map(|(column, y)| panel(sheet, family, column, y, joined))
                 .collect();
             figures.push(Figure {

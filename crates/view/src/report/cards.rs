@@ -3,36 +3,9 @@
 //! Knows which columns tell the place of a peak. Does not know cells.
 
 use super::cells::Measure;
-use crate::labels;
-use pontoon_results::{Results, Table, words_of_reason};
+use pontoon_results::{Column, Results, Table, labels};
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
-
-/// Measures that have a card, each with the columns of its place and time.
-const CARDS: [(&str, &str, &str, &str); 6] = [
-    (
-        "peak_deflection_m",
-        "largest deflection",
-        "peak_deflection_position",
-        "peak_deflection_time_s",
-    ),
-    (
-        "peak_uplift_m",
-        "largest uplift",
-        "peak_uplift_position",
-        "peak_uplift_time_s",
-    ),
-    (
-        "peak_compression_n",
-        "largest compression",
-        "peak_compression_joint",
-        "",
-    ),
-    ("peak_tension_n", "largest tension", "peak_tension_joint", ""),
-    ("dynamic_amplification", "largest dynamic amplification", "", ""),
-    ("influential_length_m", "longest influential length", "", ""),
-];
 
 /// Most causes of failures that are listed.
 const MOST_CAUSES: usize = 50;
@@ -60,6 +33,8 @@ pub struct Card {
 /// Jobs that failed for one cause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FailureNote {
+    /// The kind of the failure; the reason itself where the results tell no kind.
+    pub kind: String,
     /// How many.
     pub count: usize,
     /// The first of them.
@@ -70,48 +45,60 @@ pub struct FailureNote {
 
 /// The cards of a table of jobs.
 pub(super) fn cards(results: &Results, measures: &[Measure], said: &dyn Fn(usize) -> String) -> Vec<Card> {
-    let jobs = results.jobs();
-    let card = |(name, label, place, time): (&str, &'static str, &str, &str)| {
-        let measure = measures.iter().find(|measure| measure.name == name)?;
-        let numbers = jobs.numbers(name)?;
-        let of = |row: usize| numbers[row].filter(|_| !results.is_failed(row));
-        // the first of equals
-        let row = (0..jobs.rows()).filter(|&row| of(row).is_some()).max_by(|&a, &b| {
-            let by_value = of(a).unwrap_or_default().total_cmp(&of(b).unwrap_or_default());
-            by_value.then(b.cmp(&a))
-        })?;
-        let kind = if place.ends_with("_joint") { "joint" } else { "position" };
-        let at = jobs.number(place, row).map(|place| format!("{kind} {place}"));
-        let when = jobs.number(time, row).map(|time| format!("at {time:.2} s"));
+    let card = |column: &'static Column| {
+        let of = column.card?;
+        let measure = measures.iter().find(|measure| measure.name == column.name)?;
+        let (row, value) = largest(results, column.name)?;
+        let number = |column: Option<&str>| column.and_then(|column| results.jobs().number(column, row));
+        let at = of.place.and_then(|(kind, column)| {
+            let place = number(Some(column))?;
+            Some(format!("{kind} {place}"))
+        });
+        let when = number(of.time).map(|time| format!("at {time:.2} s"));
         Some(Card {
             measure: measure.name,
-            label,
-            value: of(row)?,
+            label: of.label,
+            value,
             unit: measure.unit,
             place: [at, when].into_iter().flatten().collect::<Vec<_>>().join(" "),
-            job: (of(row) != Some(0.0)).then(|| super::job(results, row)),
-            axes: if of(row) == Some(0.0) { String::new() } else { said(row) },
+            job: (value != 0.0).then(|| super::job(results, row)),
+            axes: if value == 0.0 { String::new() } else { said(row) },
         })
     };
-    CARDS.into_iter().filter_map(card).collect()
+    Column::measures().filter_map(card).collect()
 }
 
-/// Why jobs failed, the commonest cause first, and how many causes there are. Reasons that differ in numbers alone are one
-/// cause.
+/// The row with the largest number of a column, the first of equals, and that number; failed jobs have none.
+fn largest(results: &Results, column: &str) -> Option<(usize, f64)> {
+    let numbers = results.jobs().numbers(column)?;
+    let mut best: Option<(usize, f64)> = None;
+    for (row, number) in numbers.iter().enumerate() {
+        let Some(number) = number.filter(|_| !results.is_failed(row)) else {
+            continue;
+        };
+        if best.is_none_or(|(_, most)| number > most) {
+            best = Some((row, number));
+        }
+    }
+    best
+}
+
+/// Why jobs failed, the commonest cause first, and how many causes there are: failures of one kind are one cause.
 pub(super) fn failures(results: &Results) -> (Vec<FailureNote>, usize) {
     let jobs = results.jobs();
     let mut causes: BTreeMap<String, FailureNote> = BTreeMap::new();
     for row in (0..jobs.rows()).filter(|&row| results.is_failed(row)) {
-        let reason = match jobs.cell("reason", row) {
-            Value::String(reason) => reason,
-            _ => "no reason".to_owned(),
-        };
+        let reason = jobs.cell("reason", row);
+        let reason = reason.word().unwrap_or("no reason");
+        // results of before there were kinds
+        let kind = jobs.cell("failure", row).word().unwrap_or(reason).to_owned();
         let first = || FailureNote {
+            kind: kind.clone(),
             count: 0,
             job: super::job(results, row),
-            reason: reason.clone(),
+            reason: reason.to_owned(),
         };
-        causes.entry(words_of_reason(&reason)).or_insert_with(first).count += 1;
+        causes.entry(kind.clone()).or_insert_with(first).count += 1;
     }
     let found = causes.len();
     let mut notes: Vec<FailureNote> = causes.into_values().collect();
@@ -126,7 +113,7 @@ pub(super) fn axes_in_words(jobs: &Table, names: &[String], row: usize) -> Strin
         let cell = jobs.cell(name, row);
         let said = labels::value(name, &cell);
         match name.as_str() {
-            _ if cell.is_null() => None,
+            _ if cell.is_nothing() => None,
             "connection" | "speed_m_s" | "load_n" => Some(said),
             _ => Some(format!("{} {said}", labels::label(name))),
         }

@@ -4,8 +4,7 @@
 
 use super::axes::Axis;
 use super::packed::Packed;
-use crate::labels;
-use pontoon_results::{Results, Table};
+use pontoon_results::{Column, Results, Table};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 
@@ -15,43 +14,29 @@ const MOST_CELLS: usize = 40_000;
 /// The number of no job.
 const NO_JOB: u32 = u32::MAX;
 
-/// Columns of the table of jobs whose largest values matter, where they hold any.
-const MEASURES: [&str; 10] = [
-    "peak_deflection_m",
-    "peak_uplift_m",
-    "peak_compression_n",
-    "peak_tension_n",
-    "dynamic_amplification",
-    "static_peak_deflection_m",
-    "influential_length_m",
-    "peak_edge_deflection_m",
-    "peak_roll_rad",
-    "structural_mass_kg",
-];
-
 /// A measure of a job.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measure {
     /// Its column.
     pub name: &'static str,
     /// In words.
-    pub label: String,
+    pub label: &'static str,
     /// Its unit.
     pub unit: &'static str,
 }
 
 /// The measures that a table of jobs has.
 pub(super) fn measures(jobs: &Table) -> Vec<Measure> {
-    let there = |name: &&str| {
-        let numbers = jobs.numbers(name);
+    let there = |column: &&Column| {
+        let numbers = jobs.numbers(column.name);
         numbers.is_some_and(|list| list.iter().any(Option::is_some))
     };
-    let measure = |name| Measure {
-        name,
-        label: labels::label(name),
-        unit: labels::unit(name),
+    let measure = |column: &Column| Measure {
+        name: column.name,
+        label: column.label,
+        unit: column.unit,
     };
-    MEASURES.into_iter().filter(there).map(measure).collect()
+    Column::measures().filter(there).map(measure).collect()
 }
 
 /// All jobs, cell by cell in the order of their bins.

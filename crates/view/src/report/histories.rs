@@ -4,7 +4,7 @@
 
 use super::packed::Packed;
 use crate::thinning::thinned;
-use pontoon_results::{Results, ResultsError, TableName};
+use pontoon_results::{Results, ResultsError, TableName, labels};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -53,7 +53,7 @@ impl Gathered {
             axes,
             position: self.position,
             quantity: self.quantity.clone(),
-            unit: crate::labels::unit(&self.quantity),
+            unit: labels::unit(&self.quantity),
             time_s: of(&self.time_s),
             value: of(&self.value),
         }

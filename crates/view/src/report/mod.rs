@@ -38,16 +38,16 @@ pub use packed::{Packed, Scaled};
 pub use plays::{AxlePatch, Play};
 pub use rows::{ColumnData, Envelope, Profile, RowColumn, Rows, WordList};
 pub use shapes::{ModeLine, ModeSet, ModeShape};
-pub use verdicts::{VerdictLine, Verdicts};
+pub use verdicts::{Tone, VerdictLine, Verdicts};
 
 use crate::figures::{Chart, Mark};
 use pontoon_judge::compare::Comparison;
+use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
-use pontoon_plan::study_file::Kind;
-use pontoon_results::{Results, ResultsError, Table, TableName};
+use pontoon_plan::study_file::{Kind, Study};
+use pontoon_results::{Results, ResultsError, Seen, Table, TableName};
 use pontoon_study::run::Cache;
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::HashSet;
 
 /// A label and what it says.
@@ -102,6 +102,17 @@ pub struct StudyNote {
     pub kind: Kind,
     /// What it was run with.
     pub settings: Vec<Item>,
+}
+
+impl StudyNote {
+    fn new(results: &Results, study: Option<&Study>) -> Self {
+        Self {
+            name: results.name.clone(),
+            question: study.and_then(|study| study.question.clone()),
+            kind: results.kind(),
+            settings: study.map(settings::settings).unwrap_or_default(),
+        }
+    }
 }
 
 /// The bridge's measures, of the first job.
@@ -168,6 +179,19 @@ pub struct Counts {
     pub failed: usize,
     /// That no row is there of.
     pub missing: usize,
+}
+
+impl Counts {
+    fn new(results: &Results, missing: usize) -> Self {
+        let rows = results.jobs().rows();
+        let failed = (0..rows).filter(|&row| results.is_failed(row)).count();
+        Self {
+            total: rows + missing,
+            ok: rows - failed,
+            failed,
+            missing,
+        }
+    }
 }
 
 /// All that a page carries.
@@ -241,49 +265,23 @@ impl Report {
             provenance,
         } = found;
         let jobs = results.jobs();
-        let mut names = results.axes();
-        // a position says its place
-        if jobs
-            .numbers("load_position")
-            .is_some_and(|list| list.iter().all(Option::is_some))
-        {
-            names.retain(|name| name != "load_x_m");
-        }
-        let cells_of = |name: &String| (0..jobs.rows()).map(|row| jobs.cell(name, row)).collect::<Vec<Value>>();
-        let mut axes: Vec<Axis> = names.iter().map(|name| Axis::new(name, &cells_of(name))).collect();
-        let listed: Vec<String> = axes
-            .iter()
-            .filter(|axis| !axis.constant)
-            .map(|axis| axis.name.clone())
-            .collect();
-        let of_words = if listed.is_empty() { names.clone() } else { listed };
+        let names = axes_shown(&results);
+        let (axes, of_words) = axes_of(jobs, &names, &mut notes);
         let said = |row: usize| cards::axes_in_words(jobs, &of_words, row);
-        if cells::coarsen(&mut axes, jobs.rows()) {
-            notes.push(format!(
-                "All {} jobs in aggregate: neighbouring values of some axes are put together, and of each range the largest and smallest are shown.",
-                jobs.rows()
-            ));
-        }
         let measures = cells::measures(jobs);
         let chosen = rows::chosen(&results, &measures);
         let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen, &mut notes)?;
         let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(&results, row)).collect();
         let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
         if histories.len() < recorded {
-            notes.push(format!(
-                "{} of {recorded} recorded histories are shown.",
-                histories.len()
-            ));
+            let shown = histories.len();
+            notes.push(format!("{shown} of {recorded} recorded histories are shown."));
         }
         let played = match &study {
-            Some(study) if !all.is_empty() => plays::plays(
-                study,
-                &all,
-                &results,
-                (&measures, &chosen.0),
-                setting.plays,
-                setting.cache.as_ref(),
-            ),
+            Some(study) if !all.is_empty() => {
+                let of = (measures.as_slice(), chosen.0.as_slice());
+                plays::plays(study, &all, &results, of, setting.plays, setting.cache.as_ref())
+            }
             _ => plays::Played::default(),
         };
         notes.extend(played.notes);
@@ -294,27 +292,15 @@ impl Report {
             notes.push(format!("{} of {causes} causes of failures are listed.", failures.len()));
         }
         notes.extend(undrawn(&marks, jobs));
-        let failed = (0..jobs.rows()).filter(|&row| results.is_failed(row)).count();
-        let question = study.as_ref().and_then(|study| study.spec.question.clone());
         Ok(Self {
             format: 1,
             program: Program {
                 version: pontoon_results::VERSION,
                 commit: setting.commit.clone(),
             },
-            study: StudyNote {
-                name: results.name.clone(),
-                question,
-                kind: results.kind(),
-                settings: study.as_ref().map(settings::settings).unwrap_or_default(),
-            },
+            study: StudyNote::new(&results, study.as_ref()),
             bridge: all.first().map(BridgeNote::of),
-            jobs: Counts {
-                total: jobs.rows() + missing,
-                ok: jobs.rows() - failed,
-                failed,
-                missing,
-            },
+            jobs: Counts::new(&results, missing),
             cells: Cells::new(&results, &axes, &measures),
             cards: cards::cards(&results, &measures, &said),
             failures,
@@ -332,6 +318,42 @@ impl Report {
             measures,
         })
     }
+}
+
+/// The axes of results, without the load's place where its position says that.
+fn axes_shown(results: &Results) -> Vec<String> {
+    let jobs = results.jobs();
+    let cells = |name: &str| {
+        (0..jobs.rows())
+            .map(move |row| jobs.cell(name, row))
+            .collect::<Vec<_>>()
+    };
+    let mut names = results.axes();
+    if Seen::of(cells("load_position")).is_whole() {
+        names.retain(|name| name != "load_x_m");
+    }
+    names
+}
+
+/// The axes with their bins, and the names of those that say which job it is: those that vary, or all where none does. A note
+/// tells where bins hold several values.
+fn axes_of(jobs: &Table, names: &[String], notes: &mut Vec<String>) -> (Vec<Axis>, Vec<String>) {
+    let cells = |name: &String| {
+        (0..jobs.rows())
+            .map(|row| jobs.cell(name, row))
+            .collect::<Vec<Cell<'_>>>()
+    };
+    let mut axes: Vec<Axis> = names.iter().map(|name| Axis::new(name, &cells(name))).collect();
+    let varying = axes.iter().filter(|axis| !axis.constant);
+    let varying: Vec<String> = varying.map(|axis| axis.name.clone()).collect();
+    if cells::coarsen(&mut axes, jobs.rows()) {
+        notes.push(format!(
+            "All {} jobs in aggregate: neighbouring values of some axes are put together, and of each range the largest and smallest are shown.",
+            jobs.rows()
+        ));
+    }
+    let of_words = if varying.is_empty() { names.to_vec() } else { varying };
+    (axes, of_words)
 }
 
 /// What is to be said of points that no chart shows: those of one position or joint against speed, as the charts show the

@@ -3,7 +3,7 @@
 //! Knows what a reader must be told of a run that is not done. Does not know pages.
 
 use super::Item;
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{Results, ResultsError, TableName};
@@ -39,7 +39,7 @@ impl Found {
         match Results::read_some(folder, if whole { &TableName::ALL } else { &NEEDED }) {
             Ok(results) => Ok(Self::of_results(results)),
             Err(ResultsError::Refused(refused)) => match so_far(folder) {
-                Ok(found) => Self::of_journal(folder, found),
+                Ok(found) => Ok(Self::of_journal(folder, found)),
                 Err(SweepError::Refused(_)) => Err(refused.into()),
                 Err(error) => Err(damaged(folder, error.to_string())),
             },
@@ -49,7 +49,8 @@ impl Found {
 
     fn of_results(results: Results) -> Self {
         let file = results.place.join("manifest.json");
-        let read = Study::of_documents(&file, results.study.clone(), results.bridge.clone());
+        let [study, bridge] = [&results.study, &results.bridge].map(Document::from);
+        let read = Study::of_documents(&file, study, bridge);
         let mut notes = Vec::new();
         let study = read.map_err(|refused| notes.push(unreadable(&refused))).ok();
         let of = |key: &str| match &results.manifest[key] {
@@ -89,7 +90,7 @@ impl Found {
         }
     }
 
-    fn of_journal(folder: &Path, found: SoFar) -> Result<Self, ResultsError> {
+    fn of_journal(folder: &Path, found: SoFar) -> Self {
         let SoFar {
             study,
             jobs,
@@ -98,7 +99,7 @@ impl Found {
             shard,
             session,
         } = found;
-        let results = Results::of_run(&study, &jobs, &records, folder).map_err(|e| damaged(folder, e))?;
+        let results = Results::of_records(&study, &jobs, &records, folder);
         let share = shard.map(|shard| format!(" This folder is the share {shard} of them."));
         let known = jobs.len();
         let state = match known < of {
@@ -112,13 +113,13 @@ impl Found {
         let provenance = [
             ("program", Some(session.version)),
             ("commit", session.commit),
-            ("study, blake3", Some(study.text_and_hash().1)),
-            ("bridge, blake3", Some(study.bridge_text_and_hash().1)),
+            ("study, blake3", Some(study.document.hash())),
+            ("bridge, blake3", Some(study.bridge.document.hash())),
             ("last begun", Some(session.started)),
             ("machine", Some(session.host)),
             ("threads", Some(session.threads.to_string())),
         ];
-        Ok(Self {
+        Self {
             results,
             missing: of - jobs.len(),
             notes: vec![note],
@@ -127,7 +128,7 @@ impl Found {
                 .filter_map(|(label, value)| Some(Item::new(label, value?)))
                 .collect(),
             study: Some(study),
-        })
+        }
     }
 
     /// The jobs of the study in the order of their numbers; none where this program cannot read the study.

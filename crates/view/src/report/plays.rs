@@ -82,7 +82,7 @@ pub(super) fn plays(
         (matches!(job.task, Task::Crossing { .. }) && !results.is_failed(*row)).then_some((*row, job))
     };
     let able: Vec<(usize, &Job)> = rows.iter().filter_map(crossing).collect();
-    let light = |job: &Job| job.steps() <= MOST_STEPS && job.analysis.spec.model == ModelSpec::SuperElement;
+    let light = |job: &Job| job.steps() <= MOST_STEPS && job.model() == ModelSpec::SuperElement;
     let fit: Vec<(usize, &Job)> = able.iter().copied().filter(|(_, job)| light(job)).collect();
     let chosen = choose(jobs, measures, &fit, most);
     let mut played = Played::default();

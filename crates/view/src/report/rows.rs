@@ -4,11 +4,10 @@
 
 use super::cells::Measure;
 use super::packed::Packed;
-use crate::labels;
 use crate::thinning::spread;
-use pontoon_results::{Kind, Results, ResultsError, Table, TableName};
+use pontoon_plan::input::Cell;
+use pontoon_results::{Column, Kind, Results, ResultsError, Role, Table, TableName, labels};
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
 /// Most rows that a page lists.
@@ -17,22 +16,6 @@ pub(super) const MOST_ROWS: usize = 2_000;
 /// Of more jobs: the ones with the largest values of each measure, and failed ones.
 const SEVEREST: usize = 150;
 const MOST_FAILED: usize = 200;
-
-/// Outcomes that a row has beyond the measures.
-const FURTHER: [&str; 12] = [
-    "peak_deflection_position",
-    "peak_deflection_time_s",
-    "peak_uplift_position",
-    "peak_compression_joint",
-    "peak_tension_joint",
-    "min_contact_force_n",
-    "time_step_s",
-    "steps",
-    "contact_switches",
-    "energy_residual",
-    "numerical_dissipation",
-    "verify_deflection",
-];
 
 /// Words by their index, 65535 where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -194,7 +177,9 @@ impl Rows {
         notes: &mut Vec<String>,
     ) -> Result<(Self, Option<Envelope>), ResultsError> {
         let jobs = results.jobs();
-        let outcomes = measures.iter().map(|measure| measure.name).chain(FURTHER);
+        let further = Column::of_table(TableName::Jobs).filter(|column| column.role == Role::Listed);
+        let further = further.map(|column| column.name);
+        let outcomes = measures.iter().map(|measure| measure.name).chain(further);
         let there = |name: &String| jobs.kind(name).is_some();
         let names = axes.iter().cloned().chain(outcomes.map(str::to_owned)).filter(there);
         let lines = match along(results, rows)? {
@@ -213,10 +198,10 @@ impl Rows {
             columns: names.map(|name| column(jobs, name, rows)).collect(),
             job: Packed::U32(rows.iter().map(|&row| super::job(results, row)).collect()),
             ok: Packed::U8(rows.iter().map(|&row| u8::from(!results.is_failed(row))).collect()),
-            reason: WordList::new(rows.iter().map(|&row| match jobs.cell("reason", row) {
-                Value::String(reason) => Some(reason),
-                _ => None,
-            })),
+            reason: WordList::new(
+                rows.iter()
+                    .map(|&row| jobs.cell("reason", row).word().map(str::to_owned)),
+            ),
             profile,
         };
         Ok((listed, envelope))
@@ -226,9 +211,8 @@ impl Rows {
 fn column(jobs: &Table, name: String, rows: &[usize]) -> RowColumn {
     let numeric = matches!(jobs.kind(&name), Some(Kind::Numbers | Kind::Flags));
     let text = |row: &usize| match jobs.cell(&name, *row) {
-        Value::Null => None,
-        Value::String(word) => Some(word),
-        other => Some(other.to_string()),
+        Cell::Nothing => None,
+        other => Some(other.text()),
     };
     let data = if numeric {
         ColumnData::Numbers(Packed::numbers(rows.iter().map(|&row| jobs.number(&name, row))))
@@ -299,12 +283,8 @@ enum Along {
     Lines(Box<(Profile, Envelope)>),
 }
 
-fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
-    let listed: HashMap<u64, usize> = rows
-        .iter()
-        .enumerate()
-        .map(|(i, &row)| (u64::from(super::job(results, row)), i))
-        .collect();
+/// Places of the positions `[m]`, and whether jobs have them at different ones; none where there is no table of positions.
+fn places(results: &Results) -> Result<(Vec<f64>, bool), ResultsError> {
     let (mut x_m, mut differ): (Vec<f64>, bool) = (Vec::new(), false);
     results.scan(TableName::Positions, &["position", "x_m"], |part| {
         for row in 0..part.rows() {
@@ -319,36 +299,70 @@ fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
             }
         }
     })?;
+    Ok((x_m, differ))
+}
+
+/// Where the numbers of a table along the bridge are.
+struct AlongTable<'a> {
+    table: TableName,
+    /// The column of the place, and its first number.
+    place: (&'a str, usize),
+    /// How many places there are.
+    places: usize,
+    columns: &'a [&'a str],
+}
+
+/// The lines of listed jobs, by their place in the list, and the largest of all.
+fn lines(results: &Results, listed: &HashMap<u64, usize>, of: &AlongTable<'_>) -> Result<Lines, ResultsError> {
+    let (place, first) = of.place;
+    let mut lines = Lines::new(listed.len(), of.places, of.columns.len());
+    let asked: Vec<&str> = ["job", place, "y_m"].iter().chain(of.columns).copied().collect();
+    results.scan(of.table, &asked, |part| {
+        let numbers: Vec<&[Option<f64>]> = of.columns.iter().filter_map(|column| part.numbers(column)).collect();
+        lines.found = lines.found.max(numbers.len());
+        let y = part.numbers("y_m");
+        // of a joint its sum alone
+        for row in (0..part.rows()).filter(|&row| y.is_none_or(|y| y[row].is_none())) {
+            let of_job = listed.get(&(whole(part, "job", row) as u64)).copied();
+            let at = whole(part, place, row).saturating_sub(first);
+            lines.take(of_job, at, numbers.iter().map(|column| column[row]));
+        }
+    })?;
+    Ok(lines)
+}
+
+fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
+    let listed = rows.iter().enumerate();
+    let listed: HashMap<u64, usize> = listed
+        .map(|(i, &row)| (u64::from(super::job(results, row)), i))
+        .collect();
+    let (x_m, differ) = places(results)?;
     if x_m.is_empty() {
         return Ok(Along::Nothing);
     }
     if differ {
         return Ok(Along::Bridges);
     }
-    let places = x_m.len();
-    let take = |name: TableName, place: &str, first: usize, columns: &[&str]| {
-        let mut lines = Lines::new(rows.len(), (places + 2).saturating_sub(2 * first), columns.len());
-        let asked: Vec<&str> = ["job", place, "y_m"].iter().chain(columns).copied().collect();
-        results.scan(name, &asked, |part| {
-            let numbers: Vec<&[Option<f64>]> = columns.iter().filter_map(|column| part.numbers(column)).collect();
-            lines.found = lines.found.max(numbers.len());
-            let y = part.numbers("y_m");
-            // of a joint its sum alone
-            for row in (0..part.rows()).filter(|&row| y.is_none_or(|y| y[row].is_none())) {
-                let of = listed.get(&(whole(part, "job", row) as u64)).copied();
-                let at = whole(part, place, row).saturating_sub(first);
-                lines.take(of, at, numbers.iter().map(|column| column[row]));
-            }
-        })?;
-        Ok::<Lines, ResultsError>(lines)
-    };
     let columns = ["peak_deflection_m", "peak_uplift_m", "deflection_m"];
-    let mut at_ends = take(TableName::Positions, "position", 1, &columns)?;
-    let mut at_joints = take(
-        TableName::Connectors,
-        "joint",
-        2,
-        &["peak_compression_n", "peak_tension_n"],
+    let mut at_ends = lines(
+        results,
+        &listed,
+        &AlongTable {
+            table: TableName::Positions,
+            place: ("position", 1),
+            places: x_m.len(),
+            columns: &columns,
+        },
+    )?;
+    let mut at_joints = lines(
+        results,
+        &listed,
+        &AlongTable {
+            table: TableName::Connectors,
+            place: ("joint", 2),
+            places: x_m.len().saturating_sub(2),
+            columns: &["peak_compression_n", "peak_tension_n"],
+        },
     )?;
     let profile = Profile {
         deflection_m: at_ends.row(0),
@@ -358,7 +372,7 @@ fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
         signed_m: (at_ends.found == columns.len()).then(|| at_ends.row(2)),
     };
     let envelope = Envelope {
-        joint_x_m: x_m.get(1..places.saturating_sub(1)).unwrap_or_default().to_vec(),
+        joint_x_m: x_m.get(1..x_m.len().saturating_sub(1)).unwrap_or_default().to_vec(),
         x_m,
         deflection_m: at_ends.envelope(0),
         uplift_m: at_ends.envelope(1),

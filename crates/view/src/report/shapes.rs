@@ -8,8 +8,8 @@ use pontoon_core::bridge::{Bridge, Ends, PreparedModule};
 use pontoon_plan::job::{Job, Task};
 use pontoon_plan::study_file::ModelSpec;
 use pontoon_results::{Results, TableName};
+use pontoon_study::modes::ModesError;
 use serde::Serialize;
-use serde_json::Value;
 
 /// Bridges of a study of modes whose shapes are shown.
 const MOST_BRIDGES: usize = 4;
@@ -71,16 +71,12 @@ pub(super) fn mode_sets(
     let (mut sets, mut notes) = (Vec::new(), Vec::new());
     let of_modes = all.first().is_some_and(|job| job.task == Task::Modes);
     for job in all.iter().take(if of_modes { MOST_BRIDGES } else { 1 }) {
-        let spec = &job.analysis.spec;
-        let (ends, model, count) = if of_modes {
-            let supported = spec.supports.unwrap_or_default();
-            (
-                if supported { Ends::Supported } else { Ends::Free },
-                spec.model,
-                spec.count.unwrap_or(most),
-            )
-        } else {
-            (Ends::Free, ModelSpec::SuperElement, most)
+        let (ends, model, count) = match job.as_modes() {
+            Some(asked) => {
+                let ends = if asked.supports { Ends::Supported } else { Ends::Free };
+                (ends, asked.model, asked.count)
+            }
+            None => (Ends::Free, ModelSpec::SuperElement, most),
         };
         let held = if ends == Ends::Free {
             "floating free"
@@ -104,11 +100,11 @@ pub(super) fn mode_sets(
     (sets, notes)
 }
 
-fn found(job: &Job, ends: Ends, model: ModelSpec, count: usize) -> Result<Vec<ModeShape>, String> {
+fn found(job: &Job, ends: Ends, model: ModelSpec, count: usize) -> Result<Vec<ModeShape>, ModesError> {
     let design = &job.bridge.design;
-    let module = PreparedModule::new(design, model.into()).map_err(|e| e.to_string())?;
-    let bridge = Bridge::new(design, &module, ends).map_err(|e| e.to_string())?;
-    let found = shapes(&bridge, count.min(bridge.dofs())).map_err(|e| e.to_string())?;
+    let module = PreparedModule::new(design, model.into())?;
+    let bridge = Bridge::new(design, &module, ends)?;
+    let found = shapes(&bridge, count.min(bridge.dofs()))?;
     let shape = |(number, (mode, corners)): (usize, (_, Vec<[f64; 3]>))| {
         let mode: pontoon_core::analysis::modes::Mode = mode;
         ModeShape {
@@ -134,10 +130,7 @@ pub(super) fn mode_table(results: &Results, said: &dyn Fn(usize) -> String) -> V
             axes: results.row_of_job(u64::from(job)).map(said).unwrap_or_default(),
             number: whole("number"),
             frequency_hz: table.number("frequency_hz", row)?,
-            shape: match table.cell("shape", row) {
-                Value::String(shape) => shape,
-                _ => String::new(),
-            },
+            shape: table.cell("shape", row).text(),
         })
     };
     (0..table.rows()).take(MOST_ROWS).filter_map(line).collect()

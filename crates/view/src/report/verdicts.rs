@@ -2,8 +2,8 @@
 //!
 //! Knows the words of a line. Does not know how it was judged.
 
-use pontoon_judge::compare::{Comparison, Line};
-use pontoon_judge::reference::Role;
+use pontoon_judge::checks::Role;
+use pontoon_judge::compare::{Comparison, Line, Verdict};
 use serde::Serialize;
 
 /// Results held against a reference.
@@ -28,10 +28,12 @@ pub struct VerdictLine {
     pub statement: Option<String>,
     /// Its role.
     pub role: Role,
-    /// What became of it, in words.
-    pub verdict: &'static str,
-    /// Whether it holds, or need not.
-    pub good: bool,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// The same in words.
+    pub word: &'static str,
+    /// How that is to be taken.
+    pub tone: Tone,
     /// What is expected.
     pub expected: String,
     /// What was found.
@@ -44,6 +46,26 @@ pub struct VerdictLine {
     pub note: String,
 }
 
+/// How a verdict is to be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Tone {
+    /// As it should be.
+    Good,
+    /// Not as it should be.
+    Bad,
+    /// Neither.
+    Plain,
+}
+
+fn tone(verdict: Verdict) -> Tone {
+    match verdict {
+        Verdict::Holds => Tone::Good,
+        Verdict::FallsShort => Tone::Bad,
+        Verdict::ExpectedFail | Verdict::NowHolds | Verdict::Record => Tone::Plain,
+    }
+}
+
 impl Verdicts {
     /// The lines of a comparison.
     pub(super) fn new(compared: &Comparison) -> Self {
@@ -51,8 +73,9 @@ impl Verdicts {
             id: line.id.clone(),
             statement: line.statement.clone(),
             role: line.role,
-            verdict: line.verdict.word(),
-            good: line.verdict != pontoon_judge::compare::Verdict::FallsShort,
+            verdict: line.verdict,
+            word: line.verdict.word(),
+            tone: tone(line.verdict),
             expected: line.expected.clone(),
             found: line.got(),
             deviation: line.deviation(),

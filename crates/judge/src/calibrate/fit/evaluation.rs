@@ -2,7 +2,7 @@
 //!
 //! Knows the model, the bounds and the step of the differences. Does not know where a search goes, nor why.
 
-use super::{Differences, Model, Parameter, Settings, sum_of_squares};
+use super::{Differences, Model, ModelError, Parameter, Settings, sum_of_squares};
 
 /// What a point was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,13 +94,13 @@ impl<'a> Evaluator<'a> {
         for (i, (k, point)) in new.into_iter().zip(batch).enumerate() {
             let answer = answers
                 .next()
-                .unwrap_or_else(|| Err(format!("no answer for point {i} of {count}")));
+                .unwrap_or_else(|| Err(ModelError(format!("no answer for point {i} of {count}"))));
             let residuals = match answer.and_then(|found| usable(found, self.residual_count)) {
                 Ok(found) => {
                     self.residual_count = Some(found.len());
                     Some(found)
                 }
-                Err(reason) => {
+                Err(ModelError(reason)) => {
                     self.failed.push(FailedPoint {
                         parameters: point.clone(),
                         reason,
@@ -199,12 +199,13 @@ impl<'a> Evaluator<'a> {
 }
 
 /// Residuals that are all finite and as many as before, else what is wrong with them.
-fn usable(residuals: Vec<f64>, wanted: Option<usize>) -> Result<Vec<f64>, String> {
+fn usable(residuals: Vec<f64>, wanted: Option<usize>) -> Result<Vec<f64>, ModelError> {
     if let Some(wanted) = wanted.filter(|&wanted| wanted != residuals.len()) {
-        return Err(format!("{} residuals where {wanted} came before", residuals.len()));
+        let reason = format!("{} residuals where {wanted} came before", residuals.len());
+        return Err(ModelError(reason));
     }
     match residuals.iter().position(|r| !r.is_finite()) {
-        Some(k) => Err(format!("residual {k} is {}", residuals[k])),
+        Some(k) => Err(ModelError(format!("residual {k} is {}", residuals[k]))),
         None => Ok(residuals),
     }
 }

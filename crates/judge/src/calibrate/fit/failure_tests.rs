@@ -8,7 +8,7 @@ use super::*;
 fn failures_beyond_the_minimum_are_listed_and_do_not_keep_from_it() {
     let model = each(|x| {
         if x[0] < 0.5 {
-            return Err(format!("no answer at {}", x[0]));
+            return Err(ModelError(format!("no answer at {}", x[0])));
         }
         Ok(vec![(3.0 * (x[0] - 1.0)).atan(), 0.3 * (x[1] - 2.0 * x[0])])
     });
@@ -33,7 +33,7 @@ fn gap_is_crossed_or_said_to_stop_the_search() {
     let model = each(|x| {
         let z = x[0] - 1.0;
         if (0.4..0.6).contains(&z) {
-            Err("gap".to_owned())
+            Err("gap".into())
         } else {
             Ok(vec![z * (1.0 + z * z), 1.0])
         }
@@ -66,7 +66,7 @@ fn gap_is_crossed_or_said_to_stop_the_search() {
 fn minimum_in_a_region_of_failure_is_no_convergence() {
     let model = each(|x| {
         if x[0] < 1.0 {
-            Err("too soft".to_owned())
+            Err("too soft".into())
         } else {
             Ok(vec![x[0], 1.0])
         }
@@ -81,7 +81,7 @@ fn minimum_in_a_region_of_failure_is_no_convergence() {
 fn failed_difference_takes_the_other_side_and_two_failures_are_said() {
     let upper_fails = each(|x| {
         if x[0] > 0.0 {
-            Err("above".to_owned())
+            Err("above".into())
         } else {
             Ok(vec![x[0] + 1.0, 1.0])
         }
@@ -95,7 +95,7 @@ fn failed_difference_takes_the_other_side_and_two_failures_are_said() {
         if x[1] == 0.5 {
             Ok(vec![x[0] - 1.0, 1.0])
         } else {
-            Err("only there".to_owned())
+            Err("only there".into())
         }
     });
     let two = [parameter("x", 0.0, -4.0, 4.0), parameter("y", 0.5, 0.0, 1.0)];
@@ -169,7 +169,7 @@ fn unusable_answers_are_failures() {
         Err(FitError::Start { reason, .. }) => reason,
         other => panic!("{other:?}"),
     };
-    assert_eq!(reason(ask(&each(|_| Err("no bridge".to_owned())))), "no bridge");
+    assert_eq!(reason(ask(&each(|_| Err("no bridge".into())))), "no bridge");
     assert_eq!(reason(ask(&each(|_| Ok(vec![1.0, f64::NAN])))), "residual 1 is NaN");
     assert_eq!(reason(ask(&|_| Vec::new())), "no answer for point 0 of 1");
     assert_eq!(ask(&each(|_| Ok(Vec::new()))), Err(FitError::NoResiduals));

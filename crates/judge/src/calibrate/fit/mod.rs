@@ -39,7 +39,7 @@ mod variable;
 
 use evaluation::Evaluator;
 pub use evaluation::{FailedPoint, Purpose};
-pub use input::{Differences, FitError, Parameter, Settings};
+pub use input::{Differences, FitError, ModelError, Parameter, Settings};
 use problem::{PULL, outward_cosine};
 pub use search::Ending;
 use search::Found;
@@ -47,8 +47,8 @@ use statistics::Statistics;
 pub use statistics::{Component, Direction, ErrorScale};
 
 /// The model: a batch of points, each with one value a parameter, to as many answers, each with the scaled residuals
-/// (measured less computed, over the standard deviation of the measurement) or the reason why there are none.
-pub type Model<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Result<Vec<f64>, String>> + Sync + 'a;
+/// (measured less computed, over the standard deviation of the measurement) or why there are none.
+pub type Model<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Result<Vec<f64>, ModelError>> + Sync + 'a;
 
 /// A bound of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

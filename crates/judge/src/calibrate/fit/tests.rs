@@ -20,11 +20,11 @@ pub(super) fn central() -> Settings {
 
 /// A model of one point made one of batches.
 pub(super) fn each(
-    model: impl Fn(&[f64]) -> Result<Vec<f64>, String> + Sync,
+    model: impl Fn(&[f64]) -> Result<Vec<f64>, ModelError> + Sync,
 ) -> impl Fn(&[Vec<f64>]) -> Answers + Sync {
     move |points| points.iter().map(|point| model(point)).collect()
 }
-pub(super) type Answers = Vec<Result<Vec<f64>, String>>;
+pub(super) type Answers = Vec<Result<Vec<f64>, ModelError>>;
 
 pub(super) fn best(fit: &Fit) -> Vec<f64> {
     fit.parameters.iter().map(|p| p.best).collect()
@@ -36,7 +36,7 @@ pub(super) fn is_close(found: f64, wanted: f64, relative: f64) -> bool {
 
 const LINE: [(f64, f64); 5] = [(0.0, 1.1), (1.0, 2.9), (2.0, 5.2), (3.0, 6.8), (4.0, 9.1)];
 
-pub(super) fn line(x: &[f64]) -> Result<Vec<f64>, String> {
+pub(super) fn line(x: &[f64]) -> Result<Vec<f64>, ModelError> {
     Ok(LINE.iter().map(|(at, y)| y - x[0] - x[1] * at).collect())
 }
 
@@ -140,7 +140,7 @@ fn misra1a_is_close_by_forward_differences() {
     assert!(is_close(fit.parameters[0].standard_error.unwrap(), 2.7070075241, 0.01));
 }
 
-pub(super) fn rosenbrock(x: &[f64]) -> Result<Vec<f64>, String> {
+pub(super) fn rosenbrock(x: &[f64]) -> Result<Vec<f64>, ModelError> {
     Ok(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]])
 }
 

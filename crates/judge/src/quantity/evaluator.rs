@@ -4,15 +4,17 @@
 //! have what it names.
 
 use super::history::{History, Moments, moments_of};
-use crate::reference::{Filter, HistoryQuantity, Quantity, Reduction, SelectQuantity};
+use super::no_value::{NoValue, failed_jobs};
+use super::spec::{HistoryQuantity, Quantity, Reduction, SelectQuantity};
+use pontoon_plan::input::filter::Filter;
 use pontoon_results::{Results, Table, TableName};
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
 /// Evaluates quantities of one reference on results.
-pub(super) struct Evaluator<'a> {
-    pub(super) results: &'a Results,
+pub(crate) struct Evaluator<'a> {
+    pub(crate) results: &'a Results,
     /// Rows of each job in each table that was looked at, jobs in the order of their own table.
     of_jobs: RefCell<BTreeMap<TableName, Rc<Vec<Vec<usize>>>>>,
     /// Rows of each history, by job, quantity and position.
@@ -22,7 +24,7 @@ pub(super) struct Evaluator<'a> {
 }
 
 impl<'a> Evaluator<'a> {
-    pub(super) fn new(results: &'a Results) -> Self {
+    pub(crate) fn new(results: &'a Results) -> Self {
         Self {
             results,
             of_jobs: RefCell::default(),
@@ -32,7 +34,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// What is to be said of the quantities evaluated since the last call.
-    pub(super) fn take_notes(&self) -> BTreeSet<String> {
+    pub(crate) fn take_notes(&self) -> BTreeSet<String> {
         std::mem::take(&mut *self.notes.borrow_mut())
     }
 
@@ -41,31 +43,29 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The value of a quantity; `filter` holds for all its parts unless they say otherwise.
-    pub(super) fn value(&self, quantity: &Quantity, filter: &Filter) -> Result<f64, String> {
+    pub(crate) fn value(&self, quantity: &Quantity, filter: &Filter) -> Result<f64, NoValue> {
         let value = match quantity {
             Quantity::Number(number) => *number,
             Quantity::Select(select) => self.select(select, filter)?,
             Quantity::History(history) => self.history(history, filter)?,
             several => {
                 let parts = several.parts().into_iter().map(|(_, part)| self.value(part, filter));
-                combined(several, &parts.collect::<Result<Vec<f64>, String>>()?)
+                combined(several, &parts.collect::<Result<Vec<f64>, NoValue>>()?)
             }
         };
         if value.is_finite() {
             Ok(value)
         } else {
-            Err(format!("not a finite number: {value}"))
+            Err(NoValue::NotFinite(value))
         }
     }
 
     /// A table of the results.
-    pub(super) fn table(&self, name: TableName) -> Result<&'a Table, String> {
-        self.results
-            .table(name)
-            .ok_or_else(|| format!("the results hold no table of {}", name.word()))
+    pub(crate) fn table(&self, name: TableName) -> Result<&'a Table, NoValue> {
+        self.results.table(name).ok_or(NoValue::NoTable(name))
     }
 
-    fn select(&self, select: &SelectQuantity, outer: &Filter) -> Result<f64, String> {
+    fn select(&self, select: &SelectQuantity, outer: &Filter) -> Result<f64, NoValue> {
         let table = self.table(select.table)?;
         let (rows, failed) = self.rows(select.table, &select.filter.within(outer))?;
         let values: Vec<f64> = rows
@@ -76,16 +76,19 @@ impl<'a> Evaluator<'a> {
             return Ok(values.len() as f64);
         }
         if values.is_empty() {
-            return Err(format!("{} empty in all {} rows that match", select.column, rows.len()));
+            return Err(NoValue::Empty {
+                column: select.column.clone(),
+                rows: rows.len(),
+            });
         }
         if select.reduce == Reduction::Only {
             return match values.as_slice() {
                 [value] if rows.len() == 1 => Ok(*value),
-                _ => Err(format!("{} rows match where one is meant", rows.len())),
+                _ => Err(NoValue::SeveralRows(rows.len())),
             };
         }
         if failed > 0 {
-            return Err(format!("{} among those that match", failed_jobs(failed)));
+            return Err(NoValue::FailedAmong(failed));
         }
         if values.len() < rows.len() {
             let empty = rows.len() - values.len();
@@ -100,7 +103,7 @@ impl<'a> Evaluator<'a> {
 
     /// The rows of the table of jobs that a filter means, failed ones among them; keys that are no columns of jobs are
     /// passed over.
-    pub(super) fn jobs(&self, filter: &Filter) -> Vec<usize> {
+    pub(crate) fn jobs(&self, filter: &Filter) -> Vec<usize> {
         let jobs = self.results.jobs();
         let means = |row: &usize| {
             let mut of_jobs = filter.0.iter().filter(|(name, _)| jobs.has(name));
@@ -110,7 +113,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The rows of a table that a filter means, those of failed jobs left out; and how many jobs failed of those that match.
-    pub(super) fn rows(&self, name: TableName, filter: &Filter) -> Result<(Vec<usize>, usize), String> {
+    pub(crate) fn rows(&self, name: TableName, filter: &Filter) -> Result<(Vec<usize>, usize), NoValue> {
         let table = self.table(name)?;
         let of_jobs = Filter(
             filter
@@ -139,7 +142,7 @@ impl<'a> Evaluator<'a> {
             without += usize::from(rows.len() == before);
         }
         if rows.is_empty() {
-            return Err(format!("no row of {} matches", name.word()));
+            return Err(NoValue::NoRow(name));
         }
         if without > 0 {
             self.note(format!("{without} of {} jobs have no such row", whole.len()));
@@ -166,16 +169,17 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The rows of the table of jobs that a filter means and that did not fail, at least one; and how many failed.
-    fn whole_jobs(&self, filter: &Filter) -> Result<(Vec<usize>, usize), String> {
+    fn whole_jobs(&self, filter: &Filter) -> Result<(Vec<usize>, usize), NoValue> {
         let jobs = self.results.jobs();
         let rows = self.jobs(filter);
-        let (failed, whole): (Vec<usize>, Vec<usize>) =
-            rows.iter().partition(|&&row| jobs.cell("status", row) == "failed");
+        let (failed, whole): (Vec<usize>, Vec<usize>) = rows
+            .iter()
+            .partition(|&&row| jobs.cell("status", row).word() == Some("failed"));
         if rows.is_empty() {
-            return Err("no job matches".to_owned());
+            return Err(NoValue::NoJob);
         }
         if whole.is_empty() {
-            return Err(format!("only failed jobs match, {} of them", failed.len()));
+            return Err(NoValue::OnlyFailed(failed.len()));
         }
         if !failed.is_empty() {
             self.note(format!("{} left out", failed_jobs(failed.len())));
@@ -183,11 +187,11 @@ impl<'a> Evaluator<'a> {
         Ok((whole, failed.len()))
     }
 
-    fn history(&self, asked: &HistoryQuantity, outer: &Filter) -> Result<f64, String> {
+    fn history(&self, asked: &HistoryQuantity, outer: &Filter) -> Result<f64, NoValue> {
         let filter = asked.filter.within(outer);
         let (whole, _) = self.whole_jobs(&filter)?;
         let [row] = whole[..] else {
-            return Err("several jobs match where one history is meant".to_owned());
+            return Err(NoValue::SeveralJobs);
         };
         let job = self.results.jobs().number("job", row).unwrap_or_default() as u64;
         let history = self.recorded(job, &asked.quantity, asked.position as u64)?;
@@ -201,13 +205,13 @@ impl<'a> Evaluator<'a> {
     }
 
     /// A recorded history.
-    fn recorded(&self, job: u64, quantity: &str, position: u64) -> Result<History, String> {
+    fn recorded(&self, job: u64, quantity: &str, position: u64) -> Result<History, NoValue> {
         let table = self.table(TableName::Histories)?;
         let index = self.histories.get_or_init(|| {
             let mut index: HashMap<(u64, String, u64), Vec<usize>> = HashMap::new();
             for row in 0..table.rows() {
                 let number = |column| table.number(column, row).unwrap_or_default() as u64;
-                let quantity = table.cell("quantity", row).as_str().unwrap_or_default().to_owned();
+                let quantity = table.cell("quantity", row).text();
                 index
                     .entry((number("job"), quantity, number("position")))
                     .or_default()
@@ -216,7 +220,8 @@ impl<'a> Evaluator<'a> {
             index
         });
         let Some(rows) = index.get(&(job, quantity.to_owned(), position)) else {
-            return Err(format!("no history of {quantity} at {position} was recorded"));
+            let quantity = quantity.to_owned();
+            return Err(NoValue::NoHistory { quantity, position });
         };
         let point = |&row: &usize| table.number("time_s", row).zip(table.number("value", row));
         match rows.iter().map(point).collect::<Option<Vec<(f64, f64)>>>() {
@@ -224,15 +229,8 @@ impl<'a> Evaluator<'a> {
                 let (time_s, values) = points.into_iter().unzip();
                 Ok(History { time_s, values })
             }
-            None => Err("a history with empty values".to_owned()),
+            None => Err(NoValue::BrokenHistory),
         }
-    }
-}
-
-fn failed_jobs(count: usize) -> String {
-    match count {
-        1 => "1 failed job".to_owned(),
-        n => format!("{n} failed jobs"),
     }
 }
 

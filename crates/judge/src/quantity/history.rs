@@ -2,10 +2,12 @@
 //!
 //! Knows when the vehicle is where. Does not know which history is meant.
 
-use crate::reference::{Edge, HistoryReduction};
+use super::no_value::NoValue;
+use super::spec::{Edge, HistoryReduction};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::vehicle::VehicleDesign;
-use pontoon_plan::input::{DocumentPath, typed};
+use pontoon_plan::design::{Root, Varies};
+use pontoon_plan::input::{Cell, Refusal, to_value, typed_value};
 use pontoon_plan::study_file::filled_vehicle;
 use pontoon_results::Results;
 use serde_json::Value;
@@ -32,44 +34,45 @@ pub struct Moments {
 /// The moments of the crossing in a row of the table of jobs.
 ///
 /// # Errors
-/// Why a job has none, in words.
-pub fn moments_of(results: &Results, row: usize, position: usize) -> Result<Moments, String> {
-    let speed_m_s = results
-        .jobs()
-        .number("speed_m_s", row)
-        .ok_or("no speed: histories are those of crossings")?;
-    let document = |root: &str, base: &Value| {
-        let mut document = base.clone();
-        for axis in results.axes() {
-            if let Some(path) = axis.strip_prefix(root).and_then(|rest| rest.strip_prefix('.')) {
-                let path = DocumentPath::parse(path).ok_or_else(|| format!("no path: {axis}"))?;
-                let cell = results.jobs().cell(&axis, row);
-                if cell.is_null() {
-                    continue;
-                }
-                // lists stand in a table as their JSON text
-                let text = cell.as_str().filter(|_| !path.get(base).is_some_and(Value::is_string));
-                let value = text.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(cell);
-                path.set(&mut document, value)?;
-            }
-        }
-        Ok::<Value, String>(document)
-    };
+/// [`NoValue`] where the job is no crossing, or its documents are not read any more.
+pub fn moments_of(results: &Results, row: usize, position: usize) -> Result<Moments, NoValue> {
+    let speed_m_s = results.jobs().number("speed_m_s", row).ok_or(NoValue::NoSpeed)?;
     let file = Path::new("results");
-    let bridge: BridgeDesign = typed(file, "", &document("bridge", &results.bridge)?).map_err(|e| e.to_string())?;
+    let bridge: BridgeDesign = typed_value(file, "", &document(results, row, Root::Bridge, &results.bridge)?)?;
     let written = match &results.study["vehicle"] {
-        Value::Null => serde_json::to_value(VehicleDesign::default()).unwrap_or_default(),
+        Value::Null => to_value(&VehicleDesign::default()),
         vehicle => vehicle.clone(),
     };
-    let vehicle: VehicleDesign = typed(file, "", &document("vehicle", &written)?).map_err(|e| e.to_string())?;
+    let vehicle: VehicleDesign = typed_value(file, "", &document(results, row, Root::Vehicle, &written)?)?;
     let vehicle = filled_vehicle(&vehicle)
         .and_then(|vehicle| vehicle.check(bridge.module.breadth_m))
-        .map_err(|e| e.to_string())?;
+        .map_err(|e| Refusal::of(file, "vehicle", e))?;
     Ok(Moments {
         speed_m_s,
         arrival_s: (bridge.position_x_m(position) - vehicle.centre_ahead_m()) / speed_m_s,
         leaving_s: (bridge.length_m() + vehicle.behind_m()) / speed_m_s,
     })
+}
+
+/// A document of the study with the values of a job's axes in place.
+fn document(results: &Results, row: usize, root: Root, base: &Value) -> Result<Value, NoValue> {
+    let mut document = base.clone();
+    for axis in results.axes() {
+        let Some(Varies::Path(of, path)) = Varies::of(&axis) else {
+            continue;
+        };
+        let cell = results.jobs().cell(&axis, row);
+        if of != root || cell.is_nothing() {
+            continue;
+        }
+        // lists stand in a table as their JSON text
+        let tree = match &cell {
+            Cell::Word(text) if !path.get(base).is_some_and(Value::is_string) => serde_json::from_str(text).ok(),
+            _ => None,
+        };
+        path.set(&mut document, tree.unwrap_or_else(|| cell.value()))?;
+    }
+    Ok(document)
 }
 
 impl Moments {
@@ -87,7 +90,7 @@ const SAME_TIME_S: f64 = 1e-9;
 
 impl History {
     /// The part between two moments, both included; at least two times.
-    pub(super) fn part(&self, moments: &Moments, from: Option<Edge>, to: Option<Edge>) -> Result<Self, String> {
+    pub(super) fn part(&self, moments: &Moments, from: Option<Edge>, to: Option<Edge>) -> Result<Self, NoValue> {
         let from_s = from.map_or(f64::NEG_INFINITY, |edge| moments.at(edge));
         let to_s = to.map_or(f64::INFINITY, |edge| moments.at(edge));
         let inside = |&(t, _): &(f64, f64)| t >= from_s - SAME_TIME_S && t <= to_s + SAME_TIME_S;
@@ -98,13 +101,11 @@ impl History {
             (from.is_none() || from_s >= first - step) && (to.is_none() || to_s <= last + step)
         };
         if !ends.is_some_and(covers) {
-            return Err(format!("the history does not reach from {from_s:.3} to {to_s:.3} s"));
+            return Err(NoValue::ShortHistory { from_s, to_s });
         }
         if time_s.len() < 2 {
-            return Err(format!(
-                "the history has {} values between {from_s:.3} and {to_s:.3} s",
-                time_s.len()
-            ));
+            let values = time_s.len();
+            return Err(NoValue::ThinHistory { values, from_s, to_s });
         }
         Ok(Self { time_s, values })
     }
@@ -114,7 +115,7 @@ impl History {
     }
 
     /// One number of it.
-    pub(super) fn reduced(&self, moments: &Moments, reduction: HistoryReduction) -> Result<f64, String> {
+    pub(super) fn reduced(&self, moments: &Moments, reduction: HistoryReduction) -> Result<f64, NoValue> {
         let max = self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let min = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         match reduction {
@@ -138,14 +139,14 @@ impl History {
             .collect()
     }
 
-    fn period_s(&self) -> Result<f64, String> {
+    fn period_s(&self) -> Result<f64, NoValue> {
         match self.zeros().as_slice() {
             [first, .., last] => Ok(2.0 * (last - first) / (self.zeros().len() - 1) as f64),
-            few => Err(format!("{} zero crossings, no period", few.len())),
+            few => Err(NoValue::NoPeriod(few.len())),
         }
     }
 
-    fn hump_duration_s(&self, max: f64) -> Result<f64, String> {
+    fn hump_duration_s(&self, max: f64) -> Result<f64, NoValue> {
         let top = self.points().find(|&(_, w)| w == max).map_or(0.0, |(t, _)| t);
         let zeros = self.zeros();
         let before = zeros.iter().copied().filter(|&t| t < top).fold(None, |_, t| Some(t));
@@ -153,7 +154,7 @@ impl History {
         before
             .zip(after)
             .map(|(before, after)| after - before)
-            .ok_or_else(|| "no zero crossing on both sides of the hump".to_owned())
+            .ok_or(NoValue::NoHump)
     }
 
     /// The value at a time, interpolated.
@@ -168,13 +169,11 @@ impl History {
     }
 
     /// Largest `|w(t_a - s) - w(t_a + s)|` over the largest value, where the history has both.
-    fn asymmetry(&self, moments: &Moments, way_m: f64, max: f64) -> Result<f64, String> {
+    fn asymmetry(&self, moments: &Moments, way_m: f64, max: f64) -> Result<f64, NoValue> {
         let reach_s = way_m / moments.speed_m_s;
         let covered = |t: f64| self.at(t).is_some();
         if !(covered(moments.arrival_s - reach_s) && covered(moments.arrival_s + reach_s)) {
-            return Err(format!(
-                "the history does not reach {way_m} m before and behind the arrival"
-            ));
+            return Err(NoValue::ShortAbout(way_m));
         }
         let differences = self
             .time_s
@@ -189,7 +188,7 @@ impl History {
         largest
             .filter(|_| max > 0.0)
             .map(|d| d / max)
-            .ok_or_else(|| "no hump about the arrival".to_owned())
+            .ok_or(NoValue::NoHumpAbout)
     }
 }
 
@@ -237,6 +236,7 @@ mod tests {
         assert!(
             line.part(&MOMENTS, Some(Edge::TimeS(11.0)), None)
                 .unwrap_err()
+                .to_string()
                 .contains("0 values")
         );
     }

@@ -1,9 +1,10 @@
-//! Where in a text something stands that was refused.
+//! Where in a text something stands that was refused: found by the refusal's kind, path and value, never by its words.
 //!
-//! Knows key paths as refusals write them and the bytes of a text that they mean. Does not know how a place is shown, nor
-//! what any key means.
+//! Knows paths as refusals have them and the bytes of a text that they mean. A text is read with its places only once something
+//! in it was refused. Does not know how a place is shown, nor what any key means.
 
-use super::strict;
+use super::refusal::{Refusal, RefusalKind};
+use super::strict::{self, FaultKind};
 use jsonc_parser::ast::{Object, ObjectProp, Value};
 use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
@@ -11,18 +12,18 @@ use std::ops::Range;
 
 /// A place in a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Spot {
+pub struct Mark {
     /// Its bytes; empty where a text ends too early.
     pub bytes: Range<usize>,
     /// What stands there.
-    pub kind: SpotKind,
+    pub kind: MarkKind,
 }
 
 /// What stands at a place that is to be shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum SpotKind {
-    /// What makes the text no JSON, in the reader's words.
-    Fault(String),
+pub enum MarkKind {
+    /// What makes the text no JSON; the reader's words, where there are any.
+    Fault(Option<String>),
     /// A key that was written before, and where.
     Twice(Range<usize>),
     /// A key: there is none of that name, or none is allowed here.
@@ -33,81 +34,77 @@ pub enum SpotKind {
     Around,
 }
 
-/// Finds what a refusal of `key` means that has `found` something; none where the text has no such place.
+/// Finds what a refusal means in the text of its file; none where the text has no such place.
 ///
-/// A text that is no JSON has its one place, whatever the key. An axis is a key with points in its name, and what was found
-/// is looked for among its values.
-pub fn spot(text: &str, key: &str, found: &str) -> Option<Spot> {
+/// A text that is no JSON has its one place, whatever was refused. An axis is a key with points in its name, and the value that
+/// was found is looked for among its values.
+pub fn mark(text: &str, refusal: &Refusal) -> Option<Mark> {
     if let Some(fault) = strict::fault(text) {
         return Some(of_fault(text, fault));
     }
-    // "block (key)": several axes of a block made another number wrong
-    let (path, beside) = key.split_once(" (").map_or((key, false), |(path, _)| (path, true));
     let parsed = parsed(text)?;
     let root = parsed.as_ref()?;
-    if path.is_empty() {
+    if refusal.path.is_empty() {
         return None;
     }
-    let trail = trail(root, path);
+    let trail = trail(root, &refusal.path);
     let last = trail.last()?;
-    let named = |at: &Way<'_, '_>| at.name.clone().unwrap_or_else(|| opening(text, at.value));
-    if beside {
-        return Some(Spot {
-            bytes: named(last),
-            kind: SpotKind::Around,
+    let name = || last.name.clone().unwrap_or_else(|| opening(text, last.value));
+    if refusal.made_wrong.is_some() {
+        return Some(Mark {
+            bytes: name(),
+            kind: MarkKind::Around,
         });
     }
-    if trail.len() == 1 && !is_lack(found) {
+    let lacks = refusal.kind == RefusalKind::Missing;
+    if trail.len() == 1 && !lacks {
         return None;
     }
-    if let Some(value) = value_found(&trail, found) {
-        return Some(Spot {
+    let found = refusal.found.value.as_ref();
+    if let Some(value) = found.and_then(|found| value_found(&trail, found)) {
+        return Some(Mark {
             bytes: shown(text, value),
-            kind: SpotKind::Value,
+            kind: MarkKind::Value,
         });
     }
-    if let Some(bytes) = last.rest.is_empty().then(|| key_found(last.value, found)).flatten() {
-        return Some(Spot {
-            bytes,
-            kind: SpotKind::Key,
+    let whole = last.rest.is_empty();
+    let of_key = matches!(
+        refusal.kind,
+        RefusalKind::UnknownKey | RefusalKind::UnknownWord | RefusalKind::Misplaced
+    );
+    if whole && of_key {
+        return Some(Mark {
+            bytes: name(),
+            kind: MarkKind::Key,
         });
     }
-    if last.rest.is_empty() && says_of_key(found) {
-        return Some(Spot {
-            bytes: named(last),
-            kind: SpotKind::Key,
-        });
-    }
-    if !last.rest.is_empty() || is_lack(found) {
+    if lacks || !whole {
         let bytes = last.name.as_ref().map_or_else(
             || opening(text, last.value),
             |name| name.start..opening(text, last.value).end,
         );
-        let kind = if is_lack(found) {
-            SpotKind::Around
-        } else {
-            SpotKind::Value
-        };
-        return Some(Spot { bytes, kind });
+        let kind = if lacks { MarkKind::Around } else { MarkKind::Value };
+        return Some(Mark { bytes, kind });
     }
-    Some(Spot {
+    Some(Mark {
         bytes: shown(text, last.value),
-        kind: SpotKind::Value,
+        kind: MarkKind::Value,
     })
 }
 
 /// The place of what makes a text no JSON.
-fn of_fault(text: &str, fault: strict::Fault) -> Spot {
-    if fault.twice.is_some() {
-        let first = parsed(text).flatten().and_then(|root| first_of(&root, &fault.bytes));
-        return Spot {
-            kind: first.map_or(SpotKind::Key, SpotKind::Twice),
-            bytes: fault.bytes,
-        };
-    }
-    Spot {
+fn of_fault(text: &str, fault: strict::Fault) -> Mark {
+    let kind = match fault.kind {
+        FaultKind::RepeatedKey(_) => {
+            let first = parsed(text).flatten().and_then(|root| first_of(&root, &fault.bytes));
+            first.map_or(MarkKind::Key, MarkKind::Twice)
+        }
+        FaultKind::Syntax(message) => MarkKind::Fault(Some(message)),
+        FaultKind::ByteOrderMark | FaultKind::TooDeep | FaultKind::NotFinite => MarkKind::Fault(None),
+    };
+    Mark {
         bytes: fault.bytes,
-        kind: SpotKind::Fault(fault.message),
+        kind,
     }
 }
 
@@ -185,7 +182,7 @@ fn step<'a, 'p>(value: &'a Value<'a>, path: &'p str) -> Option<Way<'a, 'p>> {
 
 /// The value on a trail that is what was found: its end, an entry of its end, or what the rest of the path leads to from an
 /// entry of a list on the way (a value of an axis that is itself a list).
-fn value_found<'a>(trail: &[Way<'a, '_>], found: &str) -> Option<&'a Value<'a>> {
+fn value_found<'a>(trail: &[Way<'a, '_>], found: &serde_json::Value) -> Option<&'a Value<'a>> {
     trail.iter().rev().find_map(|at| {
         if at.rest.is_empty() && is(at.value, found) {
             return Some(at.value);
@@ -198,57 +195,15 @@ fn value_found<'a>(trail: &[Way<'a, '_>], found: &str) -> Option<&'a Value<'a>> 
     })
 }
 
-/// The key of an object that is the word found: a word where one of several is allowed as its only key.
-fn key_found(value: &Value<'_>, found: &str) -> Option<Range<usize>> {
-    let Value::Object(object) = value else { return None };
-    let word = found.strip_prefix('\'')?.strip_suffix('\'')?;
-    let property = object
-        .properties
-        .iter()
-        .find(|property| property.name.as_str() == word)?;
-    Some(range(&property.name))
-}
-
-/// Whether a value is a number or word that was found; what follows a comma is the finder's comment.
-fn is(value: &Value<'_>, found: &str) -> bool {
-    let found = found.split_once(", which").map_or(found, |(found, _)| found);
-    let found = found.strip_suffix(" twice").unwrap_or(found);
-    match value {
-        Value::NumberLit(number) => match (number.value.parse::<f64>(), found.parse::<f64>()) {
-            (Ok(number), Ok(found)) => number == found,
-            _ => false,
-        },
-        Value::StringLit(word) => {
-            let bare = found.strip_prefix("unknown ").unwrap_or(found);
-            [
-                format!("'{}'", word.value),
-                serde_json::Value::from(&*word.value).to_string(),
-            ]
-            .contains(&bare.to_owned())
-        }
-        Value::BooleanLit(word) => found == word.value.to_string(),
-        Value::NullKeyword(_) => found == "null",
-        Value::Object(_) | Value::Array(_) => false,
+/// Whether a value of the text is a number or word that was found.
+fn is(value: &Value<'_>, found: &serde_json::Value) -> bool {
+    match (value, found) {
+        (Value::NumberLit(number), found) => found.is_number() && number.value.parse().ok() == found.as_f64(),
+        (Value::StringLit(word), serde_json::Value::String(found)) => word.value == found.as_str(),
+        (Value::BooleanLit(word), serde_json::Value::Bool(found)) => word.value == *found,
+        (Value::NullKeyword(_), serde_json::Value::Null) => true,
+        _ => false,
     }
-}
-
-/// Whether something was looked for and not found.
-fn is_lack(found: &str) -> bool {
-    found == "nothing" || ["no ", "neither "].iter().any(|word| found.starts_with(word))
-}
-
-/// Whether what was found is said of a key and not of its value.
-fn says_of_key(found: &str) -> bool {
-    let words = [
-        "unknown ",
-        "a key ",
-        "an axis ",
-        "the kind of ",
-        "no list ",
-        "no place ",
-        "no object ",
-    ];
-    words.iter().any(|word| found.starts_with(word))
 }
 
 /// What of a value is shown: all of it, of one that goes over several lines its beginning.

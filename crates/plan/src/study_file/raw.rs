@@ -1,0 +1,317 @@
+//! The study file as it is written: its keys and their types.
+//!
+//! Knows what a person may write. Does not know ranges or which keys go together: `analysis` and `study` make of this what a
+//! run is asked.
+
+use crate::design::Design;
+use pontoon_core::bridge::Model;
+use pontoon_core::response::Record;
+use pontoon_core::vehicle::VehicleDesign;
+use schemars::JsonSchema;
+use serde::de::{Error, Unexpected};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
+
+/// A study as its file writes it.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudySpec {
+    /// Name of the study and of its folder of results: letters, digits, `_`, `-` and `.`, not beginning with `.`.
+    #[schemars(regex(pattern = r"^[A-Za-z0-9_-][A-Za-z0-9_.-]*$"))]
+    pub name: String,
+    /// What the study asks, in a sentence, for whoever reads its report.
+    #[serde(default)]
+    pub question: Option<String>,
+    /// Path of the bridge file, relative to the study file.
+    pub bridge: String,
+    /// The vehicle; a single footprint of 3.35 m on two tracks where absent.
+    #[serde(default)]
+    pub vehicle: VehicleDesign,
+    /// What is asked and how it is computed.
+    pub analysis: AnalysisSpec,
+    /// The designs, united in order; equal jobs run once.
+    #[schemars(length(min = 1))]
+    pub design: Vec<Design>,
+    /// What to keep of each job beyond its peaks.
+    #[serde(default)]
+    pub record: RecordSpec,
+}
+
+/// What to keep of each job beyond its peaks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RecordSpec {
+    /// Histories of crossings.
+    #[serde(default)]
+    pub histories: HistoriesSpec,
+    /// Whether to write the table of positions.
+    #[serde(default = "yes")]
+    pub positions: bool,
+    /// Whether to write the table of connectors.
+    #[serde(default = "yes")]
+    pub connectors: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Default for RecordSpec {
+    fn default() -> Self {
+        Self {
+            histories: HistoriesSpec::default(),
+            positions: true,
+            connectors: true,
+        }
+    }
+}
+
+/// Whose histories to keep.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HistoriesSpec {
+    /// Position numbers, 1 to modules + 1: deflection.
+    #[serde(default)]
+    pub positions: Vec<usize>,
+    /// Joint numbers, 2 to modules: force.
+    #[serde(default)]
+    pub joints: Vec<usize>,
+}
+
+impl HistoriesSpec {
+    /// Whether any history is asked for.
+    pub fn asked(&self) -> bool {
+        !(self.positions.is_empty() && self.joints.is_empty())
+    }
+
+    /// The same as the mechanics takes it.
+    pub fn record(&self) -> Record {
+        Record {
+            positions: self.positions.clone(),
+            joints: self.joints.clone(),
+        }
+    }
+}
+
+/// What is asked of the bridge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A vehicle crosses at constant speed.
+    Crossing,
+    /// A vehicle stands still.
+    Static,
+    /// The bridge oscillates by itself, linearly connected: natural frequencies and the names of their shapes.
+    Modes,
+}
+
+/// Which solver integrates a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverSpec {
+    /// The bridge operator: modes, residual flexibilities and a small piecewise-linear system, many crossings at once.
+    #[default]
+    Operator,
+    /// Direct integration of the assembled bridge, the operator's judge.
+    Reference,
+}
+
+/// Length of a crossing's steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum TimeStepSpec {
+    /// As stated `[s]`.
+    Seconds(f64),
+    /// Each job's own: 0.02 s, halved as often as its peak force asks for.
+    Auto(AutoSpec),
+}
+
+/// The word that leaves the time step to the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AutoSpec {
+    /// Follow an error estimate.
+    Auto,
+}
+
+/// The reference solver as judge of the operator: which share of the jobs it solves again, and how far the operator may be
+/// off.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VerifySpec {
+    /// Share of the jobs, above 0 to 1: the first and then evenly one in `1 / share`.
+    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
+    pub share: f64,
+    /// How far the largest deflection may be off, as a share of the reference solver's.
+    #[serde(default = "default_deflection_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub deflection_tolerance: f64,
+    /// How far the largest compression may be off, as a share of the job's largest joint force.
+    #[serde(default = "default_compression_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub compression_tolerance: f64,
+    /// How far the largest tension may be off, on the same scale.
+    #[serde(default = "default_tension_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub tension_tolerance: f64,
+}
+
+fn default_deflection_tolerance() -> f64 {
+    0.005
+}
+
+fn default_compression_tolerance() -> f64 {
+    0.02
+}
+
+fn default_tension_tolerance() -> f64 {
+    0.1
+}
+
+impl VerifySpec {
+    /// Whether a job is one of those that are solved again.
+    pub fn takes(&self, job: usize) -> bool {
+        let before = |n: usize| (n as f64 * self.share).floor();
+        job == 0 || before(job) > before(job - 1)
+    }
+}
+
+/// Which matrices a module contributes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelSpec {
+    /// Every degree of freedom of the shells and beams.
+    Full,
+    /// The condensed module.
+    #[default]
+    SuperElement,
+}
+
+impl From<ModelSpec> for Model {
+    fn from(model: ModelSpec) -> Self {
+        match model {
+            ModelSpec::Full => Self::Full,
+            ModelSpec::SuperElement => Self::SuperElement,
+        }
+    }
+}
+
+/// Rayleigh damping.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DampingSpec {
+    /// Ratio of critical damping at both frequencies.
+    #[serde(default = "default_ratio")]
+    #[schemars(range(min = 0.0, max = 0.99))]
+    pub ratio: f64,
+    /// The two frequencies, increasing `[Hz]`; absent: the first two vertical bending modes of the job's own bridge,
+    /// linearly connected and floating free.
+    #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
+    pub frequencies_hz: Option<[f64; 2]>,
+}
+
+/// Two numbers or nothing; a list of another length is told as such.
+fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    let list: Option<Vec<f64>> = Option::deserialize(deserializer)?;
+    let to_pair = |list: Vec<f64>| {
+        let wrong = D::Error::invalid_length(list.len(), &"a list of two numbers");
+        <[f64; 2]>::try_from(list).map_err(|_| wrong)
+    };
+    list.map(to_pair).transpose()
+}
+
+fn default_ratio() -> f64 {
+    0.05
+}
+
+impl Default for DampingSpec {
+    fn default() -> Self {
+        Self {
+            ratio: default_ratio(),
+            frequencies_hz: None,
+        }
+    }
+}
+
+/// What is asked and how it is computed. The keys of a crossing have no place in a study of another kind, nor have those of
+/// modes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnalysisSpec {
+    /// What is asked of the bridge.
+    pub kind: Kind,
+    /// Time step of a crossing `[s]`; 0.01 where absent. At most the passage of one module. `"auto"`: each job's own, 0.02 s
+    /// halved until its peak force changes no more than `time_step_tolerance`.
+    #[serde(default, deserialize_with = "time_step", skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub time_step_s: Option<TimeStepSpec>,
+    /// How far a job's peak force may be off for its time step, as a share of it; 0.02 where absent. A key of `"auto"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 0.5), extend("exclusiveMinimum" = 0.0))]
+    pub time_step_tolerance: Option<f64>,
+    /// How long a crossing goes on after the vehicle has left the bridge `[s]`; 6 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub tail_s: Option<f64>,
+    /// Solver of a crossing; `operator` where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<SolverSpec>,
+    /// What the operator may leave out: modes are added until the flexibility of connectors and deck at 5 Hz is off by no
+    /// more than this share; 0.0006 where absent. A key of the operator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 0.1))]
+    pub operator_tolerance: Option<f64>,
+    /// A share of the jobs solved again by the reference solver; none where absent. A key of the operator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verify: Option<VerifySpec>,
+    /// Model of the modules.
+    #[serde(default)]
+    pub model: ModelSpec,
+    /// Spectral radius at infinite frequency of a crossing's time integration, 0 to 1; 0.9 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub spectral_radius: Option<f64>,
+    /// Newton solutions that a crossing's step may take before it is halved; 30 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub newton_limit: Option<usize>,
+    /// How often a crossing's step may be halved before the job fails; 8 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 12))]
+    pub bisection_limit: Option<usize>,
+    /// Time steps beyond which a crossing is not run but fails; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 10_000_000))]
+    pub step_limit: Option<usize>,
+    /// Damping of a crossing; 5 % at the bridge's own first two vertical bending modes where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<DampingSpec>,
+    /// How many modes, from the lowest; 20 where absent. A key of modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub count: Option<usize>,
+    /// Whether the modes are those of the bridge on its supports; floating free where absent. A key of modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supports: Option<bool>,
+}
+
+/// A number or the word; anything else is refused.
+fn time_step<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<TimeStepSpec>, D::Error> {
+    let read = |value: Value| match &value {
+        Value::Number(number) => Ok(TimeStepSpec::Seconds(number.as_f64().unwrap_or(f64::NAN))),
+        Value::String(word) if word == "auto" => Ok(TimeStepSpec::Auto(AutoSpec::Auto)),
+        other => {
+            let text = other.to_string();
+            let found = match other {
+                Value::String(word) => Unexpected::Str(word),
+                Value::Bool(flag) => Unexpected::Bool(*flag),
+                Value::Array(_) => Unexpected::Seq,
+                Value::Object(_) => Unexpected::Map,
+                _ => Unexpected::Other(&text),
+            };
+            Err(D::Error::invalid_value(found, &"a number of seconds or \"auto\""))
+        }
+    };
+    let value: Option<Value> = Option::deserialize(deserializer)?;
+    value.map(read).transpose()
+}

@@ -1,0 +1,219 @@
+//! What columns and axes are called, in which unit they are, and how a number is written for people: the one place that makes
+//! labels and digits.
+//!
+//! Knows the registries of columns and of axes, and the suffixes by which all other names tell units. Does not know tables.
+
+use crate::registry::{Column, Digits};
+use pontoon_plan::design::NamedAxis;
+use pontoon_plan::input::Cell;
+
+/// Suffixes of names with the units that they tell, the longer before the shorter.
+const UNITS: [(&str, &str); 16] = [
+    ("_kg_m3", "kg/m³"),
+    ("_kg_m2", "kg/m²"),
+    ("_pa_m", "Pa/m"),
+    ("_kg_m", "kg/m"),
+    ("_m_s", "m/s"),
+    ("_n_m", "N/m"),
+    ("_1_s", "1/s"),
+    ("_m2", "m²"),
+    ("_m4", "m⁴"),
+    ("_pa", "Pa"),
+    ("_kg", "kg"),
+    ("_hz", "Hz"),
+    ("_rad", "rad"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_s", "s"),
+];
+
+/// The unit of a column or axis; empty where it has none.
+pub fn unit(name: &str) -> &'static str {
+    let axis = NamedAxis::of(name).map(|axis| axis.unit);
+    let column = || Column::named(name).map(|column| column.unit);
+    axis.or_else(column).unwrap_or_else(|| split(name).1)
+}
+
+fn split(name: &str) -> (&str, &'static str) {
+    let found = UNITS
+        .iter()
+        .find_map(|(suffix, unit)| Some((name.strip_suffix(suffix)?, *unit)));
+    found.filter(|(stem, _)| !stem.is_empty()).unwrap_or((name, ""))
+}
+
+/// What a column or axis is called in words: `gap_tension_m` is "tension gap", `bridge.module.deck_thickness_m` "module deck
+/// thickness".
+pub fn label(name: &str) -> String {
+    let axis = NamedAxis::of(name).map(|axis| axis.label);
+    let column = || Column::named(name).map(|column| column.label);
+    if let Some(label) = axis.or_else(column) {
+        return label.to_owned();
+    }
+    let (stem, _) = split(name);
+    let path = ["bridge.", "vehicle.", "analysis."]
+        .iter()
+        .find_map(|root| stem.strip_prefix(root))
+        .unwrap_or(stem);
+    path.replace(['.', '_'], " ")
+}
+
+/// Orders of magnitude in which a number is written out; others are written with an exponent.
+const WRITTEN_OUT: std::ops::Range<i32> = -5..9;
+
+/// A number with so many significant digits, all of them written.
+pub fn all_digits(x: f64, digits: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{}", x + 0.0);
+    }
+    let order = x.abs().log10().floor() as i32;
+    let behind = digits.saturating_sub(1);
+    if WRITTEN_OUT.contains(&order) {
+        let decimals = usize::try_from(behind as i32 - order).unwrap_or(0);
+        format!("{x:.decimals$}")
+    } else {
+        format!("{x:.behind$e}")
+    }
+}
+
+/// A number with at most so many significant digits, none that says nothing; a whole one in full.
+pub fn number(x: f64, digits: usize) -> String {
+    let text = all_digits(x, digits);
+    let (mantissa, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
+    let mantissa = if mantissa.contains('.') {
+        mantissa.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        mantissa
+    };
+    format!("{mantissa}{exponent}")
+}
+
+/// A number as a person wrote it, without what decimals leave in the last bits.
+pub fn as_written(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-6 {
+        return format!("{x:e}");
+    }
+    format!("{}", (x * 1e9).round() / 1e9)
+}
+
+/// A share as a percentage with its sign.
+pub fn percent(share: f64) -> String {
+    let x = 100.0 * share;
+    if x != 0.0 && x.abs() < 0.005 {
+        format!("{x:+.0e} %")
+    } else {
+        format!("{x:+.2} %")
+    }
+}
+
+/// Digits of a number on a page and in a figure.
+pub const SHOWN: usize = 5;
+
+/// Digits of a value of an axis in a table of the terminal.
+const LISTED: usize = 6;
+
+/// A number of a column with the digits that people read of it.
+pub fn digits(name: &str, x: f64) -> String {
+    match Column::named(name).map_or(Digits::Significant(LISTED), |column| column.digits) {
+        Digits::Decimals(decimals) => format!("{x:.decimals$}"),
+        Digits::Significant(digits) => number(x, digits),
+    }
+}
+
+/// A cell of a column in a table of the terminal: a dash where there is nothing.
+pub fn listed(name: &str, cell: &Cell<'_>) -> String {
+    match cell {
+        Cell::Nothing => "-".to_owned(),
+        Cell::Whole(whole) => whole.to_string(),
+        Cell::Number(x) => digits(name, *x),
+        other => printable(&other.text()),
+    }
+}
+
+/// A value of a column as people say it: `0.028` of `gap_tension_m` is "28 mm", `230300` of `load_n` "230.3 kN".
+pub fn value(name: &str, cell: &Cell<'_>) -> String {
+    let Some(x) = cell.number() else {
+        return match cell {
+            Cell::Nothing => "-".to_owned(),
+            other => other.text(),
+        };
+    };
+    let (x, unit) = match unit(name) {
+        "m" if x.abs() < 0.1 => (1e3 * x, "mm"),
+        "N" if x.abs() >= 1e3 => (1e-3 * x, "kN"),
+        unit => (x, unit),
+    };
+    let space = if unit.is_empty() { "" } else { " " };
+    format!("{}{space}{unit}", number(x, SHOWN))
+}
+
+/// A word that keeps to its line: a blank for whatever is no character to be seen.
+pub fn printable(word: &str) -> String {
+    word.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_their_units_and_read_as_words() {
+        assert_eq!(
+            ["speed_m_s", "load_n", "gap_tension_m", "connection"].map(unit),
+            ["m/s", "N", "m", ""]
+        );
+        assert_eq!(unit("bridge.hydrostatic_stiffness_pa_m"), "Pa/m");
+        assert_eq!(label("bridge.hydrostatic_stiffness_pa_m"), "hydrostatic stiffness");
+        assert_eq!(
+            ["peak_deflection_m", "gap_tension_m", "speed_m_s"].map(label),
+            ["peak deflection", "tension gap", "speed"]
+        );
+        // a path that a name of its own stands for is called as that
+        assert_eq!(label("bridge.connectors.gap_tension_m"), "tension gap");
+    }
+
+    #[test]
+    fn values_are_said_in_the_unit_that_fits() {
+        let said = [
+            ("gap_tension_m", Cell::Number(0.028)),
+            ("gap_compression_m", Cell::Number(0.0055)),
+            ("gap_tension_m", Cell::Number(0.0)),
+            ("load_n", Cell::Whole(230_300)),
+            ("speed_m_s", Cell::Number(6.09)),
+            ("connection", Cell::from("linear")),
+            ("load_position", Cell::Whole(7)),
+            ("gap_tension_m", Cell::Nothing),
+        ];
+        let said = said.map(|(name, cell)| value(name, &cell));
+        assert_eq!(
+            said,
+            ["28 mm", "5.5 mm", "0 mm", "230.3 kN", "6.09 m/s", "linear", "7", "-"]
+        );
+    }
+
+    #[test]
+    fn numbers_have_the_digits_that_are_asked_for() {
+        let texts = [0.1 + 0.2, 1e-9, 123_456.7, 3.0, -0.0].map(|x| number(x, 5));
+        assert_eq!(texts, ["0.3", "1e-9", "123457", "3", "0"]);
+        let texts = [0.141_234, 74.0, 230_300.0, -0.000_123_46, 0.0, 1e12, 9.9999].map(|x| all_digits(x, 4));
+        assert_eq!(
+            texts,
+            ["0.1412", "74.00", "230300", "-0.0001235", "0", "1.000e12", "10.000"]
+        );
+        assert_eq!([0.021, -0.000_04, 1e-9].map(percent), ["+2.10 %", "-4e-3 %", "+1e-7 %"]);
+        assert_eq!([0.1 + 0.2, 74.0, 1e-7].map(as_written), ["0.3", "74", "1e-7"]);
+    }
+
+    #[test]
+    fn a_column_is_read_to_its_own_digits() {
+        let texts = [
+            ("peak_deflection_m", Cell::Number(0.14)),
+            ("peak_compression_n", Cell::Number(373_692.38)),
+            ("frequency_hz", Cell::Number(0.4)),
+            ("speed_m_s", Cell::Number(6.09)),
+            ("speed_m_s", Cell::Whole(3)),
+            ("peak_deflection_m", Cell::Nothing),
+        ];
+        let texts = texts.map(|(name, cell)| listed(name, &cell));
+        assert_eq!(texts, ["0.1400", "373692", "0.40000", "6.09", "3", "-"]);
+    }
+}

@@ -1,0 +1,519 @@
+//! The columns of all tables, one entry each: name, unit, label, what it is, where its cells come from, who shows it.
+//!
+//! Tables, the report, figures, the terminal and the book's tables read this list. Knows columns and records. Does not know how a
+//! number came about, nor which rows there are.
+
+use crate::arrays::CellKind;
+use crate::record::{ConnectorRow, JobRecord, ModeRow, PositionRow};
+use crate::table::TableName;
+use CellKind::{Counts, Flags, Numbers, Texts, Words};
+use pontoon_plan::input::Cell;
+use serde::Serialize;
+use std::borrow::Cow;
+
+/// A column of a table.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Column {
+    /// The table.
+    pub table: TableName,
+    /// Its name.
+    pub name: &'static str,
+    /// What its cells are.
+    #[serde(flatten)]
+    pub cells: CellKind,
+    /// Its unit; empty of counts, shares and words.
+    pub unit: &'static str,
+    /// What it is called in words.
+    pub label: &'static str,
+    /// What it is.
+    pub text: &'static str,
+    /// When a table has it.
+    pub when: When,
+    /// Where its cells come from.
+    #[serde(skip)]
+    pub(crate) source: Source,
+    /// How many digits people read.
+    #[serde(skip)]
+    pub digits: Digits,
+    /// Which part it has in what people look at.
+    #[serde(skip)]
+    pub role: Role,
+    /// Whether points of an experiment may be drawn in its chart.
+    #[serde(skip)]
+    pub drawn: bool,
+    /// Whether the summary has it.
+    #[serde(skip)]
+    pub in_summary: bool,
+    /// Its card on a page.
+    #[serde(skip)]
+    pub card: Option<Card>,
+    /// Its panel in a figure against speed.
+    #[serde(skip)]
+    pub curve: Option<Curve>,
+}
+
+/// Where the cells of a column come from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Source {
+    /// A job's record.
+    Job(fn(&JobRecord) -> Cell<'_>),
+    /// A row of positions.
+    Position(fn(&RowOf<'_, PositionRow>) -> Cell<'static>),
+    /// A row of connectors.
+    Connector(fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>),
+    /// A sample of a history.
+    Sample(for<'a> fn(&Sample<'a>) -> Cell<'a>),
+    /// A mode.
+    Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>),
+}
+
+/// A row of a table with its job.
+#[derive(Debug)]
+pub(crate) struct RowOf<'a, R> {
+    /// The job's number.
+    pub(crate) job: usize,
+    /// The row.
+    pub(crate) row: &'a R,
+}
+
+/// A sample of a history.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample<'a> {
+    /// The job's number.
+    pub(crate) job: usize,
+    /// Its time `[s]`.
+    pub(crate) time_s: f64,
+    /// What the history is of.
+    pub(crate) quantity: &'a str,
+    /// Position or joint number.
+    pub(crate) position: usize,
+    /// The value, in the unit of the quantity.
+    pub(crate) value: f64,
+}
+
+/// When a table has a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum When {
+    /// In every study that leaves the table.
+    Always,
+    /// In studies of crossings and static cases.
+    Loaded,
+    /// In studies of static cases.
+    Static,
+    /// In studies of crossings.
+    Crossing,
+    /// In studies of modes.
+    Modes,
+    /// Where a job's time step was to be found.
+    AutoTimeStep,
+    /// Where jobs are solved again.
+    Verify,
+}
+
+/// How many digits of a number people read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// So many behind the point.
+    Decimals(usize),
+    /// So many from the first that is not zero, none that says nothing.
+    Significant(usize),
+}
+
+/// Which part a column has in what people look at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// It says which row it is.
+    Key,
+    /// It says what became of the job.
+    State,
+    /// A number of a job whose largest value matters.
+    Measure,
+    /// A number that a page lists with the job.
+    Listed,
+    /// A number that the table keeps.
+    Kept,
+}
+
+/// A card of the largest value of a measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Card {
+    /// In words.
+    pub label: &'static str,
+    /// What the place is one of: `position`, `joint`.
+    pub place: Option<(&'static str, &'static str)>,
+    /// The column of its time.
+    pub time: Option<&'static str>,
+}
+
+/// A panel of a figure against speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve {
+    /// The figure.
+    pub figure: SpeedFigure,
+    /// What the axis up is called.
+    pub label: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What a number of the table is multiplied by to be in that unit.
+    pub factor: f64,
+}
+
+/// A figure against speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpeedFigure {
+    /// Deflection and uplift.
+    Deflection,
+    /// Forces of joints.
+    Force,
+}
+
+impl SpeedFigure {
+    /// All figures.
+    pub const ALL: [Self; 2] = [Self::Deflection, Self::Force];
+}
+
+const fn column(
+    table: TableName,
+    (name, cells): (&'static str, CellKind),
+    (label, text): (&'static str, &'static str),
+    source: Source,
+) -> Column {
+    Column {
+        table,
+        name,
+        cells,
+        unit: "",
+        label,
+        text,
+        when: When::Always,
+        source,
+        digits: Digits::Significant(6),
+        role: Role::Kept,
+        drawn: false,
+        in_summary: false,
+        card: None,
+        curve: None,
+    }
+}
+
+impl Column {
+    const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    const fn when(self, when: When) -> Self {
+        Self { when, ..self }
+    }
+
+    const fn role(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
+
+    const fn decimals(self, decimals: usize) -> Self {
+        Self {
+            digits: Digits::Decimals(decimals),
+            ..self
+        }
+    }
+
+    const fn drawn(self) -> Self {
+        Self { drawn: true, ..self }
+    }
+
+    const fn in_summary(self) -> Self {
+        Self {
+            in_summary: true,
+            ..self
+        }
+    }
+
+    const fn card(self, card: Card) -> Self {
+        Self {
+            card: Some(card),
+            ..self
+        }
+    }
+
+    const fn curve(self, curve: Curve) -> Self {
+        Self {
+            curve: Some(curve),
+            ..self
+        }
+    }
+
+    /// A length `[m]`, read to a tenth of a millimetre.
+    const fn metres(self) -> Self {
+        self.unit("m").decimals(4)
+    }
+
+    /// A force `[N]`, read to a newton.
+    const fn newtons(self) -> Self {
+        self.unit("N").decimals(0)
+    }
+}
+
+type Names = (&'static str, &'static str);
+
+/// A column of every table of jobs.
+const fn of_record(name: &'static str, cells: CellKind, names: Names, of: fn(&JobRecord) -> Cell<'_>) -> Column {
+    column(TableName::Jobs, (name, cells), names, Source::Job(of))
+}
+
+/// A column of the table of jobs of crossings and static cases.
+const fn of_job(name: &'static str, cells: CellKind, names: Names, of: fn(&JobRecord) -> Cell<'_>) -> Column {
+    of_record(name, cells, names, of).when(When::Loaded)
+}
+
+/// A number of a job whose largest value matters.
+const fn measure(
+    name: &'static str,
+    label: &'static str,
+    text: &'static str,
+    of: fn(&JobRecord) -> Cell<'_>,
+) -> Column {
+    of_job(name, CellKind::Numbers, (label, text), of).role(Role::Measure)
+}
+
+const fn of_position(
+    name: &'static str,
+    cells: CellKind,
+    names: Names,
+    of: fn(&RowOf<'_, PositionRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Positions, (name, cells), names, Source::Position(of))
+}
+
+const fn of_connector(
+    name: &'static str,
+    cells: CellKind,
+    names: Names,
+    of: fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Connectors, (name, cells), names, Source::Connector(of))
+}
+
+const fn of_sample(
+    name: &'static str,
+    cells: CellKind,
+    names: Names,
+    of: for<'a> fn(&Sample<'a>) -> Cell<'a>,
+) -> Column {
+    column(TableName::Histories, (name, cells), names, Source::Sample(of))
+}
+
+const fn of_mode(
+    name: &'static str,
+    cells: CellKind,
+    names: Names,
+    of: for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>,
+) -> Column {
+    column(TableName::Modes, (name, cells), names, Source::Mode(of))
+}
+
+const fn peak_card(label: &'static str, place: (&'static str, &'static str), time: Option<&'static str>) -> Card {
+    Card {
+        label,
+        place: Some(place),
+        time,
+    }
+}
+
+const fn plain_card(label: &'static str) -> Card {
+    Card {
+        label,
+        place: None,
+        time: None,
+    }
+}
+
+const fn centimetres(label: &'static str) -> Curve {
+    Curve {
+        figure: SpeedFigure::Deflection,
+        label,
+        unit: "cm",
+        factor: 100.0,
+    }
+}
+
+const fn kilonewtons(label: &'static str) -> Curve {
+    Curve {
+        figure: SpeedFigure::Force,
+        label,
+        unit: "kN",
+        factor: 1e-3,
+    }
+}
+
+fn status(record: &JobRecord) -> Cell<'_> {
+    if record.failure.is_none() { "ok" } else { "failed" }.into()
+}
+
+fn reason(record: &JobRecord) -> Cell<'_> {
+    match (&record.failure, &record.retried) {
+        (Some(failure), _) => failure.text.as_str().into(),
+        (None, Some(retried)) => {
+            let text = format!("at half the time step; at its own: {}", retried.text);
+            Cell::Word(Cow::Owned(text))
+        }
+        (None, None) => Cell::Nothing,
+    }
+}
+
+/// The words of `quantity`: what a history is of, with its unit and its sense.
+pub const QUANTITIES: [&str; 2] = ["deflection_m", "force_n"];
+
+/// The columns of all tables in their order; those of the axes stand behind the state of the jobs.
+#[rustfmt::skip]
+pub const COLUMNS: &[Column] = &[
+    of_record("job", Counts, ("job", "number of the job, from 0"), |r| r.job.into()).role(Role::Key),
+    of_record("status", Words(&["ok", "failed"]), ("status", "what became of the job"), status).role(Role::State),
+    of_record("reason", Texts, ("reason", "why it failed, or what else is to be said"), reason).role(Role::State),
+    of_record("failure", Texts, ("failure", "the kind of the failure"), |r| r.failure.as_ref().map(|failure| failure.kind.word()).into()).role(Role::State),
+    measure("peak_deflection_m", "peak deflection", "largest deflection of any position", |r| r.summary.peak_deflection_m.into()).metres().drawn().in_summary()
+        .card(peak_card("largest deflection", ("position", "peak_deflection_position"), Some("peak_deflection_time_s")))
+        .curve(centimetres("Peak deflection")),
+    of_job("peak_deflection_position", Counts, ("peak deflection position", "its position"), |r| r.summary.peak_deflection_position.into()).role(Role::Listed),
+    of_job("peak_deflection_time_s", Numbers, ("peak deflection time", "its time"), |r| r.summary.peak_deflection_time_s.into()).unit("s").role(Role::Listed),
+    measure("peak_uplift_m", "peak uplift", "largest uplift of any position", |r| r.summary.peak_uplift_m.into()).metres().drawn().in_summary()
+        .card(peak_card("largest uplift", ("position", "peak_uplift_position"), Some("peak_uplift_time_s")))
+        .curve(centimetres("Peak uplift")),
+    of_job("peak_uplift_position", Counts, ("peak uplift position", "its position"), |r| r.summary.peak_uplift_position.into()).role(Role::Listed),
+    of_job("peak_uplift_time_s", Numbers, ("peak uplift time", "its time"), |r| r.summary.peak_uplift_time_s.into()).unit("s"),
+    measure("peak_compression_n", "peak compression", "largest compression of any joint, its connectors added", |r| r.summary.peak_compression_n.into()).newtons().drawn().in_summary()
+        .card(peak_card("largest compression", ("joint", "peak_compression_joint"), None))
+        .curve(kilonewtons("Peak compression of a joint")),
+    of_job("peak_compression_joint", Counts, ("peak compression joint", "its joint"), |r| r.summary.peak_compression_joint.into()).role(Role::Listed),
+    measure("peak_tension_n", "peak tension", "largest tension of any joint, its connectors added", |r| r.summary.peak_tension_n.into()).newtons().drawn().in_summary()
+        .card(peak_card("largest tension", ("joint", "peak_tension_joint"), None))
+        .curve(kilonewtons("Peak tension of a joint")),
+    of_job("peak_tension_joint", Counts, ("peak tension joint", "its joint"), |r| r.summary.peak_tension_joint.into()).role(Role::Listed),
+    measure("peak_edge_deflection_m", "peak edge deflection", "largest deflection of the deck's edges", |r| r.summary.peak_edge_deflection_m.into()).metres().drawn(),
+    measure("peak_roll_rad", "peak roll", "largest roll of a module end", |r| r.summary.peak_roll_rad.into()).unit("rad"),
+    measure("static_peak_deflection_m", "static peak deflection", "largest deflection of the same load creeping over the bridge", |r| r.summary.static_peak_deflection_m.into()).metres().drawn(),
+    measure("dynamic_amplification", "dynamic amplification", "peak deflection over static peak deflection", |r| r.summary.dynamic_amplification.into()).drawn()
+        .card(plain_card("largest dynamic amplification")),
+    measure("influential_length_m", "influential length", "length over which a static load presses the bridge down", |r| r.summary.influential_length_m.into()).unit("m")
+        .card(plain_card("longest influential length")),
+    of_job("bottom_emerged", Flags, ("bottom emerged", "whether a module's bottom rose above the water; null unless the bridge has `draft_m`"), |r| r.summary.bottom_emerged.into()),
+    of_job("deck_submerged", Flags, ("deck submerged", "whether a module's deck went below the water; null unless the bridge has `freeboard_m`"), |r| r.summary.deck_submerged.into()),
+    of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle; below zero it would have lifted off"), |r| r.summary.min_contact_force_n.into()).unit("N").role(Role::Listed),
+    of_job("time_step_s", Numbers, ("time step", "time step found for the job"), |r| r.summary.time_step_s.into()).unit("s").when(When::AutoTimeStep).role(Role::Listed),
+    of_job("steps", Counts, ("steps", "time steps"), |r| r.summary.steps.into()).role(Role::Listed),
+    of_job("newton_iterations", Counts, ("newton iterations", "Newton solutions"), |r| r.summary.newton_iterations.into()),
+    of_job("contact_switches", Counts, ("contact switches", "trusses that opened or closed"), |r| r.summary.contact_switches.into()).role(Role::Listed),
+    of_job("energy_residual", Numbers, ("energy residual", "largest gap of the energy balance, a share of the load's work"), |r| r.summary.energy_residual.into()).role(Role::Listed),
+    of_job("numerical_dissipation", Numbers, ("numerical dissipation", "largest numerical dissipation, a share of the load's work"), |r| r.summary.numerical_dissipation.into()).role(Role::Listed),
+    of_job("verify_deflection", Numbers, ("verify deflection", "how far the operator's largest deflection is off, a share of the reference solver's"), |r| r.summary.verify_deflection.into()).when(When::Verify).role(Role::Listed),
+    of_job("verify_compression", Numbers, ("verify compression", "the same of the largest compression, a share of the job's largest joint force"), |r| r.summary.verify_compression.into()).when(When::Verify),
+    of_job("verify_tension", Numbers, ("verify tension", "the same of the largest tension, on that scale"), |r| r.summary.verify_tension.into()).when(When::Verify),
+    of_job("verify_held", Flags, ("verify held", "whether all are within their tolerances"), |r| r.summary.verify_held.into()).when(When::Verify),
+    measure("structural_mass_kg", "structural mass", "structural mass of a module", |r| r.summary.structural_mass_kg.into()).unit("kg").when(When::Modes),
+
+    of_position("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
+    of_position("position", Counts, ("position", "number of the module end, from 1"), |r| r.row.position.into()).role(Role::Key),
+    of_position("x_m", Numbers, ("x", "its place along the bridge"), |r| r.row.x_m.into()).unit("m"),
+    of_position("peak_deflection_m", Numbers, ("peak deflection", "largest deflection"), |r| r.row.deflection.value.into()).metres().drawn(),
+    of_position("peak_deflection_time_s", Numbers, ("peak deflection time", "its time"), |r| r.row.deflection.time_s.into()).unit("s"),
+    of_position("peak_uplift_m", Numbers, ("peak uplift", "largest uplift"), |r| r.row.uplift.value.into()).metres().drawn(),
+    of_position("peak_uplift_time_s", Numbers, ("peak uplift time", "its time"), |r| r.row.uplift.time_s.into()).unit("s"),
+    of_position("deflection_m", Numbers, ("deflection", "deflection of a static case, positive downward"), |r| r.row.static_deflection_m.into()).metres().when(When::Static).drawn(),
+    of_position("static_peak_deflection_m", Numbers, ("static peak deflection", "largest deflection under the same load creeping over the bridge"), |r| r.row.static_peak_deflection_m.into()).metres().when(When::Crossing),
+
+    of_connector("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
+    of_connector("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.row.joint.into()).role(Role::Key),
+    of_connector("y_m", Numbers, ("y", "place of the connector across; null of the joint's connectors added"), |r| r.row.y_m.into()).unit("m").role(Role::Key),
+    of_connector("peak_compression_n", Numbers, ("peak compression", "largest compression"), |r| r.row.compression.value.into()).newtons().drawn(),
+    of_connector("peak_compression_time_s", Numbers, ("peak compression time", "its time"), |r| r.row.compression.time_s.into()).unit("s"),
+    of_connector("peak_tension_n", Numbers, ("peak tension", "largest tension"), |r| r.row.tension.value.into()).newtons().drawn(),
+    of_connector("peak_tension_time_s", Numbers, ("peak tension time", "its time"), |r| r.row.tension.time_s.into()).unit("s"),
+
+    of_sample("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
+    of_sample("time_s", Numbers, ("time", "time since the vehicle's front is at the bridge"), |r| r.time_s.into()).unit("s").role(Role::Key),
+    of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.quantity.into()).role(Role::Key),
+    of_sample("position", Counts, ("position", "position of a deflection, joint of a force"), |r| r.position.into()).role(Role::Key),
+    of_sample("value", Numbers, ("value", "the quantity, in its unit"), |r| r.value.into()),
+
+    of_mode("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
+    of_mode("number", Counts, ("number", "number of the mode, from 1"), |r| r.row.number.into()).role(Role::Key),
+    of_mode("frequency_hz", Numbers, ("frequency", "natural frequency"), |r| r.row.frequency_hz.into()).unit("Hz").decimals(5),
+    of_mode("shape", Texts, ("shape", "name of the shape"), |r| r.row.shape.as_str().into()),
+    of_mode("vertical_share", Numbers, ("vertical share", "vertical share of the kinetic energy"), |r| r.row.vertical_share.into()).decimals(4),
+    of_mode("torsion_share", Numbers, ("torsion share", "share of torsion"), |r| r.row.torsion_share.into()).decimals(4),
+    of_mode("horizontal_share", Numbers, ("horizontal share", "horizontal share"), |r| r.row.horizontal_share.into()).decimals(4),
+    of_mode("axial_share", Numbers, ("axial share", "share along the bridge"), |r| r.row.axial_share.into()).decimals(4),
+];
+
+impl Column {
+    /// The columns of a table, in their order.
+    pub fn of_table(table: TableName) -> impl Iterator<Item = &'static Self> {
+        COLUMNS.iter().filter(move |column| column.table == table)
+    }
+
+    /// The column of a table by its name.
+    pub fn of(table: TableName, name: &str) -> Option<&'static Self> {
+        Self::of_table(table).find(|column| column.name == name)
+    }
+
+    /// The first column of a name, whatever its table.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    /// The cell of a mode that stands alone; nothing in a column of another table.
+    pub fn of_mode<'a>(&self, mode: &'a ModeRow) -> Cell<'a> {
+        match self.source {
+            Source::Mode(of) => of(&RowOf { job: 0, row: mode }),
+            _ => Cell::Nothing,
+        }
+    }
+
+    /// The numbers of a job whose largest values matter.
+    pub fn measures() -> impl Iterator<Item = &'static Self> {
+        Self::of_table(TableName::Jobs).filter(|column| column.role == Role::Measure)
+    }
+
+    /// The peaks that a summary of crossings or static cases has.
+    pub fn of_summary() -> impl Iterator<Item = &'static Self> {
+        Self::of_table(TableName::Jobs).filter(|column| column.in_summary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_column_stands_once_and_ends_in_its_unit() {
+        for (i, column) in COLUMNS.iter().enumerate() {
+            let twice = COLUMNS[..i]
+                .iter()
+                .any(|other| (other.table, other.name) == (column.table, column.name));
+            assert!(!twice, "{column:?}");
+            let suffix = column.unit.to_lowercase().replace('/', "_");
+            assert!(
+                suffix.is_empty() || column.name.ends_with(&format!("_{suffix}")),
+                "{column:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn each_number_of_a_job_has_its_column() {
+        let summary = serde_json::to_value(crate::Summary::default()).unwrap();
+        for name in summary.as_object().unwrap().keys() {
+            assert!(Column::of(TableName::Jobs, name).is_some(), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_a_card_names_is_a_column_of_jobs() {
+        let cards = COLUMNS.iter().filter_map(|column| column.card);
+        for name in cards
+            .flat_map(|card| [card.place.map(|(_, column)| column), card.time])
+            .flatten()
+        {
+            assert!(Column::of(TableName::Jobs, name).is_some(), "{name}");
+        }
+    }
+}

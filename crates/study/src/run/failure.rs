@@ -1,0 +1,122 @@
+//! Why a job gave no record: an error of the mechanics as the failure that a record keeps.
+//!
+//! Knows which error is of which kind, which numbers it has, and which failures a smaller time step may help. Does not know
+//! tables.
+
+use super::retry::half_step_may_help;
+use pontoon_core::analysis::AnalysisError;
+use pontoon_core::bridge::BridgeError;
+use pontoon_core::fem::FemError;
+use pontoon_core::operator::OperatorError;
+use pontoon_results::{Failure, FailureKind};
+
+/// Why a job gave no record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct JobFailure {
+    /// What the record keeps.
+    pub(super) failure: Failure,
+    /// Whether half the time step may help.
+    pub(super) half_step_may_help: bool,
+}
+
+impl JobFailure {
+    /// A fault of the program itself.
+    pub(super) fn of_program(what: &str) -> Self {
+        Failure::new(FailureKind::ProgramError, format!("program error: {what}")).into()
+    }
+
+    /// The same failure with words before and behind its own.
+    pub(super) fn said(self, before: &str, behind: &str) -> Self {
+        Self {
+            failure: self.failure.said(before, behind),
+            ..self
+        }
+    }
+
+    fn not_prepared(error: &dyn std::error::Error) -> Self {
+        Failure::new(FailureKind::NotPrepared, error.to_string()).into()
+    }
+}
+
+impl From<Failure> for JobFailure {
+    fn from(failure: Failure) -> Self {
+        Self {
+            failure,
+            half_step_may_help: false,
+        }
+    }
+}
+
+impl From<AnalysisError> for JobFailure {
+    fn from(error: AnalysisError) -> Self {
+        Self {
+            half_step_may_help: half_step_may_help(&error),
+            failure: failure_of(&error),
+        }
+    }
+}
+
+impl From<BridgeError> for JobFailure {
+    fn from(error: BridgeError) -> Self {
+        Self::not_prepared(&error)
+    }
+}
+
+impl From<OperatorError> for JobFailure {
+    fn from(error: OperatorError) -> Self {
+        Self::not_prepared(&error)
+    }
+}
+
+impl From<FemError> for JobFailure {
+    fn from(error: FemError) -> Self {
+        Self::not_prepared(&error)
+    }
+}
+
+/// An error of the mechanics with its numbers.
+fn failure_of(error: &AnalysisError) -> Failure {
+    let of = |kind| Failure::new(kind, error.to_string());
+    match error {
+        AnalysisError::NotConverged {
+            time_s,
+            connector,
+            joint,
+            y_m,
+            bisections,
+        } => of(FailureKind::ContactNotSettled)
+            .with("time_s", *time_s)
+            .with("connector", *connector as f64)
+            .with("joint", *joint as f64)
+            .with("y_m", *y_m)
+            .with("bisections", *bisections as f64),
+        AnalysisError::StaticNotConverged { iterations, load_x_m } => of(FailureKind::StaticContactNotSettled)
+            .with("iterations", *iterations as f64)
+            .with("load_x_m", *load_x_m),
+        AnalysisError::NotFinite { time_s } => of(FailureKind::NotFinite).with("time_s", *time_s),
+        AnalysisError::Factor(_) => of(FailureKind::NotPrepared),
+        AnalysisError::ModeMissing { searched, .. } => of(FailureKind::ModeMissing).with("searched", *searched as f64),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_keeps_its_kind_its_numbers_and_its_words() {
+        let error = AnalysisError::NotFinite { time_s: 1.25 };
+        let failure = JobFailure::from(error.clone());
+        assert!(failure.half_step_may_help);
+        assert_eq!(failure.failure.kind, FailureKind::NotFinite);
+        assert_eq!(failure.failure.numbers, [("time_s".to_owned(), 1.25)]);
+        assert_eq!(failure.failure.text, error.to_string());
+        let said = failure.said("static peak: ", "");
+        assert_eq!(said.failure.text, format!("static peak: {error}"));
+        let missing = AnalysisError::ModeMissing {
+            name: "heave".to_owned(),
+            searched: 20,
+        };
+        assert!(!JobFailure::from(missing).half_step_may_help);
+    }
+}
