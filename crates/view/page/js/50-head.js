@@ -126,7 +126,7 @@
             el(
               'tr',
               {},
-              ['jobs', 'reason', 'for example'].map(h => el('th', { scope: 'col' }, h)),
+              ['jobs', 'kind', 'reason', 'for example'].map(h => el('th', { scope: 'col' }, h)),
             ),
           ),
           el(
@@ -137,6 +137,7 @@
                 'tr',
                 {},
                 el('td', { class: 'number' }, numbers.count(f.count)),
+                el('td', {}, (f.kind ?? '').replaceAll('_', ' ')),
                 el('td', {}, f.reason),
                 el('td', {}, jobButton(f.job)),
               ),

@@ -10,7 +10,7 @@
   ];
   const COLUMNS = [
     ['statement', 'statement'],
-    ['verdict', 'verdict'],
+    ['word', 'verdict'],
     ['expected', 'expected'],
     ['found', 'found'],
     ['deviation', 'deviation'],
@@ -18,21 +18,15 @@
     ['note', 'note'],
   ];
 
-  /** A verdict is good, bad or neither; the word says it too, not the colour alone. */
-  const tone = line =>
-    line.good === false || /^falls? short$/i.test(line.verdict)
-      ? 'bad'
-      : /^holds?$/i.test(line.verdict)
-        ? 'good'
-        : 'plain';
+  /** The sign of a line's tone: the word says it too, not the colour alone. */
   const SIGN = { good: '\u2713', bad: '\u2717', plain: '\u2022' };
 
   function verdicts() {
     const { verdicts: v } = data;
     if (!v) return null;
-    const used = COLUMNS.filter(([key]) => key === 'statement' || key === 'verdict' || v.lines.some(line => line[key]));
-    const bad = v.lines.filter(line => tone(line) === 'bad').length,
-      kinds = [...new Set(['falls short', ...v.lines.map(line => line.verdict)])];
+    const used = COLUMNS.filter(([key]) => key === 'statement' || key === 'word' || v.lines.some(line => line[key]));
+    const bad = v.lines.filter(line => line.tone === 'bad').length,
+      kinds = [...new Map(v.lines.map(line => [line.verdict, line.word]))];
     const table = el(
       'table',
       { class: 'rows verdicts' },
@@ -75,8 +69,8 @@
                 used.map(([key], i) =>
                   el(
                     i ? 'td' : 'th',
-                    { scope: i ? null : 'row', class: key === 'verdict' ? `verdict ${tone(line)}` : null },
-                    key === 'verdict' && el('span', { class: 'sign', 'aria-hidden': 'true' }, SIGN[tone(line)]),
+                    { scope: i ? null : 'row', class: key === 'word' ? `verdict ${line.tone}` : null },
+                    key === 'word' && el('span', { class: 'sign', 'aria-hidden': 'true' }, SIGN[line.tone]),
                     i
                       ? (line[key] ?? '')
                       : [line.statement || line.id, line.statement && el('span', { class: 'id' }, line.id)],
@@ -89,7 +83,7 @@
       }
       said.textContent = lines.length ? `${lines.length} of ${v.lines.length} checks` : 'No check is of this kind.';
     }
-    const show = select([['', 'all'], ...kinds.map(kind => [kind, kind])], '', draw);
+    const show = select([['', 'all'], ...kinds], '', draw);
     show.id = 'verdict-filter';
     draw('');
     return section(

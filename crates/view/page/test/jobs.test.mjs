@@ -175,7 +175,7 @@ test('frequencies and verdicts are shown and filtered', async () => {
     const { lines } = sample('crossing').data.verdicts,
       ids = () => page.$$eval('#verdicts tr[data-id]', all => all.map(r => r.dataset.id));
     assert.deepEqual((await ids()).sort(), lines.map(l => l.id).sort());
-    await page.selectOption('#verdict-filter', 'falls short');
+    await page.selectOption('#verdict-filter', 'falls-short');
     assert.deepEqual(await ids(), ['growth']);
   });
 });

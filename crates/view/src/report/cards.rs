@@ -33,8 +33,8 @@ pub struct Card {
 /// Jobs that failed for one cause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FailureNote {
-    /// The kind of the failure; the reason itself where the results tell no kind.
-    pub kind: String,
+    /// The kind of the failure; none where the results are of before there were kinds.
+    pub kind: Option<String>,
     /// How many.
     pub count: usize,
     /// The first of them.
@@ -90,15 +90,15 @@ pub(super) fn failures(results: &Results) -> (Vec<FailureNote>, usize) {
     for row in (0..jobs.rows()).filter(|&row| results.is_failed(row)) {
         let reason = jobs.cell("reason", row);
         let reason = reason.word().unwrap_or("no reason");
-        // results of before there were kinds
-        let kind = jobs.cell("failure", row).word().unwrap_or(reason).to_owned();
+        let kind = jobs.cell("failure", row).word().map(str::to_owned);
+        let cause = kind.clone().unwrap_or_else(|| reason.to_owned());
         let first = || FailureNote {
             kind: kind.clone(),
             count: 0,
             job: super::job(results, row),
             reason: reason.to_owned(),
         };
-        causes.entry(kind.clone()).or_insert_with(first).count += 1;
+        causes.entry(cause).or_insert_with(first).count += 1;
     }
     let found = causes.len();
     let mut notes: Vec<FailureNote> = causes.into_values().collect();
