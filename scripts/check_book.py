@@ -1,19 +1,23 @@
-"""Tries the book: its links, the paths and items it names, and every block of code; and the notebooks beside it.
+"""Tries the book: its links, the paths and items it names, its tables of columns, its patches, and every block of code; and
+the notebooks beside it.
 
     check_book.py [--text] [--figures] [--book DIR] [--only WORD]
     check_book.py --strip
+    check_book.py --columns
 
 Exit status 1 where something of the book is not so.
 """
 
 import argparse
 import os
+import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
 from pathlib import Path
 
+import book_columns
 import book_pages
 import book_run
 
@@ -43,6 +47,22 @@ def faults_of_pages(pages, source):
             wrong = fault_of_block(block)
             if wrong:
                 faults.append(f"{block.place}: {wrong}")
+    return faults
+
+
+def faults_of_patches(source):
+    """Patches of the book that do not apply to the sources as they are."""
+    faults = []
+    for patch in sorted(source.rglob("*.patch")):
+        done = subprocess.run(
+            ["git", "apply", "--check", patch],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode:
+            faults.append(f"{patch.relative_to(source)}: {done.stderr.strip()}")
     return faults
 
 
@@ -146,6 +166,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--text", action="store_true", help="links, paths and items alone: runs nothing")
     parser.add_argument("--figures", action="store_true", help="keeps the figures that the pages draw")
+    parser.add_argument("--columns", action="store_true", help="writes the tables of columns, and no more")
     parser.add_argument("--strip", action="store_true", help="takes outputs out of the notebooks, and no more")
     parser.add_argument("--book", type=Path, default=ROOT / "book/src", help="the book's source")
     parser.add_argument("--only", help="pages whose name holds this word")
@@ -155,9 +176,15 @@ def main():
     source = arguments.book.resolve()
     read = [book_pages.read_page(path, source) for path in sorted(source.rglob("*.md"))]
     pages = {page.name: page for page in read}
-    faults = faults_of_pages(pages, source)
+    if arguments.columns:
+        registry = book_columns.registered(program())
+        for page in read:
+            page.path.write_text(book_columns.filled(page.text, registry))
+        return 0
+    faults = faults_of_pages(pages, source) + faults_of_patches(source)
     counts = Counter()
     if not arguments.text:
+        faults += book_columns.faults(read, book_columns.registered(program()))
         chosen = [page for page in read if not arguments.only or arguments.only in page.name]
         faults += run_pages(chosen, arguments.figures, source, counts)
         if not arguments.only and arguments.book == ROOT / "book/src":

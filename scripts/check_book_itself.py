@@ -14,6 +14,15 @@ def block(info, body):
     return f"# One\n\n{FENCE}{info}\n{body}\n{FENCE}\n"
 
 
+HISTORIES = """| column | unit | is |
+|---|---|---|
+| `job` |  | number of the job |
+| `time_s` | s | time since the vehicle's front is at the bridge |
+| `quantity` |  | what the history is of: deflection positive downward, force tension positive (`deflection_m`, `force_n`) |
+| `position` |  | position of a deflection, joint of a force |
+| `value` |  | the quantity, in its unit |
+"""
+
 # what is tried, a page that is right, the same with its fault
 TRIALS = [
     ("output", block("console", "$ echo 1.25 m\n1.25 m"), block("console", "$ echo 1.25 m\n1.26 m")),
@@ -47,8 +56,23 @@ TRIALS = [
     ("an item", "`crates/core/src/scheme.rs::Scheme::alpha_m`", "`crates/core/src/scheme.rs::Scheme::alpha_x`"),
     ("a link", "[a](one.md)", "[a](two.md)"),
     ("a heading", "# One two\n\n[a](one.md#one-two)", "# One two\n\n[a](one.md#one-three)"),
+    (
+        "columns",
+        "# One\n\n<!-- columns: histories -->\n" + HISTORIES + "<!-- end of columns -->\n",
+        "# One\n\n<!-- columns: histories -->\n" + HISTORIES.replace("| s |", "| m |") + "<!-- end of columns -->\n",
+    ),
     ("an include", "{{#include one.md}}", "{{#include two.md}}"),
 ]
+
+
+PATCH = """--- a/Cargo.toml
++++ b/Cargo.toml
+@@ -1,3 +1,3 @@
+-[workspace]
++[workspace] # of all
+ resolver = "3"
+ members = ["crates/*", "tests"]
+"""
 
 
 def check(pages):
@@ -70,6 +94,13 @@ def main():
             "a page of the summary",
             {"SUMMARY.md": SUMMARY, "one.md": "# One"},
             {"SUMMARY.md": SUMMARY, "one.md": "# One", "two.md": "# Two"},
+        )
+    )
+    trials.append(
+        (
+            "a patch",
+            {"SUMMARY.md": SUMMARY, "one.md": "# One", "a.patch": PATCH},
+            {"SUMMARY.md": SUMMARY, "one.md": "# One", "a.patch": PATCH.replace("-[workspace]", "-[workspac]")},
         )
     )
     for what, right, fault in trials:

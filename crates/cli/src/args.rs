@@ -124,7 +124,7 @@ pub(crate) enum Command {
         after_help = "Examples:\n  pontoon export studies/bridges/fu2005.json --to vtk --load-n 230300 --load-position 7\n  pontoon export results/fu2005 --to vtk --job 20 --count 0"
     )]
     Export(ExportArguments),
-    /// The JSON Schema of a file, for an editor or a checker.
+    /// The JSON Schema of a file, for an editor or a checker; the columns of tables.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
     /// Writes what makes a shell complete the words of this program.
@@ -399,6 +399,8 @@ pub(crate) enum SchemaOf {
     Reference,
     /// A file of parameters for `calibrate`.
     Parameters,
+    /// The tables of results: no schema, but each column and each axis of a name with its unit and what it is.
+    Tables,
 }
 
 /// What `completions` takes.

@@ -59,8 +59,19 @@ impl FailureKind {
         Self::ProgramError,
     ];
 
+    /// The words of all kinds.
+    pub const WORDS: [&'static str; Self::ALL.len()] = {
+        let mut words = [""; Self::ALL.len()];
+        let mut i = 0;
+        while i < words.len() {
+            words[i] = Self::ALL[i].word();
+            i += 1;
+        }
+        words
+    };
+
     /// Its word in tables.
-    pub fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             Self::ContactNotSettled => "contact_not_settled",
             Self::StaticContactNotSettled => "static_contact_not_settled",

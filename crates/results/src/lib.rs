@@ -47,7 +47,7 @@ pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::Provenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
 pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PositionRow, Summary};
-pub use registry::{COLUMNS, Card, Column, Curve, Digits, QUANTITIES, Role, SpeedFigure, When};
+pub use registry::{COLUMNS, Card, Column, Curve, Digits, QUANTITIES, Role, SpeedFigure, When, registered};
 pub use results::{Results, ResultsError};
 pub use summary::SummaryTable;
 pub use table::{Kind, Table, TableName};

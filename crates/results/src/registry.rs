@@ -3,12 +3,15 @@
 //! Tables, the report, figures, the terminal and the book's tables read this list. Knows columns and records. Does not know how a
 //! number came about, nor which rows there are.
 
+use crate::FailureKind;
 use crate::arrays::CellKind;
 use crate::record::{ConnectorRow, JobRecord, ModeRow, PositionRow};
 use crate::table::TableName;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
+use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::borrow::Cow;
 
 /// A column of a table.
@@ -369,7 +372,7 @@ pub const COLUMNS: &[Column] = &[
     of_record("job", Counts, ("job", "number of the job, from 0"), |r| r.job.into()).role(Role::Key),
     of_record("status", Words(&["ok", "failed"]), ("status", "what became of the job"), status).role(Role::State),
     of_record("reason", Texts, ("reason", "why it failed, or what else is to be said"), reason).role(Role::State),
-    of_record("failure", Texts, ("failure", "the kind of the failure"), |r| r.failure.as_ref().map(|failure| failure.kind.word()).into()).role(Role::State),
+    of_record("failure", Words(&FailureKind::WORDS), ("failure", "the kind of the failure"), |r| r.failure.as_ref().map(|failure| failure.kind.word()).into()).role(Role::State),
     measure("peak_deflection_m", "peak deflection", "largest deflection of any position", |r| r.summary.peak_deflection_m.into()).metres().drawn().in_summary()
         .card(peak_card("largest deflection", ("position", "peak_deflection_position"), Some("peak_deflection_time_s")))
         .curve(centimetres("Peak deflection")),
@@ -477,6 +480,11 @@ impl Column {
     pub fn of_summary() -> impl Iterator<Item = &'static Self> {
         Self::of_table(TableName::Jobs).filter(|column| column.in_summary)
     }
+}
+
+/// The columns of all tables and the axes that have a name of their own, in their order.
+pub fn registered() -> Value {
+    json!({ "columns": COLUMNS, "axes": NAMED_AXES })
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `pontoon schema`: the JSON Schema of a file. A schema is JSON in either format.
+//! `pontoon schema`: the JSON Schema of a file, and the columns of tables. Both are JSON in either format.
 
 use crate::args::{SchemaArguments, SchemaOf};
 use crate::ending::Ending;
@@ -11,6 +11,7 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Result<Ending> {
         SchemaOf::Study => pontoon_plan::schema::study(),
         SchemaOf::Bridge => pontoon_plan::schema::bridge(),
         SchemaOf::Parameters => pontoon_judge::schema::parameters(),
+        SchemaOf::Tables => pontoon_results::registered(),
         SchemaOf::Reference => pontoon_judge::schema::reference(),
     };
     words::result(&format!("{schema:#}\n"))?;

@@ -4,10 +4,11 @@
 //! or points.
 
 use crate::input::{DocumentPath, Found, Refusal, RefusalKind};
+use serde::Serialize;
 use std::path::Path;
 
 /// An axis that has a name of its own; every other is named by the path of what it sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct NamedAxis {
     /// Its name, which is also its column.
     pub name: &'static str,
@@ -16,13 +17,16 @@ pub struct NamedAxis {
     /// What it is called in words.
     pub label: &'static str,
     /// What its values are.
+    #[serde(flatten)]
     pub values: AxisValues,
     /// Where they go.
+    #[serde(flatten)]
     pub goes: Goes,
 }
 
 /// What the values of an axis with a name of its own are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(tag = "values", content = "words", rename_all = "snake_case")]
 pub enum AxisValues {
     /// Numbers.
     Numbers,
@@ -33,7 +37,8 @@ pub enum AxisValues {
 }
 
 /// Where the values of an axis with a name of its own go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Goes {
     /// To the job itself.
     Job {
@@ -51,7 +56,8 @@ pub enum Goes {
 }
 
 /// A number or word of a job that an axis sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum JobAxis {
     /// How the connectors work.
     Connection,
@@ -98,7 +104,7 @@ const fn numbers(name: &'static str, unit: &'static str, label: &'static str, go
 }
 
 /// The axes that have a name of their own, in the order of their columns.
-pub const NAMED_AXES: [NamedAxis; 7] = [
+pub const NAMED_AXES: &[NamedAxis] = &[
     NamedAxis {
         name: "connection",
         unit: "",
