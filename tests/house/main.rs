@@ -10,5 +10,6 @@ mod corpus;
 #[cfg(unix)]
 mod faults;
 mod numerics;
+mod refusals;
 mod stage;
 mod tables;

@@ -1,5 +1,6 @@
 //! A folder with a study and its bridge, the program run in it, and what it left.
 
+use crate::refusals;
 use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
 use polars_arrow::compute::concatenate::concatenate;
 use polars_parquet::read::{BasicDecompressor, FileMetadata, PageReader, column_iter_to_arrays};
@@ -195,12 +196,14 @@ impl Stage {
 
     /// The same with a cache in a folder.
     pub(crate) fn pontoon_with(&self, words: &[&str], cache: &Path) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_pontoon"))
+        let output = Command::new(env!("CARGO_BIN_EXE_pontoon"))
             .args(words)
             .env("PONTOON_CACHE_DIR", cache)
             .current_dir(self.dir.path())
             .output()
-            .unwrap()
+            .unwrap();
+        refusals::listed(&output, self.dir.path());
+        output
     }
 
     /// A table in a folder of results.

@@ -307,7 +307,13 @@ fn a_start_that_is_no_bridge_is_refused() {
     let mut light = of(parameter("connectors.stiffness_n_m", 1.5e7, 4e7));
     light["hold"] = json!({ "total_mass_kg_m": 10 });
     let output = calibrate(&stage, &light, &["--quiet"]);
-    is_refused(&output, &["parameters.json: ", "added_mass_kg_m: found -"]);
+    is_refused(
+        &output,
+        &[
+            "parameters.json: parameters: found -",
+            "which they make of added_mass_kg_m",
+        ],
+    );
     assert!(!stage.path("found.json").exists());
 }
 

@@ -442,7 +442,7 @@ fn references_as_a_whole() {
         ("not json", "allowed: JSON"),
         (
             r#"{"name": "x", "source": "y", "name": "z"}"#,
-            "the key `name` twice, at line 1, column 30",
+            "the key `name` twice (line 1, column 30)",
         ),
         (
             r#"{"name": "x", "source": "y", "checks": [{"id": "a", "value": {"expected": NaN}}]}"#,

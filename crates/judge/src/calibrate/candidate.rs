@@ -5,15 +5,23 @@
 use super::parameters::Parameters;
 use super::quantities::QUANTITIES;
 use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::input::InvalidInput;
 use pontoon_plan::input::{Document, DocumentPath, Found, Refusal, RefusalKind, to_value, typed_value};
 use pontoon_plan::study_file::BridgeFile;
 use serde_json::json;
+use std::path::Path;
 
 /// A bridge at a point of the parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
     /// The bridge.
     pub(super) design: BridgeDesign,
+}
+
+/// The refusal of what parameters make of a number of the bridge.
+fn of_numbers(file: &Path, wrong: InvalidInput) -> Refusal {
+    let found = Found::from(wrong.found).which(format!("which they make of {} of the bridge", wrong.key));
+    Refusal::new(file, "parameters", found, wrong.allowed)
 }
 
 impl Candidate {
@@ -49,19 +57,13 @@ impl Candidate {
         let design: BridgeDesign = typed_value(file, "", &document)?;
         let mut candidate = Self { design };
         candidate.design.provenance = None;
-        candidate
-            .design
-            .check()
-            .map_err(|e| Refusal::of(file, "the bridge at this point", e))?;
+        candidate.design.check().map_err(|wrong| of_numbers(file, wrong))?;
         for quantity in QUANTITIES {
             if let Some((_, value)) = masses.iter().find(|(name, _)| *name == quantity) {
                 candidate.take_mass(quantity, *value);
             }
         }
-        candidate
-            .design
-            .check()
-            .map_err(|e| Refusal::of(file, "the bridge at this point", e))?;
+        candidate.design.check().map_err(|wrong| of_numbers(file, wrong))?;
         Ok(candidate)
     }
 

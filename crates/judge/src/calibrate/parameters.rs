@@ -4,7 +4,7 @@
 
 use super::fit::{Parameter, Settings};
 use super::quantities::{FOLLOWS, QUANTITIES, quantity};
-use pontoon_plan::input::{Document, DocumentPath, Found, Refusal, RefusalKind, leaves, to_value, typed};
+use pontoon_plan::input::{Cell, Document, DocumentPath, Found, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_plan::study_file::BridgeFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -152,7 +152,7 @@ impl ParameterSpec {
     fn check(&self, file: &Path, key: &str) -> Result<(), Refusal> {
         let upper = format!("{key}.upper");
         if !(self.upper - self.lower).is_finite() {
-            let found = Found::from(self.upper).which(format!("too far from lower, {}", self.lower));
+            let found = Found::from(self.upper).which(format!("too far from lower, {}", Cell::written(self.lower)));
             return Err(Refusal::new(file, upper, found, "bounds whose distance is a number"));
         }
         if self.lower >= self.upper {

@@ -3,7 +3,7 @@
 //! Knows the forms and that ranges hold both ends exactly. Does not know what an axis may be called.
 
 use super::column::Column;
-use crate::input::{Cell, Refusal};
+use crate::input::{Cell, Found, Refusal};
 use serde_json::Value;
 use std::path::Path;
 
@@ -94,7 +94,7 @@ impl Values {
 
 /// The range of `[from, to, count]`.
 fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Values, Refusal> {
-    let refuse = |found: String, allowed: &str| Err(Refusal::new(file, key, found, allowed));
+    let refuse = |found: Found, allowed: &str| Err(Refusal::new(file, key, found, allowed));
     let numbers: Vec<f64> = ends
         .as_array()
         .into_iter()
@@ -102,17 +102,21 @@ fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Value
         .filter_map(Value::as_f64)
         .collect();
     let (&[from, to, count], Some(3)) = (numbers.as_slice(), ends.as_array().map(Vec::len)) else {
-        return refuse(ends.to_string(), "[from, to, count], three numbers");
+        return refuse(ends.into(), "[from, to, count], three numbers");
     };
     if count.fract() != 0.0 || !(2.0..=MOST_POINTS as f64).contains(&count) {
-        return refuse(format!("count {count}"), "a whole count from 2 to 10000000");
+        return refuse(
+            Found::from(count).which("as the count"),
+            "a whole count from 2 to 10000000",
+        );
     }
     if geometric && !(from > 0.0 && to > 0.0) {
-        return refuse(format!("from {from} to {to}"), "both ends above 0");
+        return refuse(format!("from {from} to {to}").into(), "both ends above 0");
     }
     let span = if geometric { (to / from).ln() } else { to - from };
     if !span.is_finite() {
-        return refuse(format!("from {from:e} to {to:e}"), "ends that are not so far apart");
+        let found = format!("from {from:e} to {to:e}");
+        return refuse(found.into(), "ends that are not so far apart");
     }
     Ok(Values::Spaced {
         from,

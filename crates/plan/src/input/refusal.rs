@@ -249,7 +249,9 @@ impl Refusal {
             }
             RefusalKind::UnknownKey => format!("found unknown key `{}`", name_of(found)),
             RefusalKind::UnknownWord => format!("found unknown {}", found.text()),
-            RefusalKind::RepeatedKey => format!("found the key `{}` twice{}", name_of(found), behind(found)),
+            RefusalKind::RepeatedKey => {
+                format!("found the key `{}` twice ({})", name_of(found), found.words)
+            }
             RefusalKind::Repeated => format!("found {} twice", found.text()),
             RefusalKind::Whole
             | RefusalKind::Syntax

@@ -81,7 +81,7 @@ fn unknown_keys_are_shown_and_missing_ones_by_what_should_hold_them() {
 #[test]
 fn what_has_no_place_is_not_shown() {
     assert_eq!(at(STUDY, RefusalKind::Whole, "", None), None);
-    let elsewhere = "the bridge at this point.module";
+    let elsewhere = "elsewhere.module";
     assert_eq!(at(STUDY, RefusalKind::NotAllowed, elsewhere, Some(json!(-1))), None);
     assert_eq!(at("", RefusalKind::Missing, "a", None), None);
 }
