@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn each_entry_is_found_by_its_name_and_by_the_path_that_it_stands_for() {
-        for axis in &NAMED_AXES {
+        for axis in NAMED_AXES {
             assert_eq!(NamedAxis::of(axis.name), Some(axis));
             if let Some(path) = axis.path() {
                 assert_eq!(NamedAxis::of(path), Some(axis));

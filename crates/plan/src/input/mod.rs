@@ -30,6 +30,7 @@ mod typed;
 
 pub use cell::Cell;
 pub use document::{Document, canonical_text};
+pub(crate) use path::join;
 pub use path::{DocumentPath, Obstacle, leaves};
 pub use pretty::pretty;
 pub use refusal::{Found, Refusal, RefusalKind, nearest};

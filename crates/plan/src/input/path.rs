@@ -51,7 +51,7 @@ pub(super) fn join_steps(steps: &[Step]) -> String {
 }
 
 /// Two paths one after the other.
-pub(super) fn join(prefix: &str, path: &str) -> String {
+pub(crate) fn join(prefix: &str, path: &str) -> String {
     match (prefix.is_empty(), path.is_empty()) {
         (true, _) => path.to_owned(),
         (_, true) => prefix.to_owned(),
@@ -85,6 +85,19 @@ impl DocumentPath {
             }
         }
         Some(Self(steps)).filter(|path| path.0.len() <= MOST_STEPS)
+    }
+
+    /// What of another path lies beyond this one, where one of the two is the beginning of the other; nothing of an equal or
+    /// shorter one.
+    pub fn beyond(&self, other: &Self) -> Option<String> {
+        let common = self.0.len().min(other.0.len());
+        let meet = self.0[..common] == other.0[..common];
+        meet.then(|| join_steps(&other.0[common..]))
+    }
+
+    /// Whether the first key is this one.
+    pub fn begins_with(&self, key: &str) -> bool {
+        matches!(self.0.first(), Some(Step::Key(first)) if first == key)
     }
 
     /// The value at the path, if there is one.
@@ -144,6 +157,16 @@ mod tests {
 
     fn path(text: &str) -> DocumentPath {
         DocumentPath::parse(text).unwrap()
+    }
+
+    #[test]
+    fn a_path_tells_what_lies_beyond_it() {
+        let beyond = |of: &str, other: &str| path(of).beyond(&path(other));
+        assert_eq!(beyond("a.b", "a.b[0].c").as_deref(), Some("[0].c"));
+        assert_eq!(beyond("a.b", "a.b").as_deref(), Some(""));
+        assert_eq!(beyond("a.b[0]", "a.b").as_deref(), Some(""));
+        assert_eq!((beyond("a.b", "a.bc"), beyond("a.b", "a.c")), (None, None));
+        assert!(path("a[0].b").begins_with("a") && !path("ab").begins_with("a"));
     }
 
     #[test]

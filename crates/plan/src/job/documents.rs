@@ -3,7 +3,7 @@
 //! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
 
 use crate::design::{Point, Root};
-use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, to_value, typed_value};
+use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
 use crate::study_file::{Analysis, AnalysisSpec, Study, filled_vehicle};
 use pontoon_core::bridge::{BridgeDesign, Supports};
 use pontoon_core::input::InvalidInput;
@@ -142,7 +142,7 @@ impl Documents {
         let breadth_m = bridge.design.module.breadth_m;
         let read = || {
             // the defaults of the single footprint can be changed in part, unless axles take its place
-            let axles = changes.list.iter().any(|(name, ..)| name.starts_with("vehicle.axles"));
+            let axles = changes.list.iter().any(|(_, path, _)| path.begins_with("axles"));
             let written = &study.vehicle;
             let base = filled_vehicle(written).ok().filter(|_| !axles);
             let design: VehicleDesign = changes.applied(&to_value(base.as_ref().unwrap_or(written)))?;
@@ -267,13 +267,13 @@ impl<'a> Changes<'a> {
             return Refusal { path, ..refusal };
         }
         let block = self.point.key();
-        let mut axes = self.list.iter().map(|(name, ..)| name);
-        let axis = axes.any(|name| path.starts_with(name) || name.starts_with(&path));
-        if axis {
-            return Refusal {
-                path: format!("{block}.{path}"),
-                ..refusal
-            };
+        let refused = DocumentPath::parse(&refusal.path);
+        let at_axis = |(name, of, _): &(&str, &DocumentPath, &Cell<'_>)| {
+            let rest = of.beyond(refused.as_ref()?)?;
+            Some(join(&format!("{block}.{name}"), &rest))
+        };
+        if let Some(path) = self.list.iter().find_map(at_axis) {
+            return Refusal { path, ..refusal };
         }
         Refusal {
             path: block.into_owned(),

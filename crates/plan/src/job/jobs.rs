@@ -5,7 +5,7 @@
 use super::documents::{BridgeEntry, Documents, VehicleEntry};
 use super::seen::Seen;
 use super::{Job, Load, Task};
-use crate::design::{Goes, JobAxis, NAMED_AXES, NamedAxis, Point};
+use crate::design::{Goes, JobAxis, NAMED_AXES, NamedAxis, Point, Root, Varies};
 use crate::input::{Cell, Found, Refusal, RefusalKind};
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study, check_histories};
 use pontoon_core::connector::Connection;
@@ -116,11 +116,11 @@ impl Short<'_> {
 
     /// Where a path was set: at its axis, or in the study itself.
     fn path_or(&self, path: &str) -> String {
-        let axis = self.point.block.axes.iter().any(|axis| axis.name == path);
-        if axis {
-            format!("{}.{path}", self.point.key())
-        } else {
-            path.to_owned()
+        let varies = Varies::of(path);
+        let mut axes = self.point.block.axes.iter();
+        match axes.find(|axis| Some(&axis.varies) == varies.as_ref()) {
+            Some(axis) => format!("{}.{}", self.point.key(), axis.name),
+            None => path.to_owned(),
         }
     }
 
@@ -254,7 +254,10 @@ impl Short<'_> {
     /// A refusal of the bridge as a whole: in its own file, or beside the block whose axes changed it.
     fn of_bridge(&self, refused: InvalidInput) -> Refusal {
         let axes = &self.point.block.axes;
-        if axes.iter().any(|axis| axis.name.starts_with("bridge.")) {
+        if axes
+            .iter()
+            .any(|axis| matches!(axis.varies, Varies::Path(Root::Bridge, _)))
+        {
             let refused = Refusal::of(&self.study.file, "bridge", refused);
             return Refusal {
                 made_wrong: Some(refused.path.into()),
