@@ -368,8 +368,8 @@ mod tests {
                 "b.json: modles: found unknown key `modles` (nearest known: modules), allowed: modules, module, name",
             ),
             (
-                Refusal::unknown(file, "a", "modle", &known),
-                "b.json: a: found unknown \"modle\" (nearest known: module), allowed: modules, module, name",
+                Refusal::unknown(file, "a", "moddule", &known),
+                "b.json: a: found unknown \"moddule\" (nearest known: module), allowed: modules, module, name",
             ),
             (
                 Refusal::new(file, "a", Found::value(1e-3).which("which makes 2e7 steps"), "fewer"),

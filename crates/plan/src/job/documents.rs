@@ -4,10 +4,11 @@
 
 use crate::design::{Point, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
-use crate::study_file::{Analysis, AnalysisSpec, Study, filled_vehicle};
+use crate::study_file::{Analysis, Study, filled_vehicle};
 use pontoon_core::bridge::{BridgeDesign, Supports};
 use pontoon_core::input::InvalidInput;
-use pontoon_core::vehicle::{Vehicle, VehicleDesign};
+use pontoon_core::vehicle::Vehicle;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -121,8 +122,13 @@ impl Documents {
     pub(super) fn bridge(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<BridgeEntry>, Refusal> {
         let changes = Changes::of(study, point, Root::Bridge);
         let read = || {
-            let design: BridgeDesign = changes.applied(&to_value(&study.bridge.design))?;
-            design.check().map_err(|e| changes.refusal(e))?;
+            let design = match changes.applied(&study.bridge.design)? {
+                None => study.bridge.design.clone(),
+                Some(design) => {
+                    design.check().map_err(|e| changes.refusal(e))?;
+                    design
+                }
+            };
             let document = to_value(&design);
             Ok((canonical_text(&document), (design, document)))
         };
@@ -144,9 +150,10 @@ impl Documents {
             // the defaults of the single footprint can be changed in part, unless axles take its place
             let axles = changes.list.iter().any(|(_, path, _)| path.begins_with("axles"));
             let written = &study.vehicle;
-            let base = filled_vehicle(written).ok().filter(|_| !axles);
-            let design: VehicleDesign = changes.applied(&to_value(base.as_ref().unwrap_or(written)))?;
-            let design = filled_vehicle(&design).map_err(|e| changes.refusal(e))?;
+            let filled = filled_vehicle(written).ok().filter(|_| !axles);
+            let base = filled.as_ref().unwrap_or(written);
+            let changed = changes.applied(base)?;
+            let design = filled_vehicle(changed.as_ref().unwrap_or(base)).map_err(|e| changes.refusal(e))?;
             let vehicle = design.check(breadth_m).map_err(|e| changes.refusal(e))?;
             let document = to_value(&design);
             Ok((canonical_text(&document), (vehicle, document)))
@@ -167,12 +174,10 @@ impl Documents {
     pub(super) fn analysis(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<AnalysisEntry>, Refusal> {
         let changes = Changes::of(study, point, Root::Analysis);
         let read = || {
-            let written: AnalysisSpec = if changes.list.is_empty() {
-                study.analysis.written()
-            } else {
-                changes.applied(&study.analysis_written)?
+            let analysis = match changes.applied(&study.analysis_written)? {
+                None => study.analysis,
+                Some(written) => Analysis::of(&written).map_err(|e| changes.refusal(e))?,
             };
-            let analysis = Analysis::of(&written).map_err(|e| changes.refusal(e))?;
             let document = to_value(&analysis.written());
             Ok((canonical_text(&document), (analysis, document)))
         };
@@ -241,9 +246,12 @@ impl<'a> Changes<'a> {
         (!self.list.is_empty()).then(|| texts.collect())
     }
 
-    /// The document with the changes, typed.
-    fn applied<T: DeserializeOwned>(&self, base: &Value) -> Result<T, Refusal> {
-        let mut document = base.clone();
+    /// A document with the changes; none where there are none.
+    fn applied<T: Serialize + DeserializeOwned>(&self, base: &T) -> Result<Option<T>, Refusal> {
+        if self.list.is_empty() {
+            return Ok(None);
+        }
+        let mut document = to_value(base);
         for (name, path, value) in &self.list {
             path.set(&mut document, value.value()).map_err(|obstacle| {
                 let allowed = format!("the path of a value in {}", self.root.word());
@@ -251,7 +259,9 @@ impl<'a> Changes<'a> {
                 Refusal::new(self.file, path, obstacle.to_string(), allowed).because(RefusalKind::Misplaced)
             })?;
         }
-        typed_value(self.file, "", &document).map_err(|e| self.placed(e))
+        typed_value(self.file, "", &document)
+            .map(Some)
+            .map_err(|e| self.placed(e))
     }
 
     /// A refusal of a number of the changed document.

@@ -3,7 +3,7 @@
 //! Knows files. Does not know jobs: what holds for a single point is checked where jobs are made.
 
 use super::analysis::Analysis;
-use super::raw::{HistoriesSpec, Kind, RecordSpec, StudySpec};
+use super::raw::{AnalysisSpec, HistoriesSpec, Kind, RecordSpec, StudySpec};
 use crate::design::{Block, Goes, NAMED_AXES, Varies};
 use crate::input::{Document, Found, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
@@ -56,7 +56,7 @@ pub struct Study {
     /// Its analysis before axes.
     pub analysis: Analysis,
     /// The same as it is written, which is what axes change: a default is one of the kind and solver that they leave.
-    pub(crate) analysis_written: Value,
+    pub(crate) analysis_written: AnalysisSpec,
     /// What to keep of each job beyond its peaks.
     pub record: RecordSpec,
     /// Seeds of its designs, in the order of the file.
@@ -130,7 +130,7 @@ impl Study {
             name: spec.name,
             question: spec.question,
             vehicle: spec.vehicle,
-            analysis_written: to_value(&spec.analysis),
+            analysis_written: spec.analysis,
             analysis,
             record: spec.record,
             bridge,
