@@ -206,12 +206,8 @@ fn list<'a, I: Iterator<Item = Row<'a>>>(
         heads: peaks
             .iter()
             .map(|&i| {
-                let Head { name, unit } = Head::of(&columns[i]);
-                let name = name.trim_start_matches("peak ");
-                vec![
-                    format!("{name} "),
-                    unit.map_or(String::new(), |unit| format!("[{unit}] ")),
-                ]
+                let Head { name, unit } = short(&columns[i]);
+                vec![name + " ", unit.map_or(String::new(), |unit| format!("[{unit}] "))]
             })
             .collect(),
         rows: shown
@@ -233,6 +229,11 @@ fn list<'a, I: Iterator<Item = Row<'a>>>(
     grid.written(width, look) + &more(survey.rows - shown, of, look)
 }
 
+/// The head of a peak where all are peaks.
+fn short(column: &str) -> Head {
+    Head::of(column.trim_start_matches("peak_"))
+}
+
 /// The largest of each peak and where it is.
 fn largest(survey: &Survey<'_>, columns: &[String], heads: &[Head], look: Look, width: usize) -> String {
     let along = survey.along.iter().map(|along| along.axis);
@@ -242,7 +243,7 @@ fn largest(survey: &Survey<'_>, columns: &[String], heads: &[Head], look: Look, 
         .iter()
         .map(|largest| {
             let name = &columns[largest.column];
-            let head = Head::of(name);
+            let head = short(name);
             let at = axes
                 .iter()
                 .filter(|&&i| !largest.row[i].is_nothing())
@@ -252,7 +253,7 @@ fn largest(survey: &Survey<'_>, columns: &[String], heads: &[Head], look: Look, 
                 labels::digits(name, largest.most),
                 head.unit.unwrap_or_default()
             );
-            (head.name.trim_start_matches("peak ").to_owned(), value, at.collect())
+            (head.name, value, at.collect())
         })
         .collect();
     if parts.is_empty() || survey.rows < 2 {
