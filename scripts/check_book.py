@@ -1,5 +1,5 @@
-"""Tries the book: its links, the paths and items it names, its tables of columns, its patches, and every block of code; and
-the notebooks beside it.
+"""Tries the book: its links, the paths and items it names, its tables of columns, its patches, and every block of code;
+and the notebooks beside it.
 
     check_book.py [--text] [--figures] [--book DIR] [--only WORD]
     check_book.py --strip

@@ -14,13 +14,15 @@ def block(info, body):
     return f"# One\n\n{FENCE}{info}\n{body}\n{FENCE}\n"
 
 
-HISTORIES = """| column | unit | is |
+CONNECTORS = """| column | unit | is |
 |---|---|---|
 | `job` |  | number of the job |
-| `time_s` | s | time since the vehicle's front is at the bridge |
-| `quantity` |  | what the history is of: deflection positive downward, force tension positive (`deflection_m`, `force_n`) |
-| `position` |  | position of a deflection, joint of a force |
-| `value` |  | the quantity, in its unit |
+| `joint` |  | number of the joint, from 2 |
+| `y_m` | m | place of the connector across; null of the joint's connectors added |
+| `peak_compression_n` | N | largest compression |
+| `peak_compression_time_s` | s | its time |
+| `peak_tension_n` | N | largest tension |
+| `peak_tension_time_s` | s | its time |
 """
 
 # what is tried, a page that is right, the same with its fault
@@ -58,8 +60,8 @@ TRIALS = [
     ("a heading", "# One two\n\n[a](one.md#one-two)", "# One two\n\n[a](one.md#one-three)"),
     (
         "columns",
-        "# One\n\n<!-- columns: histories -->\n" + HISTORIES + "<!-- end of columns -->\n",
-        "# One\n\n<!-- columns: histories -->\n" + HISTORIES.replace("| s |", "| m |") + "<!-- end of columns -->\n",
+        "# One\n\n<!-- columns: connectors -->\n" + CONNECTORS + "<!-- end of columns -->\n",
+        "# One\n\n<!-- columns: connectors -->\n" + CONNECTORS.replace("| N |", "| m |") + "<!-- end of columns -->\n",
     ),
     ("an include", "{{#include one.md}}", "{{#include two.md}}"),
 ]
