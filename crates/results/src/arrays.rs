@@ -24,6 +24,8 @@ pub enum CellKind {
     Words(&'static [&'static str]),
     /// Any text.
     Texts,
+    /// Values of several types, each as JSON.
+    Values,
 }
 
 /// The type of an axis's column: whole numbers where all its values are of such a type, numbers where all are numbers, words
@@ -42,7 +44,7 @@ pub(super) fn type_of<'a>(values: impl Iterator<Item = Cell<'a>>) -> CellKind {
         () if numbers => CellKind::Numbers,
         () if words => CellKind::Words(&[]),
         () if flags => CellKind::Flags,
-        () => CellKind::Texts,
+        () => CellKind::Values,
     }
 }
 
@@ -52,6 +54,7 @@ pub(super) enum Cells<'a> {
     Numbers(Vec<Option<f64>>),
     Counts(Vec<Option<i64>>),
     Words(Vec<Option<Cow<'a, str>>>),
+    Values(Vec<Option<String>>),
     Flags(Vec<Option<bool>>),
 }
 
@@ -63,6 +66,7 @@ impl<'a> Cells<'a> {
             CellKind::Counts => Self::Counts(Vec::new()),
             CellKind::Flags => Self::Flags(Vec::new()),
             CellKind::Words(_) | CellKind::Texts => Self::Words(Vec::new()),
+            CellKind::Values => Self::Values(Vec::new()),
         }
     }
 
@@ -83,6 +87,7 @@ impl<'a> Cells<'a> {
                 Cell::Word(word) => Some(word),
                 other => Some(Cow::Owned(other.to_string())),
             }),
+            Self::Values(values) => values.push((!cell.is_nothing()).then(|| cell.to_string())),
         }
     }
 
@@ -91,6 +96,7 @@ impl<'a> Cells<'a> {
             Self::Numbers(numbers) => Box::new(PrimitiveArray::<f64>::from(numbers.as_slice())),
             Self::Counts(counts) => Box::new(PrimitiveArray::<i64>::from(counts.as_slice())),
             Self::Flags(flags) => Box::new(BooleanArray::from(flags.as_slice())),
+            Self::Values(values) => Box::new(Utf8ViewArray::from_slice(values)),
             Self::Words(words) => {
                 let words: Vec<Option<&str>> = words.iter().map(Option::as_deref).collect();
                 Box::new(Utf8ViewArray::from_slice(words))
@@ -145,5 +151,23 @@ mod tests {
                 assert_eq!(columns.frame().unwrap().types(), [("a", &expected)], "{part:?}");
             }
         }
+    }
+
+    #[test]
+    fn values_of_several_types_are_json_and_words_alone_are_not() {
+        fn column(values: &[Value]) -> Cells<'_> {
+            let cells: Vec<Cell<'_>> = values.iter().map(Cell::of).collect();
+            let mut columns = Columns::default();
+            columns.push("a", type_of(cells.iter().cloned()), cells.into_iter());
+            columns.0.remove(0).1
+        }
+        let texts = match column(&[json!("auto"), json!(0.02), json!(null)]) {
+            Cells::Values(texts) => texts,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(texts, [Some("\"auto\"".to_owned()), Some("0.02".to_owned()), None]);
+        assert!(
+            matches!(column(&[json!("auto"), json!("b")]), Cells::Words(words) if words[0].as_deref() == Some("auto"))
+        );
     }
 }

@@ -152,6 +152,7 @@ impl Table {
             arrays::Cells::Numbers(numbers) => Cells::Numbers(numbers),
             arrays::Cells::Counts(counts) => Cells::Numbers(counts.iter().map(|x| x.map(|x| x as f64)).collect()),
             arrays::Cells::Flags(flags) => Cells::Flags(flags),
+            arrays::Cells::Values(values) => Cells::Words(values),
             arrays::Cells::Words(words) => {
                 let words = words.into_iter();
                 Cells::Words(words.map(|word| word.map(|word| word.into_owned())).collect())
