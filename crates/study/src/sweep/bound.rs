@@ -4,7 +4,7 @@
 
 use super::SweepSetting;
 use crate::run::instruction_path;
-use pontoon_journal::{Binding, FORM, Session};
+use pontoon_journal::{Binding, Book, FORM, Session};
 use pontoon_plan::input::{Document, Refusal, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
@@ -18,7 +18,7 @@ pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
     Binding {
         form: FORM,
         name: study.name.clone(),
-        numerics: format!("{} {}", pontoon_results::VERSION, crate::NUMERICS),
+        numerics: numerics(),
         instruction_path: instruction_path().to_owned(),
         shard: shard.map(|shard| shard.to_string()),
         bridge: to_value(&study.bridge.design),
@@ -26,6 +26,28 @@ pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
         analysis: to_value(&study.analysis.written()),
         record: to_value(&study.record),
     }
+}
+
+/// This program's version and numerics key, as a journal has them.
+fn numerics() -> String {
+    format!("{} {}", pontoon_results::VERSION, crate::NUMERICS)
+}
+
+/// Refuses a journal whose records another program wrote: their form may be another.
+///
+/// # Errors
+/// [`Refusal`] of the file.
+pub(super) fn check_program(book: &Book) -> Result<(), Refusal> {
+    let own = numerics();
+    for written in &book.files {
+        let bound = written.binding.as_ref();
+        if let Some(then) = bound.filter(|then| written.records > 0 && then.numerics != own) {
+            let found = format!("records of another program ({} then, {own} now)", then.numerics);
+            let allowed = "records of this program: run the study again with --fresh";
+            return Err(Refusal::new(&written.path, "", found, allowed));
+        }
+    }
+    Ok(())
 }
 
 /// This process at work on a study.

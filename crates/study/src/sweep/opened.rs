@@ -159,7 +159,7 @@ fn check(book: &Book, now: &Binding, setting: &SweepSetting) -> Result<(), Refus
         if !differences.is_empty() {
             return refuse(
                 "",
-                format!("records of another study ({})", differences.join("; ")),
+                format!("records of another study or program ({})", differences.join("; ")),
                 "the study that these results are of with jobs added or left out; --fresh moves them aside and begins anew",
             );
         }

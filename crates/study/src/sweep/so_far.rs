@@ -3,6 +3,7 @@
 //! Knows journals from outside, while others write them. Writes nothing.
 
 use super::SweepError;
+use super::bound::check_program;
 use super::opened::check_folder;
 use super::status::study_of_book;
 use crate::run::Ledger;
@@ -38,6 +39,7 @@ pub struct SoFar {
 pub fn so_far(folder: &Path) -> Result<SoFar, SweepError> {
     check_folder(folder)?;
     let book = Book::read(folder)?;
+    check_program(&book)?;
     let (study, binding, session) = study_of_book(&book, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let ledger = Ledger::new(&book, &jobs);

@@ -3,16 +3,16 @@
 //! Knows journals from outside, while others write them. Writes nothing.
 
 use super::SweepError;
-use super::bound::study_of;
+use super::bound::{check_program, study_of};
 use super::opened::check_folder;
 use crate::run::{Ledger, record_key};
 use pontoon_journal::{Binding, Book, Lock, Session, Standing};
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs, Shard};
 use pontoon_plan::study_file::Study;
 use pontoon_results::Failure;
-use serde::Serialize;
-use serde_json::{Map, Value};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 /// Folders of results with how far their runs have come.
@@ -123,7 +123,8 @@ pub struct Explanation {
     pub state: &'static str,
     /// Why it failed, in words.
     pub reason: Option<String>,
-    /// Why it failed: kind, numbers and words.
+    /// Why it failed: kind, numbers by name, words.
+    #[serde(serialize_with = "with_numbers_by_name")]
     pub failure: Option<Failure>,
     /// In a sentence.
     pub why: String,
@@ -139,6 +140,19 @@ pub struct Explanation {
     pub deaths: usize,
     /// Length of its crossing in time steps.
     pub steps: usize,
+}
+
+/// A failure with its numbers as an object.
+fn with_numbers_by_name<S: Serializer>(failure: &Option<Failure>, serializer: S) -> Result<S::Ok, S::Error> {
+    let told = failure.as_ref().map(|failure| {
+        let numbers: Map<String, Value> = failure
+            .numbers
+            .iter()
+            .map(|(name, x)| (name.clone(), Cell::written(*x).value()))
+            .collect();
+        json!({ "kind": failure.kind, "numbers": numbers, "text": failure.text })
+    });
+    told.serialize(serializer)
 }
 
 /// Explains a job of the study that a folder's journal is of.
@@ -181,6 +195,7 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
     };
     match book.find(&key) {
         Some(entry) => {
+            check_program(&book)?;
             let ledger = Ledger::new(&book, std::slice::from_ref(job));
             let record = ledger.record(0, job)?;
             let written = book.file_of(entry.place);
