@@ -53,6 +53,7 @@ fn label(refusal: &Refusal, kind: &MarkKind) -> String {
         MarkKind::Around if refusal.kind == RefusalKind::Missing && refusal.found.is_nothing() => {
             format!("{} is missing", refusal.name())
         }
+        MarkKind::Around if refusal.kind == RefusalKind::Missing => allowed(),
         MarkKind::Around => refusal.found.text(),
         MarkKind::Key | MarkKind::Value => match &refusal.nearest {
             Some(nearest) => format!("nearest known: {nearest}"),

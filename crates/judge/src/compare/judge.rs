@@ -84,11 +84,17 @@ impl<'a> Judge<'a> {
             return vec![CaseColumns::default()];
         }
         let jobs = self.evaluator.results.jobs();
+        let mut each: Vec<&String> = Vec::new();
+        for column in &check.each {
+            if !each.contains(&column) {
+                each.push(column);
+            }
+        }
         let (mut combinations, mut seen) = (Vec::new(), HashSet::new());
         for row in self.evaluator.jobs(&check.filter) {
-            let cells: Vec<_> = check.each.iter().map(|column| jobs.cell(column, row).owned()).collect();
+            let cells: Vec<_> = each.iter().map(|column| jobs.cell(column, row).owned()).collect();
             if seen.insert(cells.clone()) {
-                combinations.push(CaseColumns(check.each.iter().cloned().zip(cells).collect()));
+                combinations.push(CaseColumns(each.iter().copied().cloned().zip(cells).collect()));
             }
         }
         combinations

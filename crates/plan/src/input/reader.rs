@@ -324,7 +324,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _: &'static str,
-        _: &'static [&'static str],
+        variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Trouble> {
         match self.peek() {
@@ -342,7 +342,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
                 let found = format!("an object of {} keys", self.length());
                 Err(Trouble::new(RefusalKind::NotAllowed, found, Expected::SingleKey))
             }
-            _ => Err(self.wrong(Expected::WordOrObject)),
+            _ => Err(Trouble::new(RefusalKind::WrongType, self.here(), variants.join(", "))),
         }
     }
 
@@ -470,6 +470,10 @@ impl<'de> VariantAccess<'de> for KeyedValue<'_, 'de> {
 
     fn unit_variant(self) -> Result<(), Trouble> {
         let Self { reader, key } = self;
+        if reader.peek() == b'n' {
+            reader.skip();
+            return Ok(());
+        }
         let found = reader.here();
         reader.skip();
         let allowed = format!("the word \"{key}\"");

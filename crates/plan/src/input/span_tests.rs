@@ -154,6 +154,10 @@ fn places_of_real_refusals_of_the_strict_reader_are_those_that_the_message_tells
         ("{\r\n\t\"a\": \"\u{65e5}\", oops }", "line 2, column 12"),
         ("{\"a\": 1,\n\n   \"a\": 2}", "line 3, column 4"),
         ("{\"a\": [", "line 1, column 8"),
+        // a key that is written with escapes, and one that is a value too
+        ("{\"name\": 1, \"na\\u006de\": 2}", "line 1, column 13"),
+        ("{\"a\": 1,\n\"b\": \"a\",\n\"\\u0061\": 3}", "line 3, column 1"),
+        ("{\"a/b\": 1, \"a\\/b\": 3}", "line 1, column 12"),
     ] {
         let refused = Document::parse(Path::new("f.json"), text).unwrap_err();
         assert!(refused.found.words.contains(place), "{refused}");

@@ -93,10 +93,9 @@ impl Fault {
         let bytes = match &state.repeated {
             // the reader has just read the second of the two
             Some(name) => {
-                let written = Value::from(name.as_str()).to_string();
                 let read = text.get(..text.floor_char_boundary(before + error.column() + 1));
-                let second = read.and_then(|read| read.rfind(&written));
-                second.map_or(before + from..before + to, |at| at..at + written.len())
+                let second = read.and_then(|read| last_string(read, name));
+                second.unwrap_or(before + from..before + to)
             }
             None if error.is_eof() => end..end,
             None => before + from..before + to,
@@ -115,6 +114,17 @@ impl Fault {
         let path = state.path.into_iter().rev().collect();
         Self { bytes, kind, path }
     }
+}
+
+/// The bytes of the string that a text ends with, if it is this one, however it is written.
+fn last_string(text: &str, string: &str) -> Option<Range<usize>> {
+    let end = text.rfind('"')? + 1;
+    let begins = text[..end - 1].rmatch_indices('"').map(|(at, _)| at);
+    let is_it = |at: &usize| serde_json::from_str::<String>(&text[*at..end]).is_ok_and(|read| read == string);
+    begins
+        .take_while(|at| end - at <= 6 * string.len() + 2)
+        .find(is_it)
+        .map(|at| at..end)
 }
 
 /// Whether a token is a number beyond the finite ones, or a name of one.

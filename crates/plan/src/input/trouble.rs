@@ -22,7 +22,6 @@ pub(super) enum Expected {
     ListOf(usize),
     Object,
     SingleKey,
-    WordOrObject,
 }
 
 impl Display for Expected {
@@ -32,13 +31,12 @@ impl Display for Expected {
             Self::Whole => "a whole number",
             Self::NotNegativeWhole => "a whole number of at least 0",
             Self::Flag => "true or false",
-            Self::Word => "a word",
+            Self::Word => "a text",
             Self::Null => "null",
             Self::List => "a list",
             Self::ListOf(length) => return write!(f, "a list of length {length}"),
             Self::Object => "an object",
             Self::SingleKey => "an object with a single key",
-            Self::WordOrObject => "a word or an object",
         })
     }
 }
