@@ -4,7 +4,7 @@ Knows how each language is run. Does not know where pages come from.
 
 | block | how it is tried |
 |---|---|
-| `console` | lines that begin with `$ ` are run by bash, `\\` goes on; what follows is their standard output, or of a command that must fail (`exit=N`) its standard error. `...` on a line of its own stands for any lines, within one for any text; spaces count as one; `within=0.01` lets numbers be off by that share |
+| `console` | lines that begin with `$ ` are run by bash, `\\` goes on; what follows is their standard output, or of a command that must fail (`exit=N`) its standard error. Spaces count as one. What moves from run to run (`MOVES`) matches whatever is of its kind; `within=0.01` lets numbers be off by that share; all else is equal. `head=12`, `tail=2` or `lines=3-9` say which lines of the last command's output are shown. Outside the guide `...` on a line of its own stands for any lines, within one for any text |
 | `json study`, `json bridge`, `json reference` | written to `file=PATH` where there is one, and refused or not by the program. `with=PATH`: the keys of the block in place of those of that file. `exit=2`: must be refused |
 | `json parameters` | written to `file=PATH`, for the commands below |
 | `python` | run in the page's one Python; `text output` right after it is what it prints |
@@ -20,6 +20,20 @@ from pathlib import Path
 
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 SECONDS = 600
+# What moves from run to run, kind by kind; the first kind that matches counts. One of a kind matches any other of it.
+AMOUNT = r"\d[\d,]*(?:\.\d+)?"
+MOVES = {
+    "date": r"\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d(?:\.\d+)?)?(?:Z| UTC)?)?",
+    "rate": rf"{AMOUNT} (?:jobs|steps)/s",
+    "size": rf"{AMOUNT} [kMG]?B\b",
+    "duration": rf"(?<![\d.])(?:{AMOUNT} (?:us|ms|s|min|h|d)\b(?!/) ?)+",
+    "threads": r"\d+ threads?\b",
+    "process": r"process \d+(?: on \S+)?",
+    "record": r"\b[0-9a-f]{16}-[0-9a-f]{8}(?=\.pontoon)",
+    "hash": r"\b(?=[0-9a-f]*\d)(?=[0-9a-f]*[a-f])[0-9a-f]{12,64}\b",
+    "path": r"/tmp/\S+",
+}
+MOVING = re.compile("|".join(f"(?P<{kind}>{pattern})" for kind, pattern in MOVES.items()))
 # How figures of the pages look; matplotlib reads it from the folder in which it is run.
 STYLE = """
 figure.figsize: 7.2, 3.4
@@ -77,7 +91,14 @@ def pattern_of(line, within):
     return "(?:.*?)".join(parts)
 
 
+def still(line):
+    """A line with the name of its kind in place of whatever moves from run to run."""
+    return MOVING.sub(lambda moving: f"<{moving.lastgroup}> ", line)
+
+
 def same_line(shown, found, within):
+    if "..." not in shown:
+        shown, found = still(shown), still(found)
     match = re.fullmatch(pattern_of(shown, within), words_of(found))
     if match is None or within is None:
         return match is not None
@@ -104,6 +125,26 @@ def lines_of(text):
     return lines
 
 
+def chosen(lines, settings):
+    """The lines of an output that its block shows: by `head`, `tail` or `lines`, else all of them."""
+    parts = {key: settings[key] for key in ("head", "tail", "lines") if key in settings}
+    if not parts:
+        return lines
+    if len(parts) > 1:
+        raise Mismatch("one of head, tail, lines")
+    ((how, value),) = parts.items()
+    first, last = 1, len(lines)
+    if how == "head":
+        last = int(value)
+    elif how == "tail":
+        first = last + 1 - int(value)
+    else:
+        first, last = (int(number) for number in value.split("-"))
+    if not 1 <= first <= last <= len(lines):
+        raise Mismatch(f"{how}={value} of an output of {len(lines)} lines")
+    return lines[first - 1 : last]
+
+
 def commands(body):
     """Commands of a console block, each with the lines shown below it."""
     found = []
@@ -119,6 +160,28 @@ def commands(body):
         else:
             found[-1][1].append(line)
     return found
+
+
+def shown_of(block):
+    """What a block shows of outputs, without commands."""
+    if block.language != "console":
+        return block.body
+    return "\n".join(line for _, shown in commands(block.body) for line in shown)
+
+
+def refilled(block, outputs):
+    """The lines of a block with other outputs below its commands."""
+    if block.language != "console":
+        return [line + "\n" for line in outputs[0]]
+    lines, goes_on = [], False
+    outputs = iter(outputs)
+    for line in block.raw.splitlines():
+        if line.startswith("$ ") or goes_on:
+            lines.append(line)
+            goes_on = line.endswith("\\")
+            if not goes_on:
+                lines += next(outputs)
+    return [line + "\n" for line in lines]
 
 
 def replaced(base, keys):
@@ -156,6 +219,8 @@ class Sandbox:
         }
         (folder / "matplotlibrc").write_text(STYLE)
         self.process, self.number, self.printed = None, 0, None
+        # for each block that has been held, by its line: what it should show, command by command
+        self.found, self.fills = {}, False
 
     def close(self):
         if self.process:
@@ -186,18 +251,23 @@ class Sandbox:
         elif block.language == "text" and "output" in block.words:
             if printed is None:
                 raise Mismatch("output of nothing: no python block right before it")
-            self.hold(block, block.body.splitlines(), printed, "")
+            self.hold(block, block.body.splitlines(), lines_of(printed), "")
 
     def hold(self, block, shown, found, of):
+        """Holds the lines of an output against those that are shown."""
         within = float(block.settings["within"]) if "within" in block.settings else None
-        if not same(lines_of("\n".join(shown)), lines_of(found), within):
-            found = "\n".join(found.rstrip().splitlines()[:30])
+        shown, found = lines_of("\n".join(shown)), lines_of("\n".join(found))
+        holds = same(shown, found, within)
+        self.found.setdefault(block.line, []).append(shown if holds else found)
+        if not holds and not self.fills:
+            found = "\n".join(found[:60])
             raise Mismatch(f"{of}\n--- shown\n" + "\n".join(shown) + "\n--- found\n" + found)
 
     def console(self, block):
         all_commands = commands(block.body)
         for i, (command, shown) in enumerate(all_commands):
-            exit_status = int(block.settings.get("exit", 0)) if i + 1 == len(all_commands) else 0
+            last = i + 1 == len(all_commands)
+            exit_status = int(block.settings.get("exit", 0)) if last else 0
             done = self.bash(command)
             if done.returncode != exit_status:
                 raise Mismatch(
@@ -205,7 +275,8 @@ class Sandbox:
                     f"{done.stdout[-2000:]}{done.stderr[-2000:]}"
                 )
             text = done.stdout if exit_status in (0, 1) else done.stderr
-            self.hold(block, shown, text, f"`{command}`")
+            found = lines_of(text)
+            self.hold(block, shown, chosen(found, block.settings) if last else found, f"`{command}`")
 
     def code(self, block):
         if self.process is None:
@@ -239,7 +310,7 @@ class Sandbox:
         name = f"block-{self.number}.json"
         path = self.folder / block.settings["file"] if "file" in block.settings else base.with_name(name)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(block.body if "with" not in block.settings else json.dumps(document))
+        path.write_text(block.body if "with" not in block.settings else json.dumps(document, indent=2))
         command = {
             "study": f"pontoon plan '{path}'",
             "bridge": f"pontoon modes '{path}' --model super-element --count 1",

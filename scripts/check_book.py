@@ -1,7 +1,7 @@
 """Tries the book: its links, the paths and items it names, its tables of columns, its patches, and every block of code;
 and the notebooks beside it.
 
-    check_book.py [--text] [--figures] [--book DIR] [--only WORD]
+    check_book.py [--text] [--figures] [--fill] [--book DIR] [--only WORD]
     check_book.py --strip
     check_book.py --columns
 
@@ -75,10 +75,13 @@ def fault_of_block(block):
     included = all(book_pages.INCLUDE.fullmatch(line.strip()) for line in block.raw.splitlines() if line.strip())
     if block.language == "rust" and not included:
         return "Rust that is no part of a tested file: include it"
+    shows = block.language == "console" or "output" in block.words
+    if block.page.startswith("guide/") and shows and "..." in book_run.shown_of(block):
+        return "`...` in what the guide shows: show all of it, or part of it by head, tail or lines"
     return None
 
 
-def run_pages(pages, figures, source, counts):
+def run_pages(pages, arguments, source, counts):
     """Runs every block of every page; gives what is not so."""
     faults = []
     with tempfile.TemporaryDirectory(prefix="pontoon-book-") as folder:
@@ -98,17 +101,31 @@ def run_pages(pages, figures, source, counts):
                     own = folder / page.name.replace("/", "-")
                     own.mkdir()
                     sandbox = book_run.Sandbox(own, ROOT, program(), Path(sys.executable), folder / "cache")
+                    sandbox.fills = arguments.fill
                 try:
                     sandbox.run(block)
                     counts[block.language] += 1
                 except (book_run.Mismatch, ValueError, KeyError, book_run.subprocess.TimeoutExpired) as wrong:
                     faults.append(f"{block.place}: {wrong}")
             if sandbox:
-                if figures:
+                if arguments.fill:
+                    fill(page, sandbox)
+                if arguments.figures:
                     book_run.keep_figures(sandbox, source / "figures")
                 sandbox.close()
                 print(f"  {page.name}  {time.monotonic() - began:.1f} s", file=sys.stderr)
     return faults
+
+
+def fill(page, sandbox):
+    """Writes what commands have printed in place of what the page shows, where that is not so."""
+    lines = page.text.splitlines(keepends=True)
+    for block in reversed(page.blocks):
+        outputs = sandbox.found.get(block.line, [])
+        commands = len(book_run.commands(block.body)) if block.language == "console" else 1
+        if len(outputs) == commands:
+            lines[block.line : block.line + block.raw.count("\n")] = book_run.refilled(block, outputs)
+    page.path.write_text("".join(lines))
 
 
 def run_notebooks(counts):
@@ -167,6 +184,7 @@ def main():
     parser.add_argument("--text", action="store_true", help="links, paths and items alone: runs nothing")
     parser.add_argument("--figures", action="store_true", help="keeps the figures that the pages draw")
     parser.add_argument("--columns", action="store_true", help="writes the tables of columns, and no more")
+    parser.add_argument("--fill", action="store_true", help="writes what commands print into the pages")
     parser.add_argument("--strip", action="store_true", help="takes outputs out of the notebooks, and no more")
     parser.add_argument("--book", type=Path, default=ROOT / "book/src", help="the book's source")
     parser.add_argument("--only", help="pages whose name holds this word")
@@ -186,7 +204,7 @@ def main():
     if not arguments.text:
         faults += book_columns.faults(read, book_columns.registered(program()))
         chosen = [page for page in read if not arguments.only or arguments.only in page.name]
-        faults += run_pages(chosen, arguments.figures, source, counts)
+        faults += run_pages(chosen, arguments, source, counts)
         if not arguments.only and arguments.book == ROOT / "book/src":
             faults += run_notebooks(counts)
     for fault in faults:

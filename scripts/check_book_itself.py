@@ -34,6 +34,43 @@ TRIALS = [
         block("console within=0.01", "$ echo a 1.004\na 1.0"),
         block("console within=0.01", "$ echo a 1.02\na 1.0"),
     ),
+    (
+        "a duration",
+        block("console", "$ echo jobs 21, 1.4 s, about 12 min\njobs 21, 980 ms, about 1 h 20 min"),
+        block("console", "$ echo jobs 21, 1.4 s\njobs 22, 980 ms"),
+    ),
+    ("a speed is no duration", block("console", "$ echo 15 m/s\n15 m/s"), block("console", "$ echo 15 m/s\n14 m/s")),
+    (
+        "rate, threads, process, size",
+        block(
+            "console",
+            "$ echo 9.5 jobs/s, 2 threads, process 12 on a, 1.7 MB\n1,200 jobs/s, 1 thread, process 7 on b, 210 kB",
+        ),
+        block("console", "$ echo 9.5 jobs/s, 2 threads\n2 threads, 9.5 jobs/s"),
+    ),
+    (
+        "date, hash, path",
+        block(
+            "console",
+            "$ echo 2026-01-02T03:04:05Z 0123456789abcdef-01234567.pontoon 0123456789ab /tmp/x\n"
+            "2025-11-12T13:14:15Z fedcba9876543210-12345678.pontoon 98fe76dc0123 /tmp/y",
+        ),
+        block("console", "$ echo 2026-01-02 0123456789ab\n2026-01-02 0123"),
+    ),
+    (
+        "a number beside what moves",
+        block("console within=0.01", "$ echo 1 s, 100.5 mm\n2 s, 100 mm"),
+        block("console within=0.01", "$ echo 1 s, 105 mm\n2 s, 100 mm"),
+    ),
+    ("a line that is missing", block("console", "$ seq 3\n1\n2\n3"), block("console", "$ seq 3\n1\n3")),
+    ("head", block("console head=2", "$ seq 9\n1\n2"), block("console head=2", "$ seq 9\n1\n2\n3")),
+    ("tail", block("console tail=2", "$ seq 9\n8\n9"), block("console tail=2", "$ seq 9\n7\n9")),
+    ("lines", block("console lines=3-5", "$ seq 9\n3\n4\n5"), block("console lines=3-5", "$ seq 9\n3\n5")),
+    (
+        "more lines than there are",
+        block("console head=3", "$ seq 3\n1\n2\n3"),
+        block("console head=4", "$ seq 3\n1\n2\n3"),
+    ),
     ("exit status", block("console exit=2", "$ echo no >&2; exit 2\nno"), block("console", "$ exit 2")),
     ("python", block("python", "assert 1 + 1 == 2"), block("python", "assert 1 + 1 == 3")),
     (
@@ -80,7 +117,9 @@ PATCH = """--- a/Cargo.toml
 def check(pages):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in pages.items():
-            (Path(folder) / name).write_text(text)
+            path = Path(folder) / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text)
         done = subprocess.run([sys.executable, CHECK, "--book", folder], capture_output=True, text=True, check=False)
         return done.returncode, done.stdout + done.stderr
 
@@ -103,6 +142,14 @@ def main():
             "a patch",
             {"SUMMARY.md": SUMMARY, "one.md": "# One", "a.patch": PATCH},
             {"SUMMARY.md": SUMMARY, "one.md": "# One", "a.patch": PATCH.replace("-[workspace]", "-[workspac]")},
+        )
+    )
+    guide = {"SUMMARY.md": SUMMARY.replace("one.md", "guide/one.md")}
+    trials.append(
+        (
+            "the guide leaves nothing open",
+            guide | {"guide/one.md": block("console head=1", "$ seq 3\n1")},
+            guide | {"guide/one.md": block("console", "$ seq 3\n1\n...")},
         )
     )
     for what, right, fault in trials:
