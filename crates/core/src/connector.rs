@@ -31,13 +31,13 @@ pub enum State {
     Both,
 }
 
-/// A line `N = k e - n0` of the connector law: its slope k `[N/m]` and offset n0 `[N]`.
+/// A branch `N = k e - n0` of the connector law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Line {
-    /// Slope `[N/m]`.
-    pub k: f64,
-    /// Offset `[N]`.
-    pub n0: f64,
+pub(crate) struct Branch {
+    /// Stiffness k `[N/m]`.
+    pub stiffness: f64,
+    /// Offset n0 `[N]`.
+    pub offset: f64,
 }
 
 /// The law of one connector in one job.
@@ -61,22 +61,25 @@ impl Law {
         }
     }
 
-    /// The line of the law in a state.
+    /// The branch of the law in a state.
     #[inline]
-    pub(crate) fn line(&self, state: State) -> Line {
+    pub(crate) fn branch(&self, state: State) -> Branch {
         match (state, self.connection) {
-            (State::Open, _) => Line { k: 0.0, n0: 0.0 },
-            (_, Connection::Linear) | (State::Both, _) => Line {
-                k: 2.0 * self.k,
-                n0: 0.0,
+            (State::Open, _) => Branch {
+                stiffness: 0.0,
+                offset: 0.0,
             },
-            (State::Tension, Connection::Nonlinear { gap_tension_m, .. }) => Line {
-                k: self.k,
-                n0: self.k * gap_tension_m,
+            (_, Connection::Linear) | (State::Both, _) => Branch {
+                stiffness: 2.0 * self.k,
+                offset: 0.0,
             },
-            (State::Compression, Connection::Nonlinear { gap_compression_m, .. }) => Line {
-                k: self.k,
-                n0: -self.k * gap_compression_m,
+            (State::Tension, Connection::Nonlinear { gap_tension_m, .. }) => Branch {
+                stiffness: self.k,
+                offset: self.k * gap_tension_m,
+            },
+            (State::Compression, Connection::Nonlinear { gap_compression_m, .. }) => Branch {
+                stiffness: self.k,
+                offset: -self.k * gap_compression_m,
             },
         }
     }
@@ -84,11 +87,11 @@ impl Law {
     /// Strain energy at elongation `e` `[J]`.
     #[inline]
     pub(crate) fn energy(&self, e: f64) -> f64 {
-        let line = self.line(self.state(e));
-        if line.k == 0.0 {
+        let branch = self.branch(self.state(e));
+        if branch.stiffness == 0.0 {
             0.0
         } else {
-            0.5 * (line.k * e - line.n0).powi(2) / line.k
+            0.5 * (branch.stiffness * e - branch.offset).powi(2) / branch.stiffness
         }
     }
 }

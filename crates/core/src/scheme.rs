@@ -83,6 +83,80 @@ impl Scheme {
     }
 }
 
+/// What a step is computed in: numbers, or vectors of one number a lane.
+pub(crate) trait Arithmetic: Copy {
+    /// A number, or one a lane.
+    type Number: Copy;
+
+    /// A constant.
+    fn splat(self, x: f64) -> Self::Number;
+
+    /// `a + b`.
+    fn add(self, a: Self::Number, b: Self::Number) -> Self::Number;
+
+    /// `a_0 x_0 + a_1 x_1 + a_2 x_2`, summed and rounded in an order that is the arithmetic's own and always the same.
+    fn combined(self, a: [Self::Number; 3], x: [Self::Number; 3]) -> Self::Number;
+
+    /// `rho (f - x_0 - a_1 x_1 - a_2 x_2)`, in such an order too.
+    fn followed(self, rho: Self::Number, f: Self::Number, a: [Self::Number; 2], x: [Self::Number; 3]) -> Self::Number;
+}
+
+/// Arithmetic of single numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scalar;
+
+impl Arithmetic for Scalar {
+    type Number = f64;
+
+    #[inline(always)]
+    fn splat(self, x: f64) -> f64 {
+        x
+    }
+
+    #[inline(always)]
+    fn add(self, a: f64, b: f64) -> f64 {
+        a + b
+    }
+
+    #[inline(always)]
+    fn combined(self, a: [f64; 3], x: [f64; 3]) -> f64 {
+        a[0] * x[0] + a[1] * x[1] + a[2] * x[2]
+    }
+
+    #[inline(always)]
+    fn followed(self, rho: f64, f: f64, a: [f64; 2], x: [f64; 3]) -> f64 {
+        rho * (f - x[0] - a[0] * x[1] - a[1] * x[2])
+    }
+}
+
+/// Newmark's update (T3): velocity and acceleration at the end of a step in which the displacement changes by d.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Newmark<A: Arithmetic> {
+    on_velocity: [A::Number; 3],
+    on_acceleration: [A::Number; 3],
+}
+
+impl<A: Arithmetic> Newmark<A> {
+    /// The update of a scheme.
+    #[inline(always)]
+    pub(crate) fn of(o: A, s: &Scheme) -> Self {
+        Self {
+            on_velocity: [o.splat(s.c_v), o.splat(s.v_v), o.splat(s.v_a)],
+            on_acceleration: [o.splat(s.c_a), o.splat(s.a_v), o.splat(s.a_a)],
+        }
+    }
+
+    /// Displacement, velocity and acceleration at the end of the step.
+    #[inline(always)]
+    pub(crate) fn advance(&self, o: A, d: A::Number, [x, v, a]: [A::Number; 3]) -> [A::Number; 3] {
+        [
+            o.add(x, d),
+            o.combined(self.on_velocity, [d, v, a]),
+            o.combined(self.on_acceleration, [d, v, a]),
+        ]
+    }
+}
+
 /// Rayleigh coefficients of `C = a K + b M`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rayleigh {

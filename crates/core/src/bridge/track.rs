@@ -71,8 +71,8 @@ impl Track {
     }
 
     fn interpolate(&self, x_m: f64, y_m: f64, along: impl Fn(f64, f64) -> (f64, f64)) -> Option<SparseRow> {
-        let place = self.along(x_m)?;
-        let (a, b) = along(place.part, place.length_m);
+        let place = self.cell(x_m)?;
+        let (a, b) = along(place.fraction, place.length_m);
         let mut entries = Vec::with_capacity(4);
         for (line, across) in self.across(y_m) {
             // a wheel on a line needs that line alone
@@ -86,22 +86,22 @@ impl Track {
 
     /// The interval between two stations that holds `x_m`; none off the bridge.
     #[inline]
-    pub(crate) fn along(&self, x_m: f64) -> Option<Along> {
+    pub(crate) fn cell(&self, x_m: f64) -> Option<DeckCell> {
         if !(0.0..=self.length_m()).contains(&x_m) {
             return None;
         }
         let module = ((x_m / self.module_length_m) as usize).min(self.modules - 1);
-        let (ix, part, length_m) = cell(&self.lines_x, x_m - module as f64 * self.module_length_m);
-        Some(Along {
+        let (ix, fraction, length_m) = interval(&self.lines_x, x_m - module as f64 * self.module_length_m);
+        Some(DeckCell {
             station: module * self.lines_x.len() + ix,
-            part,
+            fraction,
             length_m,
         })
     }
 
     /// The two lines beside `y_m` with their shares.
     pub fn across(&self, y_m: f64) -> [(usize, f64); 2] {
-        let (iy, t, _) = cell(&self.lines_y, y_m);
+        let (iy, t, _) = interval(&self.lines_y, y_m);
         [(iy, 1.0 - t), (iy + 1, t)]
     }
 
@@ -119,17 +119,25 @@ impl Track {
 
 /// A place between a station and the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Along {
+pub(crate) struct DeckCell {
     /// The station on the left.
     pub station: usize,
     /// Where between it and the next, 0 to 1.
-    pub part: f64,
+    pub fraction: f64,
     /// Their distance `[m]`.
     pub length_m: f64,
 }
 
+impl DeckCell {
+    /// Both stations with their shares.
+    #[inline(always)]
+    pub(crate) fn shares(&self) -> [(usize, f64); 2] {
+        [(self.station, 1.0 - self.fraction), (self.station + 1, self.fraction)]
+    }
+}
+
 /// The interval of `lines` that holds `at`, the place in it from 0 to 1, and its length; the outermost interval outside.
-fn cell(lines: &[f64], at: f64) -> (usize, f64, f64) {
+fn interval(lines: &[f64], at: f64) -> (usize, f64, f64) {
     let i = lines.windows(2).position(|w| at <= w[1]).unwrap_or(lines.len() - 2);
     let length = lines[i + 1] - lines[i];
     let place = ((at - lines[i]) / length).clamp(0.0, 1.0);

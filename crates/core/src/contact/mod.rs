@@ -64,11 +64,8 @@ impl ContactProblem<'_> {
             State::Both => vec![State::Both; first.len()],
             _ => first.to_vec(),
         };
-        let (solution, iterations) = settle(&mut states, &mut Vec::new(), limit, |states, asked| {
-            let solution = self.linear(law, states)?;
-            ask(law, &solution.elongations, asked);
-            Some(solution)
-        })?;
+        let mut system = UnderLaw { problem: self, law };
+        let (solution, iterations) = settle(&mut system, &mut states, &mut Vec::new(), limit)?;
         Ok(ContactSolution { iterations, ..solution })
     }
 
@@ -76,19 +73,19 @@ impl ContactProblem<'_> {
     fn linear(&self, law: &Law, states: &[State]) -> Option<ContactSolution> {
         let active: Vec<usize> = (0..states.len()).filter(|&i| states[i] != State::Open).collect();
         let (na, nr) = (active.len(), self.riders_free.len());
-        let lines: Vec<_> = states.iter().map(|&s| law.line(s)).collect();
+        let branches: Vec<_> = states.iter().map(|&s| law.branch(s)).collect();
         let mut a = DMatrix::zeros(na + nr, na + nr);
         let mut b = DVector::zeros(na + nr);
         for (p, &i) in active.iter().enumerate() {
             for (q, &j) in active.iter().enumerate() {
                 a[(p, q)] = self.connectors[(i, j)];
             }
-            a[(p, p)] += 1.0 / (self.weight * lines[i].k);
+            a[(p, p)] += 1.0 / (self.weight * branches[i].stiffness);
             for r in 0..nr {
                 a[(p, na + r)] = self.connectors_riders[(i, r)];
                 a[(na + r, p)] = self.riders_connectors[(r, i)];
             }
-            b[p] = self.e_free[i] - lines[i].n0 / lines[i].k;
+            b[p] = self.e_free[i] - branches[i].offset / branches[i].stiffness;
         }
         a.view_mut((na, na), (nr, nr)).copy_from(&self.riders);
         b.rows_mut(na, nr).copy_from(&self.riders_free);
@@ -111,7 +108,7 @@ impl ContactProblem<'_> {
         for (p, &i) in active.iter().enumerate() {
             forces[i] = x[p] / self.weight;
             // the active line holds exactly: the elongation follows from the force, without cancellation
-            elongations[i] = (forces[i] + lines[i].n0) / lines[i].k;
+            elongations[i] = (forces[i] + branches[i].offset) / branches[i].stiffness;
         }
         Some(ContactSolution {
             states: states.to_vec(),
@@ -123,37 +120,76 @@ impl ContactProblem<'_> {
     }
 }
 
-/// Newton on the active set, from `states` on: `solve` solves the linear system of an active set and writes the states that
-/// its elongations ask for. Gives the solution that asks for no other states and the number of solutions; `seen` is memory.
-fn settle<S>(
+/// A problem under the law of its connectors.
+struct UnderLaw<'a> {
+    problem: &'a ContactProblem<'a>,
+    law: &'a Law,
+}
+
+impl PiecewiseLinear for UnderLaw<'_> {
+    type Solution = ContactSolution;
+
+    fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<ContactSolution> {
+        let solution = self.problem.linear(self.law, states)?;
+        ask(self.law, &solution.elongations, asked);
+        Some(solution)
+    }
+}
+
+/// A piecewise-linear system, which is linear on one active set.
+pub(crate) trait PiecewiseLinear {
+    /// Its solution on an active set.
+    type Solution;
+
+    /// Solves on the active set of some states and writes the states that its elongations ask for; none where the matrix is
+    /// singular.
+    fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<Self::Solution>;
+}
+
+/// Newton on the active set (C2), from `states` on. Gives the solution that asks for no other states and the number of
+/// solutions; `seen` is memory.
+///
+/// # Errors
+/// [`NotSettled`] on a cycle, after `limit` solutions, or where a matrix is singular; the states are then of no solution.
+#[inline(always)]
+pub(crate) fn settle<P: PiecewiseLinear>(
+    system: &mut P,
     states: &mut [State],
     seen: &mut Vec<State>,
     limit: usize,
-    mut solve: impl FnMut(&[State], &mut [State]) -> Option<S>,
-) -> Result<(S, usize), NotSettled> {
+) -> Result<(P::Solution, usize), NotSettled> {
     seen.clear();
     let mut iterations = 0;
     loop {
         iterations += 1;
-        let not_settled = |connector| NotSettled { connector, iterations };
-        let before = seen.len();
-        seen.resize(before + states.len(), State::Open);
-        let (before, asked) = seen.split_at_mut(before);
-        let solution = solve(states, asked).ok_or(not_settled(0))?;
-        match states.iter().zip(&*asked).position(|(is, wants)| is != wants) {
-            None => return Ok((solution, iterations)),
-            Some(connector) => {
-                if iterations >= limit || before.chunks(states.len()).any(|earlier| earlier == asked) {
-                    return Err(not_settled(connector));
-                }
+        let met = seen.len();
+        seen.resize(met + states.len(), State::Open);
+        let (met, asked) = seen.split_at_mut(met);
+        let Some(solution) = system.solve(states, asked) else {
+            return Err(NotSettled {
+                connector: 0,
+                iterations,
+            });
+        };
+        let mut wants = None;
+        for (i, (is, asked)) in states.iter().zip(&*asked).enumerate() {
+            if wants.is_none() && is != asked {
+                wants = Some(i);
             }
+        }
+        let Some(connector) = wants else {
+            return Ok((solution, iterations));
+        };
+        if iterations >= limit || met.chunks_exact(states.len()).any(|earlier| earlier == asked) {
+            return Err(NotSettled { connector, iterations });
         }
         states.copy_from_slice(asked);
     }
 }
 
 /// The state that each elongation asks for.
-fn ask(law: &Law, elongations: &[f64], asked: &mut [State]) {
+#[inline(always)]
+pub(crate) fn ask(law: &Law, elongations: &[f64], asked: &mut [State]) {
     for (asked, &e) in asked.iter_mut().zip(elongations) {
         *asked = law.state(e);
     }

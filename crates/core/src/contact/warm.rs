@@ -3,7 +3,7 @@
 //! Knows `e = e_free - connectors N(e)` with its factor and memory kept, by the same Newton as every other contact. Does
 //! not know where the load is, nor what to do where it does not settle.
 
-use super::{ContactSolution, NotSettled, ask, settle};
+use super::{ContactSolution, NotSettled, PiecewiseLinear, ask, settle};
 use crate::connector::{Law, State};
 use nalgebra::{Cholesky, DMatrix, DVectorViewMut, Dyn};
 
@@ -42,12 +42,12 @@ impl<'a> WarmContact<'a> {
     /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is not positive definite; forces
     /// are then no solution's until [`Self::restart`].
     pub(crate) fn solve(&mut self, e_free: &[f64], limit: usize) -> Result<usize, NotSettled> {
-        let (law, tangent) = (&self.law, &mut self.tangent);
-        let ((), iterations) = settle(&mut self.states, &mut self.seen, limit, |states, asked| {
-            tangent.solve(law, states, e_free)?;
-            ask(law, &tangent.elongations, asked);
-            Some(())
-        })?;
+        let mut system = UnderLoad {
+            law: &self.law,
+            tangent: &mut self.tangent,
+            e_free,
+        };
+        let ((), iterations) = settle(&mut system, &mut self.states, &mut self.seen, limit)?;
         Ok(iterations)
     }
 
@@ -61,6 +61,23 @@ impl<'a> WarmContact<'a> {
     /// Force of each connector, tension positive `[N]`.
     pub(crate) fn forces(&self) -> &[f64] {
         &self.tangent.forces
+    }
+}
+
+/// Connectors under one load.
+struct UnderLoad<'a, 'c> {
+    law: &'a Law,
+    tangent: &'a mut Tangent<'c>,
+    e_free: &'a [f64],
+}
+
+impl PiecewiseLinear for UnderLoad<'_, '_> {
+    type Solution = ();
+
+    fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<()> {
+        self.tangent.solve(self.law, states, self.e_free)?;
+        ask(self.law, &self.tangent.elongations, asked);
+        Some(())
     }
 }
 
@@ -85,10 +102,10 @@ impl Tangent<'_> {
             self.active.extend((0..states.len()).filter(at_work));
             self.factorise(law, states);
         }
-        let lines = || self.active.iter().map(|&i| (i, law.line(states[i])));
+        let branches = || self.active.iter().map(|&i| (i, law.branch(states[i])));
         self.active_forces.clear();
         self.active_forces
-            .extend(lines().map(|(i, line)| e_free[i] - line.n0 / line.k));
+            .extend(branches().map(|(i, branch)| e_free[i] - branch.offset / branch.stiffness));
         let n = self.active_forces.len();
         let mut x = DVectorViewMut::from_slice(&mut self.active_forces, n);
         self.factor.as_ref()?.solve_mut(&mut x);
@@ -104,8 +121,8 @@ impl Tangent<'_> {
                 e_free[i] - forces.map(shortening).sum::<f64>()
             } else {
                 // the active line holds exactly: the elongation follows from the force, without cancellation
-                let line = law.line(states[i]);
-                (self.forces[i] + line.n0) / line.k
+                let branch = law.branch(states[i]);
+                (self.forces[i] + branch.offset) / branch.stiffness
             };
         }
         Some(())
@@ -117,7 +134,7 @@ impl Tangent<'_> {
         let mut a: Vec<f64> = last.map_or_else(Vec::new, |factor| factor.unpack_dirty().data.into());
         a.clear();
         for &j in &self.active {
-            let compliance = 1.0 / law.line(states[j]).k;
+            let compliance = 1.0 / law.branch(states[j]).stiffness;
             let own = |i: usize| if i == j { compliance } else { 0.0 };
             a.extend(self.active.iter().map(|&i| self.connectors[(i, j)] + own(i)));
         }

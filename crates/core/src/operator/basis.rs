@@ -3,7 +3,7 @@
 //! Knows the bridge's matrices and rows. Does not know step lengths, vehicles or connector laws.
 
 use super::cutoff::{Cutoff, Judge};
-use super::parts::{OperatorParts, Reader};
+use super::persist::{OperatorParts, Reader};
 use crate::bridge::{Bridge, Track};
 use crate::fem::{Factor, FemError, SparseRow, SymmetricMatrix, lowest_modes};
 use faer::Mat;
@@ -42,7 +42,7 @@ pub(super) struct Sizes {
 
 impl Sizes {
     /// Columns of a deck row: modes, connectors, observed rows, edges inside modules.
-    pub(super) fn reach(&self) -> usize {
+    pub(super) fn influence(&self) -> usize {
         self.followed() + self.inside * self.modules
     }
 
@@ -83,11 +83,11 @@ pub struct BridgeOperator {
     pub(super) inside: DMatrix<f64>,
     /// See `inside`.
     pub(super) r_inside_b: DMatrix<f64>,
-    /// For each module the largest `sqrt(sum of phi^2 / omega^2)`, `sqrt(R)` and reach from the deck of these rows.
+    /// For each module the largest `sqrt(sum of phi^2 / omega^2)`, `sqrt(R)` and influence of the deck on these rows.
     pub(super) inside_bounds: Vec<[f64; 3]>,
     /// Place of each station inside a module, 0 to 1.
     pub(super) places: Vec<f64>,
-    /// For each track column its reach: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
+    /// For each track column its influence: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
     pub(super) deck: Vec<f64>,
     /// Residual flexibility of the deck's nodes among each other, for each track column every line at the stations not
     /// farther than [`BridgeOperator::near`]; farther ones are left out.
@@ -197,8 +197,8 @@ impl BridgeOperator {
             .map(|j| {
                 let own = j * sizes.inside..(j + 1) * sizes.inside;
                 let modal = |i: usize| (0..m).map(|k| d[(i, k)].powi(2) / lambda[k].max(1.0)).sum::<f64>();
-                let reach = deck
-                    .chunks_exact(sizes.reach())
+                let influence = deck
+                    .chunks_exact(sizes.influence())
                     .flat_map(|r| &r[sizes.followed()..][own.clone()]);
                 [
                     own.clone().map(modal).fold(0.0, f64::max).sqrt(),
@@ -206,7 +206,7 @@ impl BridgeOperator {
                         .map(|i| among(nc + nv + i, nc + nv + i))
                         .fold(0.0, f64::max)
                         .sqrt(),
-                    reach.fold(0.0, |most, r| r.abs().max(most)),
+                    influence.fold(0.0, |most, r| r.abs().max(most)),
                 ]
             })
             .collect();
@@ -246,9 +246,9 @@ impl BridgeOperator {
         self.r_deck[(column * lines + other / stations) * (2 * self.near + 1) + t + self.near - s]
     }
 
-    /// The reach of a track column: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
-    pub(super) fn reach(&self, column: usize) -> &[f64] {
-        let width = self.sizes.reach();
+    /// The influence of a track column: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
+    pub(super) fn influence(&self, column: usize) -> &[f64] {
+        let width = self.sizes.influence();
         &self.deck[column * width..][..width]
     }
 
@@ -357,7 +357,7 @@ impl BridgeOperator {
             inside: r.matrix(inside * modules, modes)?,
             r_inside_b: r.matrix(inside * modules, connectors)?,
             places: r.list(inside / 2)?,
-            deck: r.list(nodes * sizes.reach())?,
+            deck: r.list(nodes * sizes.influence())?,
             r_deck: r.list(nodes * track.lines() * (2 * near + 1))?,
             inside_bounds: r.list(3 * modules)?.as_chunks().0.to_vec(),
             near,

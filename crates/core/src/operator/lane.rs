@@ -1,21 +1,30 @@
-//! One crossing in its lane: its vehicle, law and speed, and what it has beside the numbers of [`super::motion`].
+//! One crossing in its lane: its vehicle, law and speed, and what it has beside the numbers of all lanes.
 //!
-//! Knows where the vehicle is and what it weighs on. Does not know the lanes beside it.
+//! Knows where the vehicle is and how its contact is solved. Does not know the lanes beside it.
 
-use super::riders::Riders;
-use super::settle::{Small, Unsettled};
-use super::wheels::{Ride, Wheels};
+use super::basis::BridgeOperator;
+use super::connectors::Connectors;
+use super::contact_system::ContactSystem;
+use super::envelope::Envelope;
+use super::lane_array::LaneArray;
+use super::loads::{Loads, StationForce, apply_forces};
+use super::local_residual::StepForces;
+use super::modes::Modes;
+use super::moving_masses::{FreeMotion, MovingMasses};
+use super::step_constants::StepConstants;
+use super::wheel_lines::{WheelCompliance, WheelLines};
 use crate::connector::Law;
+use crate::contact::NotSettled;
 use crate::response::Statistics;
 use std::sync::Arc;
 
 /// One crossing as its lane knows it.
 #[derive(Debug, Clone)]
-pub(crate) struct Passage {
+pub(crate) struct CrossingInput {
     /// The vehicle on the deck.
-    pub wheels: Arc<Wheels>,
-    /// Its small flexibilities at the step length.
-    pub ride: Arc<Ride>,
+    pub wheels: Arc<WheelLines>,
+    /// Its small compliances at the step length.
+    pub compliance: Arc<WheelCompliance>,
     /// The connectors' law.
     pub law: Law,
     /// Weight of the vehicle `[N]`.
@@ -27,40 +36,173 @@ pub(crate) struct Passage {
 /// What a lane has beside its numbers.
 #[derive(Debug)]
 pub(super) struct Lane {
-    pub passage: Option<Passage>,
+    pub(super) crossing: Option<CrossingInput>,
     /// Place of the vehicle's front at the end of the step under way `[m]`, and the time then `[s]`.
-    pub front_x_m: f64,
-    pub time_s: f64,
-    pub small: Small,
-    pub riders: Riders,
+    pub(super) front_x_m: f64,
+    pub(super) time_s: f64,
+    pub(super) contact: ContactSystem,
+    pub(super) masses: MovingMasses,
     /// Weight on each axle that is on the bridge `[N]`, and whether all its points are.
-    pub axles: Vec<(f64, bool)>,
-    pub inertia: Vec<f64>,
-    /// Downward forces on stations: line, station, force; lines of the weights, then of the masses.
-    pub weights: Vec<(usize, usize, f64)>,
-    pub masses: Vec<(usize, usize, f64)>,
+    pub(super) axles: Vec<(f64, bool)>,
+    pub(super) inertia: Vec<f64>,
+    /// Downward forces on stations of the lines of the weights, then of the masses.
+    pub(super) weights: Vec<StationForce>,
+    pub(super) mass_forces: Vec<StationForce>,
     /// Steps since the vehicle left, up to two: by then all traces of its load are zero.
-    pub unloaded: u8,
-    pub statistics: Statistics,
-    pub unsettled: Option<Unsettled>,
+    pub(super) unloaded: u8,
+    pub(super) statistics: Statistics,
+    pub(super) unsettled: Option<NotSettled>,
+    /// Free motion of the modes at the step's end, and connector forces, of this lane alone.
+    free: FreeMotion,
+    n: Vec<f64>,
 }
 
 impl Lane {
     /// A free lane, with room for vehicles of at most `most_nodes` nodes.
-    pub(super) fn new(connectors: usize, most_nodes: usize, newton_limit: usize) -> Self {
+    pub(super) fn new(modes: usize, connectors: usize, most_nodes: usize, newton_limit: usize) -> Self {
         Self {
-            passage: None,
+            crossing: None,
             front_x_m: 0.0,
             time_s: 0.0,
-            small: Small::new(connectors, most_nodes, newton_limit),
-            riders: Riders::new(connectors, most_nodes),
+            contact: ContactSystem::new(connectors, most_nodes, newton_limit),
+            masses: MovingMasses::new(connectors, most_nodes),
             axles: Vec::new(),
             inertia: Vec::new(),
             weights: Vec::with_capacity(most_nodes),
-            masses: Vec::with_capacity(most_nodes),
+            mass_forces: Vec::with_capacity(most_nodes),
             unloaded: 0,
             statistics: Statistics::default(),
             unsettled: None,
+            free: FreeMotion::new(modes),
+            n: vec![0.0; connectors],
         }
+    }
+
+    /// Takes up a crossing, without forces on the deck.
+    pub(super) fn take(&mut self, crossing: CrossingInput) {
+        let axles = crossing.wheels.vehicle.axles;
+        self.axles = vec![(0.0, true); axles];
+        self.inertia = vec![0.0; axles];
+        self.crossing = Some(crossing);
+    }
+
+    /// Says where the vehicle is at the end of the coming step.
+    pub(super) fn place(&mut self, time_s: f64) {
+        self.time_s = time_s;
+        self.front_x_m = self.crossing.as_ref().map_or(0.0, |c| c.speed_m_s * time_s);
+    }
+
+    /// Whether the vehicle has masses that ride along.
+    #[inline(always)]
+    pub(super) fn has_masses(&self) -> bool {
+        self.crossing.as_ref().is_some_and(|c| !c.wheels.masses.is_empty())
+    }
+
+    /// Weights on stations and axles at the vehicle's place.
+    #[inline(always)]
+    pub(super) fn place_weights(&mut self, operator: &BridgeOperator) {
+        let Some(crossing) = &self.crossing else {
+            return;
+        };
+        self.axles.fill((0.0, true));
+        self.weights.clear();
+        for (line, of) in crossing.wheels.weights.iter().enumerate() {
+            let own = self.weights.len();
+            for &(ahead_m, share, axle) in &of.points {
+                let Some(cell) = operator.track.cell(self.front_x_m + ahead_m) else {
+                    self.axles[axle].1 = false;
+                    continue;
+                };
+                let w = crossing.load_n * share;
+                self.axles[axle].0 += w * of.lines.len() as f64;
+                for (station, part) in cell.shares() {
+                    match self.weights[own..].iter_mut().rev().find(|(_, s, _)| *s == station) {
+                        Some((_, _, sum)) => *sum += w * part,
+                        None => self.weights.push((line, station, w * part)),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Connectors and moving masses together (C1): leaves their forces. Whether they settled.
+    #[inline(always)]
+    pub(super) fn solve(
+        &mut self,
+        lane: usize,
+        operator: &BridgeOperator,
+        constants: &StepConstants,
+        newton_limit: usize,
+        (modes, connectors, loads, envelope): (&Modes, &mut Connectors, &mut Loads, &mut Envelope),
+    ) -> bool {
+        let Some(crossing) = &self.crossing else {
+            return true;
+        };
+        let m = constants.c.len();
+        let (wheels, compliance, masses) = (&*crossing.wheels, &*crossing.compliance, &mut self.masses);
+        masses.place(wheels, &operator.track, crossing.load_n, self.front_x_m);
+        if masses.count() > 0 {
+            self.free.gather(lane, &modes.free, masses.symmetric());
+            connectors.n.gather(lane, &mut self.n);
+        }
+        let forces = StepForces {
+            weights: &self.weights,
+            masses: &self.mass_forces,
+            n: &self.n,
+        };
+        masses.follow(wheels, constants, m, forces);
+        masses.couple(wheels, compliance, constants, m, crossing.speed_m_s, &self.free);
+        connectors.e_now.gather(lane, &mut self.contact.linear.e);
+        let weight = 1.0 - constants.scheme.alpha_f;
+        let compliances = &constants.connector_compliance;
+        match self
+            .contact
+            .solve(&crossing.law, compliances, weight, masses, newton_limit)
+        {
+            Ok((iterations, switches)) => {
+                self.unsettled = None;
+                self.statistics.steps += 1;
+                self.statistics.newton_iterations += iterations;
+                self.statistics.contact_switches += switches;
+            }
+            Err(stuck) => {
+                self.unsettled = Some(stuck);
+                masses.unfollow();
+                return false;
+            }
+        }
+        connectors.e_now.scatter(lane, &self.contact.linear.e);
+        for (to, scaled) in connectors.n_now.rows_from_mut(0).zip(&self.contact.linear.forces) {
+            to[lane] = scaled / weight;
+        }
+        self.apply_masses(lane, constants, &connectors.n_now, &mut loads.inertia_now);
+        envelope.record_axles(lane, &self.axles, &self.inertia);
+        true
+    }
+
+    /// Inertia forces of the masses, forces settled.
+    #[inline(always)]
+    fn apply_masses(&mut self, lane: usize, constants: &StepConstants, n: &LaneArray, inertia: &mut LaneArray) {
+        let (Some(crossing), masses) = (&self.crossing, &mut self.masses) else {
+            return;
+        };
+        self.inertia.fill(0.0);
+        self.mass_forces.clear();
+        if masses.count() == 0 {
+            return;
+        }
+        let (wheels, scaled) = (&*crossing.wheels, &self.contact.linear.masses);
+        masses.add_inertia(
+            &crossing.compliance,
+            constants,
+            scaled,
+            &self.contact.linear.forces,
+            &mut self.inertia,
+        );
+        let unscale = 1.0 / (1.0 - constants.scheme.alpha_m);
+        masses.on_nodes(scaled, unscale, &mut self.mass_forces);
+        apply_forces(&wheels.masses, wheels.influence_width, &self.mass_forces, inertia, lane);
+        n.gather(lane, &mut self.n);
+        masses.lead(wheels, constants, constants.c.len(), &self.mass_forces, &self.n);
     }
 }

@@ -2,37 +2,41 @@
 //!
 //! Knows the modes of the connector-free bridge, the flexibility that they leave out, and how many crossings step through
 //! them side by side, one a SIMD lane. Does not know when a crossing begins or ends; what is kept of
-//! one is for `watch`.
+//! one is for `envelope`.
 //!
 //! `u = Phi q + K^-1 (what the modes leave out)`: the modes obey `q'' + (a omega^2 + b) q' + omega^2 q = Phi^T f`, the
 //! rest answers without mass, `K (u + a u') = f`, which leaves residual flexibilities R between connectors B, deck L and
-//! observed rows V. [`BridgeOperator`] holds them, `Level` what one step length makes of them, `Wheels` what a
-//! vehicle sees of the deck, `Lanes` the motion.
+//! observed rows V. [`BridgeOperator`] holds them, `StepConstants` what one step length makes of them,
+//! `WheelLines` what a vehicle sees of the deck, `Crossings` the motion.
 
 mod basis;
-mod beside;
+mod connectors;
+mod contact_system;
+mod crossings;
 mod cutoff;
+mod energy;
+mod envelope;
 mod lane;
-mod lanes;
-mod level;
-mod motion;
+mod lane_array;
+mod loads;
+mod local_residual;
+mod modes;
+mod moving_masses;
 mod panel;
-mod parts;
-mod riders;
-mod settle;
+mod persist;
+mod residual;
 mod step;
+mod step_constants;
 mod sums;
 mod vector;
-mod watch;
-mod wheels;
+mod wheel_lines;
 
 pub use basis::{BridgeOperator, OperatorError};
+pub(crate) use crossings::Crossings;
 pub use cutoff::Cutoff;
-pub(crate) use lane::Passage;
-pub(crate) use lanes::Lanes;
-pub(crate) use level::Level;
+pub(crate) use lane::CrossingInput;
 pub use panel::InstructionPath;
-pub use parts::{OperatorParts, SOURCES};
-pub(crate) use settle::Unsettled;
+pub use persist::{OperatorParts, SOURCES};
 pub(crate) use step::step;
-pub(crate) use wheels::{Ride, Wheels};
+pub(crate) use step_constants::StepConstants;
+pub(crate) use wheel_lines::{WheelCompliance, WheelLines};

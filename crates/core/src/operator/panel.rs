@@ -3,6 +3,7 @@
 //! Knows rows, columns and vectors of lanes. Does not know what the numbers mean.
 
 use super::vector::Ops;
+use crate::scheme::Arithmetic;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Rows that are summed side by side.

@@ -3,6 +3,7 @@
 //!
 //! Knows a vector and the operations on it. Does not know what the numbers mean.
 
+use crate::scheme::Arithmetic;
 use pulp::Simd;
 
 /// The operations.
@@ -10,16 +11,6 @@ use pulp::Simd;
 pub(super) struct Ops<S>(pub S);
 
 impl<S: Simd> Ops<S> {
-    #[inline(always)]
-    pub(super) fn splat(self, x: f64) -> S::f64s {
-        self.0.splat_f64s(x)
-    }
-
-    #[inline(always)]
-    pub(super) fn add(self, a: S::f64s, b: S::f64s) -> S::f64s {
-        self.0.add_f64s(a, b)
-    }
-
     #[inline(always)]
     pub(super) fn sub(self, a: S::f64s, b: S::f64s) -> S::f64s {
         self.0.sub_f64s(a, b)
@@ -81,39 +72,27 @@ impl<S: Simd> Mean<S> {
     }
 }
 
-/// Newmark's update from the change d of what is integrated.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Newmark<S: Simd> {
-    c_v: S::f64s,
-    v_v: S::f64s,
-    v_a: S::f64s,
-    c_a: S::f64s,
-    a_v: S::f64s,
-    a_a: S::f64s,
-}
+impl<S: Simd> Arithmetic for Ops<S> {
+    type Number = S::f64s;
 
-impl<S: Simd> Newmark<S> {
     #[inline(always)]
-    pub(super) fn of(ops: Ops<S>, s: &crate::scheme::Scheme) -> Self {
-        Self {
-            c_v: ops.splat(s.c_v),
-            v_v: ops.splat(s.v_v),
-            v_a: ops.splat(s.v_a),
-            c_a: ops.splat(s.c_a),
-            a_v: ops.splat(s.a_v),
-            a_a: ops.splat(s.a_a),
-        }
+    fn splat(self, x: f64) -> S::f64s {
+        self.0.splat_f64s(x)
     }
 
-    /// New velocity.
     #[inline(always)]
-    pub(super) fn velocity(&self, ops: Ops<S>, d: S::f64s, v: S::f64s, a: S::f64s) -> S::f64s {
-        ops.fma(self.c_v, d, ops.fma(self.v_v, v, ops.mul(self.v_a, a)))
+    fn add(self, a: S::f64s, b: S::f64s) -> S::f64s {
+        self.0.add_f64s(a, b)
     }
 
-    /// New acceleration.
     #[inline(always)]
-    pub(super) fn acceleration(&self, ops: Ops<S>, d: S::f64s, v: S::f64s, a: S::f64s) -> S::f64s {
-        ops.fma(self.c_a, d, ops.fma(self.a_v, v, ops.mul(self.a_a, a)))
+    fn combined(self, a: [S::f64s; 3], x: [S::f64s; 3]) -> S::f64s {
+        self.fma(a[0], x[0], self.fma(a[1], x[1], self.mul(a[2], x[2])))
+    }
+
+    #[inline(always)]
+    fn followed(self, rho: S::f64s, f: S::f64s, a: [S::f64s; 2], x: [S::f64s; 3]) -> S::f64s {
+        let rest = self.fma(a[0], x[1], self.fma(a[1], x[2], x[0]));
+        self.mul(rho, self.sub(f, rest))
     }
 }

@@ -6,7 +6,8 @@ use super::{Crossing, CrossingSettings, span};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign};
 use crate::connector::Law;
-use crate::operator::{BridgeOperator, Lanes, Level, Passage, Ride, Unsettled, Wheels, step};
+use crate::contact::NotSettled;
+use crate::operator::{BridgeOperator, CrossingInput, Crossings, StepConstants, WheelCompliance, WheelLines, step};
 use crate::response::{CrossingResponse, History, PositionPeaks, Quantity, Record};
 use crate::vehicle::Vehicle;
 use std::sync::{Arc, OnceLock};
@@ -17,7 +18,7 @@ pub struct OperatorSolver {
     design: BridgeDesign,
     operator: Arc<BridgeOperator>,
     settings: CrossingSettings,
-    levels: Vec<OnceLock<Level>>,
+    levels: Vec<OnceLock<StepConstants>>,
 }
 
 /// Vehicles that are kept ready at once.
@@ -30,17 +31,17 @@ pub const REFINEMENTS: usize = 6;
 #[derive(Debug)]
 struct Mount {
     vehicle: Vehicle,
-    wheels: Arc<Wheels>,
-    rides: Vec<Option<Arc<Ride>>>,
+    wheels: Arc<WheelLines>,
+    compliances: Vec<Option<Arc<WheelCompliance>>>,
 }
 
 /// Crossings under way.
 struct Crew<'a> {
     solver: &'a OperatorSolver,
     mounts: Vec<Mount>,
-    lanes: Lanes,
+    lanes: Crossings,
     /// One lane by itself, for steps that are halved.
-    solo: Option<Lanes>,
+    solo: Option<Crossings>,
     /// How often the time step is halved from the beginning.
     refinement: usize,
 }
@@ -96,11 +97,11 @@ impl OperatorSolver {
     ) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let most_nodes = crossings
             .iter()
-            .map(|(vehicle, _)| Wheels::most_nodes_of(&self.operator, vehicle));
+            .map(|(vehicle, _)| WheelLines::most_nodes_of(&self.operator, vehicle));
         let mut crew = Crew {
             solver: self,
             mounts: Vec::new(),
-            lanes: Lanes::new(
+            lanes: Crossings::new(
                 &self.operator,
                 most_nodes.max().unwrap_or(0),
                 self.settings.newton_limit,
@@ -116,14 +117,14 @@ impl OperatorSolver {
         self.settings.time_step_s / (1_u64 << halvings) as f64
     }
 
-    fn level(&self, halvings: usize) -> &Level {
+    fn level(&self, halvings: usize) -> &StepConstants {
         self.levels[halvings].get_or_init(|| {
             let CrossingSettings {
                 spectral_radius,
                 rayleigh,
                 ..
             } = self.settings;
-            Level::new(&self.operator, self.time_step_s(halvings), spectral_radius, rayleigh)
+            StepConstants::new(&self.operator, self.time_step_s(halvings), spectral_radius, rayleigh)
         })
     }
 }
@@ -176,9 +177,9 @@ impl Crew<'_> {
 
     fn begin<'c>(&mut self, lane: usize, index: usize, (vehicle, crossing): (&'c Vehicle, &'c Crossing)) -> Under<'c> {
         let mount = self.mount(vehicle);
-        let passage = Passage {
+        let crossing_input = CrossingInput {
             wheels: Arc::clone(&self.mounts[mount].wheels),
-            ride: self.ride(mount, self.refinement),
+            compliance: self.compliance(mount, self.refinement),
             law: Law {
                 k: crossing.connector_stiffness_n_m,
                 connection: crossing.connection,
@@ -195,7 +196,7 @@ impl Crew<'_> {
             crossing.tail_s,
         );
         let start_s = -(before as f64) * h;
-        self.lanes.begin(&self.solver.operator, lane, passage, start_s);
+        self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
         let mut of = Under {
             index,
             vehicle,
@@ -217,8 +218,8 @@ impl Crew<'_> {
         }
         let mount = Mount {
             vehicle: vehicle.clone(),
-            wheels: Arc::new(Wheels::new(&self.solver.operator, vehicle)),
-            rides: Vec::new(),
+            wheels: Arc::new(WheelLines::new(&self.solver.operator, vehicle)),
+            compliances: Vec::new(),
         };
         // lanes hold what they need, so that any other may go
         if self.mounts.len() == VEHICLES_KEPT {
@@ -228,14 +229,15 @@ impl Crew<'_> {
         self.mounts.len() - 1
     }
 
-    fn ride(&mut self, mount: usize, halvings: usize) -> Arc<Ride> {
+    fn compliance(&mut self, mount: usize, halvings: usize) -> Arc<WheelCompliance> {
         let (operator, level) = (&*self.solver.operator, self.solver.level(halvings));
         let mount = &mut self.mounts[mount];
-        if mount.rides.len() <= halvings {
-            mount.rides.resize(halvings + 1, None);
+        if mount.compliances.len() <= halvings {
+            mount.compliances.resize(halvings + 1, None);
         }
-        let ride = mount.rides[halvings].get_or_insert_with(|| Arc::new(Ride::new(operator, level, &mount.wheels)));
-        Arc::clone(ride)
+        let compliance = mount.compliances[halvings]
+            .get_or_insert_with(|| Arc::new(WheelCompliance::new(operator, level, &mount.wheels)));
+        Arc::clone(compliance)
     }
 
     /// What is to be done with a lane after its step: halve it where it did not settle, record, finish.
@@ -265,22 +267,22 @@ impl Crew<'_> {
         &mut self,
         lane: usize,
         mount: usize,
-        stuck: Unsettled,
+        stuck: NotSettled,
         [from_s, to_s]: [f64; 2],
     ) -> Result<(), AnalysisError> {
-        let Some(passage) = self.lanes.passage(lane).cloned() else {
+        let Some(input) = self.lanes.crossing(lane).cloned() else {
             return Ok(());
         };
         let saved = self.lanes.save(lane);
         let (operator, limit) = (&self.solver.operator, self.solver.settings.newton_limit);
-        let most = passage.wheels.most_nodes();
-        let fits = |solo: &Lanes| solo.most_nodes() >= most;
+        let most = input.wheels.most_nodes();
+        let fits = |solo: &Crossings| solo.most_nodes() >= most;
         let mut solo = self
             .solo
             .take()
             .filter(fits)
-            .unwrap_or_else(|| Lanes::new(operator, most, limit));
-        solo.resume(0, passage, &saved);
+            .unwrap_or_else(|| Crossings::new(operator, most, limit));
+        solo.resume(0, input, &saved);
         let done = self.parts(&mut solo, mount, stuck, from_s, to_s, 0);
         self.lanes.restore(lane, &solo.save(0));
         self.solo = Some(solo);
@@ -290,9 +292,9 @@ impl Crew<'_> {
     /// The two halves of a step that did not settle after `halvings` halvings.
     fn parts(
         &mut self,
-        solo: &mut Lanes,
+        solo: &mut Crossings,
         mount: usize,
-        stuck: Unsettled,
+        stuck: NotSettled,
         from_s: f64,
         to_s: f64,
         halvings: usize,
@@ -311,10 +313,10 @@ impl Crew<'_> {
         statistics.bisections += 1;
         statistics.newton_iterations += stuck.iterations;
         let level = self.refinement + halvings + 1;
-        let ride = self.ride(mount, level);
+        let compliance = self.compliance(mount, level);
         let middle_s = from_s + 0.5 * (to_s - from_s);
         for (from_s, to_s) in [(from_s, middle_s), (middle_s, to_s)] {
-            solo.take_ride(0, Arc::clone(&ride));
+            solo.take_compliance(0, Arc::clone(&compliance));
             solo.place(0, to_s);
             step(
                 solo,
@@ -355,7 +357,7 @@ impl Crew<'_> {
     }
 }
 
-fn read(lanes: &Lanes, lane: usize, quantity: Quantity, place: usize) -> f64 {
+fn read(lanes: &Crossings, lane: usize, quantity: Quantity, place: usize) -> f64 {
     match quantity {
         Quantity::Deflection => lanes.deflection_m(lane, place),
         Quantity::Force => lanes.joint_force_n(lane, place),

@@ -3,10 +3,11 @@
 //! Knows how a node follows the forces on the deck nearby and of the connectors, `x + a x' = R f`, in the same steps as the
 //! rest. Does not know who exerts them.
 
-use super::level::Level;
+use super::loads::StationForce;
+use super::step_constants::{ResidualRule, StepConstants};
 use super::sums::{add_to, dot};
-use super::wheels::{Node, Wheels};
-use crate::scheme::Scheme;
+use super::wheel_lines::{DeckNode, WheelLines};
+use crate::scheme::{Newmark, Scalar, Scheme};
 
 /// Stations of a line side by side, the vehicle's own and one more at each end.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +21,7 @@ struct Run {
 
 /// The nodes' motion, one entry a node. Forces are what a node sees of them, `R f`, downward and pulling positive.
 #[derive(Debug, Default)]
-pub(super) struct Beside {
+pub(super) struct LocalResidual {
     runs: Vec<Run>,
     x: [Vec<f64>; 3],
     /// Of weights, inertia and connectors at the last step.
@@ -32,7 +33,7 @@ pub(super) struct Beside {
     free: Vec<f64>,
 }
 
-impl Clone for Beside {
+impl Clone for LocalResidual {
     fn clone(&self) -> Self {
         let mut clone = Self::default();
         clone.clone_from(self);
@@ -50,16 +51,16 @@ impl Clone for Beside {
 
 /// Forces on stations: line, station, force; and of the connectors.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pressing<'a> {
+pub(super) struct StepForces<'a> {
     /// Lines of the weights.
-    pub weights: &'a [(usize, usize, f64)],
+    pub weights: &'a [StationForce],
     /// Lines of the masses, at the last step.
-    pub masses: &'a [(usize, usize, f64)],
+    pub masses: &'a [StationForce],
     /// Connectors, at the last step.
     pub n: &'a [f64],
 }
 
-impl Beside {
+impl LocalResidual {
     /// Room for vehicles of at most `nodes` nodes.
     pub(super) fn new(nodes: usize) -> Self {
         let mut new = Self {
@@ -107,11 +108,11 @@ impl Beside {
     pub(super) fn follow(
         &mut self,
         old: &Self,
-        nodes: &[Node],
-        wheels: &Wheels,
-        level: &Level,
+        nodes: &[DeckNode],
+        wheels: &WheelLines,
+        constants: &StepConstants,
         modes: usize,
-        pressing: Pressing,
+        pressing: StepForces,
     ) {
         self.runs.clear();
         for node in nodes {
@@ -153,19 +154,20 @@ impl Beside {
         for i in 0..self.runs.len() {
             self.take_over(self.runs[i], old, wheels, modes, pressing);
         }
-        let s = &level.scheme;
+        let s = &constants.scheme;
         let (now, before) = (&self.weights_now[..count], &self.weights[..count]);
         let (inertia, contact) = (&self.inertia[..count], &self.contact[..count]);
         let [x, v, a] = self.x.each_ref().map(|x| &x[..count]);
+        let rule = ResidualRule::of(Scalar, constants);
         for (i, free) in self.free[..count].iter_mut().enumerate() {
             let force = -(s.at_f(now[i], before[i]) + s.alpha_m * inertia[i] + s.alpha_f * contact[i]);
-            *free = level.rho * (force - x[i] - level.on_s1 * v[i] - level.on_s2 * a[i]);
+            *free = rule.change(Scalar, force, [x[i], v[i], a[i]]);
         }
     }
 
     /// A run's motion: that of nodes known before, rest of the others.
     #[inline(always)]
-    fn take_over(&mut self, run: Run, old: &Self, wheels: &Wheels, modes: usize, pressing: Pressing) {
+    fn take_over(&mut self, run: Run, old: &Self, wheels: &WheelLines, modes: usize, pressing: StepForces) {
         let (mut lo, mut hi) = (run.first, run.first);
         for before in &old.runs {
             if before.line == run.line {
@@ -197,10 +199,10 @@ impl Beside {
     #[inline(always)]
     pub(super) fn lead(
         &mut self,
-        wheels: &Wheels,
-        level: &Level,
+        wheels: &WheelLines,
+        constants: &StepConstants,
         modes: usize,
-        masses: &[(usize, usize, f64)],
+        masses: &[StationForce],
         n: &[f64],
     ) {
         self.inertia.fill(0.0);
@@ -212,24 +214,26 @@ impl Beside {
                 *contact = of_connectors(wheels, run.line, run.first + i, modes, n);
             }
         }
-        let s = &level.scheme;
+        let s = &constants.scheme;
         let count = self.free.len();
         let (inertia, contact, free) = (&self.inertia[..count], &self.contact[..count], &self.free[..count]);
         let [x, v, a] = self.x.each_mut().map(|x| &mut x[..count]);
+        let newmark = Newmark::of(Scalar, s);
         for i in 0..count {
             let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * contact[i];
-            [x[i], v[i], a[i]] = newmark(s, free[i] - level.rho * late, [x[i], v[i], a[i]]);
+            [x[i], v[i], a[i]] = newmark.advance(Scalar, free[i] - constants.rho * late, [x[i], v[i], a[i]]);
         }
         self.weights.copy_from_slice(&self.weights_now);
     }
 
     /// A node's acceleration, velocity and displacement at the end of the step without new inertia and connector forces.
     #[inline(always)]
-    pub(super) fn free(&self, node: Node, s: &Scheme) -> [f64; 3] {
+    pub(super) fn free(&self, node: DeckNode, s: &Scheme) -> [f64; 3] {
         for run in &self.runs {
             if run.line == node.line {
                 let i = run.from + node.station - run.first;
-                let [x, v, a] = newmark(s, self.free[i], [self.x[0][i], self.x[1][i], self.x[2][i]]);
+                let old = [self.x[0][i], self.x[1][i], self.x[2][i]];
+                let [x, v, a] = Newmark::of(Scalar, s).advance(Scalar, self.free[i], old);
                 return [a, v, x];
             }
         }
@@ -239,7 +243,7 @@ impl Beside {
 
 /// Adds what nodes see of a force on a station.
 #[inline(always)]
-fn press(runs: &[Run], seen: &mut [f64], wheels: &Wheels, line: usize, station: usize, force: f64) {
+fn press(runs: &[Run], seen: &mut [f64], wheels: &WheelLines, line: usize, station: usize, force: f64) {
     let band = wheels.band;
     for run in runs {
         let lo = run.first.max(station.saturating_sub(band));
@@ -253,17 +257,7 @@ fn press(runs: &[Run], seen: &mut [f64], wheels: &Wheels, line: usize, station: 
 
 /// What a node sees of the connectors.
 #[inline(always)]
-fn of_connectors(wheels: &Wheels, line: usize, station: usize, modes: usize, n: &[f64]) -> f64 {
-    let reach = wheels.masses[line].reach(station, wheels.width);
-    dot(&reach[modes..][..n.len()], n)
-}
-
-/// `x, x', x''` at the end of a step in which x changes by d.
-#[inline(always)]
-fn newmark(s: &Scheme, d: f64, [x, v, a]: [f64; 3]) -> [f64; 3] {
-    [
-        x + d,
-        s.c_v * d + s.v_v * v + s.v_a * a,
-        s.c_a * d + s.a_v * v + s.a_a * a,
-    ]
+fn of_connectors(wheels: &WheelLines, line: usize, station: usize, modes: usize, n: &[f64]) -> f64 {
+    let influence = wheels.masses[line].influence(station, wheels.influence_width);
+    dot(&influence[modes..][..n.len()], n)
 }

@@ -4,7 +4,7 @@
 
 use super::basis::BridgeOperator;
 use super::panel::Panel;
-use crate::scheme::{Rayleigh, Scheme};
+use crate::scheme::{Arithmetic, Rayleigh, Scheme};
 use nalgebra::DMatrix;
 
 /// Constants of a step, one a mode where they are lists. With `d = q_1 - q_0`, a mode steps by
@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 /// f the forces in the balance at alpha; what the modes leave out by the same rule without mass, stiffness 1 and damping a:
 /// `ds = rho (f - s_0 - on_s1 s'_0 - on_s2 s''_0)`.
 #[derive(Debug)]
-pub(crate) struct Level {
+pub(crate) struct StepConstants {
     pub(super) scheme: Scheme,
     pub(super) rayleigh: Rayleigh,
     pub(super) c: Vec<f64>,
@@ -24,12 +24,34 @@ pub(crate) struct Level {
     pub(super) rho: f64,
     pub(super) on_s1: f64,
     pub(super) on_s2: f64,
-    /// Flexibility among connectors that the modes give to a step, `B Phi c Phi^T B^T`, without what they leave out.
-    pub(super) modal: DMatrix<f64>,
-    /// With it: `modal + rho R_BB`.
-    pub(super) among: DMatrix<f64>,
+    /// Compliance of a step among connectors, `B Phi c Phi^T B^T + rho R_BB` (O9).
+    pub(super) connector_compliance: DMatrix<f64>,
     /// Products with lanes.
     pub(super) panels: Panels,
+}
+
+/// What the modes leave out follows a force without mass (O7).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ResidualRule<A: Arithmetic> {
+    rho: A::Number,
+    on: [A::Number; 2],
+}
+
+impl<A: Arithmetic> ResidualRule<A> {
+    /// The rule of a step length.
+    #[inline(always)]
+    pub(super) fn of(o: A, constants: &StepConstants) -> Self {
+        Self {
+            rho: o.splat(constants.rho),
+            on: [o.splat(constants.on_s1), o.splat(constants.on_s2)],
+        }
+    }
+
+    /// The change of x, x', x'' = `x` in a step under a force.
+    #[inline(always)]
+    pub(super) fn change(&self, o: A, force: A::Number, x: [A::Number; 3]) -> A::Number {
+        o.followed(self.rho, force, self.on, x)
+    }
 }
 
 /// The operator's matrices, laid out for lanes.
@@ -47,7 +69,7 @@ pub(super) struct Panels {
     pub inside: Vec<Panel>,
 }
 
-impl Level {
+impl StepConstants {
     /// The constants of steps of length `time_step_s` with a spectral radius and damping.
     pub(crate) fn new(operator: &BridgeOperator, time_step_s: f64, spectral_radius: f64, rayleigh: Rayleigh) -> Self {
         let s = Scheme::new(time_step_s, spectral_radius);
@@ -81,8 +103,7 @@ impl Level {
             rho,
             on_s1: a * at_v,
             on_s2: a * at_a,
-            among: &modal + rho * &operator.r_bb,
-            modal,
+            connector_compliance: &modal + rho * &operator.r_bb,
             c,
             panels: Panels::new(operator),
         }

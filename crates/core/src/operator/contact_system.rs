@@ -3,129 +3,141 @@
 //! Knows numbers laid out once, so that a step allocates nothing. Does not know modes. The same problem as
 //! [`crate::contact`]: the active set decides the tangent, a state changes only between Newton solutions.
 
-use super::riders::Riders;
+use super::moving_masses::MovingMasses;
 use crate::connector::{Law, State};
+use crate::contact::{NotSettled, PiecewiseLinear, ask, settle};
 use nalgebra::DMatrix;
 
-/// Room for the small system of one lane, kept from step to step.
+/// The small system of one lane, kept from step to step.
 #[derive(Debug)]
-pub(super) struct Small {
-    /// Elongations without connector and rider forces, then with them `[m]`.
-    pub e: Vec<f64>,
+pub(super) struct ContactSystem {
     /// State of each connector.
-    pub states: Vec<State>,
-    /// Scaled forces `N' = weight N` of the active connectors, 0 of the others `[N]`.
-    pub forces: Vec<f64>,
-    /// Scaled rider forces q'.
-    pub riders: Vec<f64>,
-    found: Vec<f64>,
+    pub(super) states: Vec<State>,
+    /// The states before, and active sets met in this step, one after the other.
     before: Vec<State>,
-    asked: Vec<State>,
-    /// Active sets met in this step, one after the other.
     seen: Vec<State>,
+    /// What is solved on one active set.
+    pub(super) linear: LinearSystem,
+}
+
+/// The linear system of an active set, with room for the largest.
+#[derive(Debug)]
+pub(super) struct LinearSystem {
+    /// Elongations without connector and mass forces, then with them `[m]`.
+    pub(super) e: Vec<f64>,
+    /// Scaled forces `N' = weight N` of the active connectors, 0 of the others `[N]`.
+    pub(super) forces: Vec<f64>,
+    /// Scaled mass forces q'.
+    pub(super) masses: Vec<f64>,
+    found: Vec<f64>,
     active: Vec<usize>,
     /// The factored matrix, `stride` columns a row.
     matrix: Vec<f64>,
     lower: Vec<f64>,
     rhs: Vec<f64>,
     stride: usize,
-    /// The active set that `matrix` was factored for, without riders.
+    /// The active set that `matrix` was factored for, without masses.
     factored: Vec<State>,
     /// Whether there is such a one, and the stiffness of a truss in it.
     factored_for: Option<f64>,
 }
 
-/// The active set came back to one it had been before, or the limit was reached.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Unsettled {
-    /// A connector that still wanted to change.
-    pub connector: usize,
-    /// Newton solutions made.
-    pub iterations: usize,
+/// The system of one step.
+struct OfStep<'a> {
+    linear: &'a mut LinearSystem,
+    law: &'a Law,
+    compliance: &'a DMatrix<f64>,
+    weight: f64,
+    masses: &'a MovingMasses,
 }
 
-impl Small {
-    pub(super) fn new(connectors: usize, riders: usize, newton_limit: usize) -> Self {
-        let stride = (connectors + riders).next_multiple_of(CHUNK);
+impl PiecewiseLinear for OfStep<'_> {
+    type Solution = ();
+
+    #[inline(always)]
+    fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<()> {
+        let (law, compliance, weight, masses) = (self.law, self.compliance, self.weight, self.masses);
+        self.linear.solve(states, law, compliance, weight, masses);
+        self.linear.elongate(states, law, compliance, weight, masses);
+        ask(law, &self.linear.found, asked);
+        Some(())
+    }
+}
+
+impl ContactSystem {
+    pub(super) fn new(connectors: usize, masses: usize, newton_limit: usize) -> Self {
+        let stride = (connectors + masses).next_multiple_of(CHUNK);
         let open = vec![State::Open; connectors];
         Self {
-            e: vec![0.0; connectors],
             states: open.clone(),
-            forces: vec![0.0; connectors],
-            riders: vec![0.0; riders],
-            found: vec![0.0; connectors],
             before: open.clone(),
-            asked: open.clone(),
             seen: Vec::with_capacity(connectors * (newton_limit + 1)),
-            active: Vec::with_capacity(connectors),
-            matrix: vec![0.0; stride * stride],
-            lower: vec![0.0; stride * stride],
-            rhs: vec![0.0; stride],
-            stride,
-            factored: open,
-            factored_for: None,
+            linear: LinearSystem {
+                e: vec![0.0; connectors],
+                forces: vec![0.0; connectors],
+                masses: vec![0.0; masses],
+                found: vec![0.0; connectors],
+                active: Vec::with_capacity(connectors),
+                matrix: vec![0.0; stride * stride],
+                lower: vec![0.0; stride * stride],
+                rhs: vec![0.0; stride],
+                stride,
+                factored: open,
+                factored_for: None,
+            },
         }
     }
 
     /// Forgets what was factored for another job.
     pub(super) fn forget(&mut self) {
-        self.factored_for = None;
+        self.linear.factored_for = None;
     }
 
-    /// Solves from `states`, with `e` the elongations without forces; leaves the new states, elongations, forces and rider
+    /// Solves from `states`, with `e` the elongations without forces; leaves the new states, elongations, forces and mass
     /// forces and gives the number of Newton solutions and of states that changed. Where it does not settle, the states are
     /// as before.
     #[inline(always)]
     pub(super) fn solve(
         &mut self,
         law: &Law,
-        among: &DMatrix<f64>,
+        compliance: &DMatrix<f64>,
         weight: f64,
-        riders: &Riders,
+        masses: &MovingMasses,
         limit: usize,
-    ) -> Result<(usize, usize), Unsettled> {
-        self.seen.clear();
+    ) -> Result<(usize, usize), NotSettled> {
         self.before.copy_from_slice(&self.states);
-        let mut iterations = 0;
-        loop {
-            iterations += 1;
-            self.linear(law, among, weight, riders);
-            self.elongations(law, among, weight, riders);
-            let mut wants = None;
-            for (i, &e) in self.found.iter().enumerate() {
-                self.asked[i] = law.state(e);
-                if wants.is_none() && self.asked[i] != self.states[i] {
-                    wants = Some(i);
-                }
-            }
-            let Some(connector) = wants else {
-                self.e.copy_from_slice(&self.found);
+        let mut system = OfStep {
+            linear: &mut self.linear,
+            law,
+            compliance,
+            weight,
+            masses,
+        };
+        match settle(&mut system, &mut self.states, &mut self.seen, limit) {
+            Ok(((), iterations)) => {
+                self.linear.e.copy_from_slice(&self.linear.found);
                 let switches = self.states.iter().zip(&self.before).filter(|(a, b)| a != b).count();
-                return Ok((iterations, switches));
-            };
-            let met = self
-                .seen
-                .chunks_exact(self.asked.len())
-                .any(|states| *states == *self.asked);
-            if iterations >= limit || met {
-                self.states.copy_from_slice(&self.before);
-                return Err(Unsettled { connector, iterations });
+                Ok((iterations, switches))
             }
-            self.seen.extend_from_slice(&self.asked);
-            self.states.copy_from_slice(&self.asked);
+            Err(stuck) => {
+                self.states.copy_from_slice(&self.before);
+                Err(stuck)
+            }
         }
     }
+}
 
-    /// One Newton solution: riders first, then the active connectors, eliminated in that order. Symmetric and positive
-    /// definite but for the convective terms, so that no pivots are sought. Without riders the matrix depends on the active
+impl LinearSystem {
+    /// One Newton solution: masses first, then the active connectors, eliminated in that order. Symmetric and positive
+    /// definite but for the convective terms, so that no pivots are sought. Without masses the matrix depends on the active
     /// set alone and its factors are kept.
     #[inline(always)]
-    fn linear(&mut self, law: &Law, among: &DMatrix<f64>, weight: f64, riders: &Riders) {
-        let (nr, stride) = (riders.count(), self.stride);
-        let known = nr == 0 && self.factored_for == Some(law.k) && self.factored == self.states;
+    fn solve(&mut self, states: &[State], law: &Law, compliance: &DMatrix<f64>, weight: f64, masses: &MovingMasses) {
+        let (nr, stride) = (masses.count(), self.stride);
+        let known = nr == 0 && self.factored_for == Some(law.k) && self.factored == states;
         if !known {
             self.active.clear();
-            for (i, state) in self.states.iter().enumerate() {
+            for (i, state) in states.iter().enumerate() {
                 if *state != State::Open {
                     self.active.push(i);
                 }
@@ -133,42 +145,42 @@ impl Small {
             let n = nr + self.active.len();
             for i in 0..nr {
                 let row = &mut self.matrix[i * stride..][..n];
-                row[..nr].copy_from_slice(riders.row(i));
-                let of = riders.of_connectors(i);
+                row[..nr].copy_from_slice(masses.row(i));
+                let of = masses.of_connectors(i);
                 for (entry, &j) in row[nr..].iter_mut().zip(&self.active) {
                     *entry = of[j];
                 }
             }
             for (p, &i) in self.active.iter().enumerate() {
                 let row = &mut self.matrix[(nr + p) * stride..][..n];
-                if !riders.symmetric() {
+                if !masses.symmetric() {
                     for (r, entry) in row[..nr].iter_mut().enumerate() {
-                        *entry = riders.on_connectors(r)[i];
+                        *entry = masses.on_connectors(r)[i];
                     }
                 }
                 // a column is a row, the matrix being symmetric
-                let column = &among.as_slice()[i * self.states.len()..][..self.states.len()];
+                let column = &compliance.as_slice()[i * states.len()..][..states.len()];
                 for (entry, &j) in row[nr..].iter_mut().zip(&self.active) {
                     *entry = column[j];
                 }
-                row[nr + p] += 1.0 / (weight * law.line(self.states[i]).k);
+                row[nr + p] += 1.0 / (weight * law.branch(states[i]).stiffness);
             }
-            if riders.symmetric() {
+            if masses.symmetric() {
                 factor_symmetric(&mut self.matrix, &mut self.lower, stride, n);
             } else {
                 factor(&mut self.matrix, &mut self.lower, stride, n);
             }
-            self.factored.copy_from_slice(&self.states);
+            self.factored.copy_from_slice(states);
             self.factored_for = if nr == 0 { Some(law.k) } else { None };
         }
         let n = nr + self.active.len();
-        self.rhs[..nr].copy_from_slice(riders.free());
+        self.rhs[..nr].copy_from_slice(masses.free());
         for (p, &i) in self.active.iter().enumerate() {
-            let line = law.line(self.states[i]);
-            self.rhs[nr + p] = self.e[i] - line.n0 / line.k;
+            let branch = law.branch(states[i]);
+            self.rhs[nr + p] = self.e[i] - branch.offset / branch.stiffness;
         }
         substitute(&self.matrix, &self.lower, stride, &mut self.rhs[..n]);
-        self.riders[..nr].copy_from_slice(&self.rhs[..nr]);
+        self.masses[..nr].copy_from_slice(&self.rhs[..nr]);
         self.forces.fill(0.0);
         for (p, &i) in self.active.iter().enumerate() {
             self.forces[i] = self.rhs[nr + p];
@@ -177,19 +189,19 @@ impl Small {
 
     /// Elongations under the forces found. On an active line they follow from the force, without cancellation.
     #[inline(always)]
-    fn elongations(&mut self, law: &Law, among: &DMatrix<f64>, weight: f64, riders: &Riders) {
+    fn elongate(&mut self, states: &[State], law: &Law, compliance: &DMatrix<f64>, weight: f64, masses: &MovingMasses) {
         self.found.copy_from_slice(&self.e);
-        let n = self.states.len();
+        let n = states.len();
         for &j in &self.active {
             // a column is a row, the matrix being symmetric
-            take(&mut self.found, &among.as_slice()[j * n..][..n], self.forces[j]);
+            take(&mut self.found, &compliance.as_slice()[j * n..][..n], self.forces[j]);
         }
-        for r in 0..riders.count() {
-            take(&mut self.found, riders.on_connectors(r), self.riders[r]);
+        for r in 0..masses.count() {
+            take(&mut self.found, masses.on_connectors(r), self.masses[r]);
         }
         for &i in &self.active {
-            let line = law.line(self.states[i]);
-            self.found[i] = (self.forces[i] / weight + line.n0) / line.k;
+            let branch = law.branch(states[i]);
+            self.found[i] = (self.forces[i] / weight + branch.offset) / branch.stiffness;
         }
     }
 }

@@ -1,9 +1,9 @@
-//! What a vehicle sees of the deck: its points on lines along the bridge, and how far a force there reaches.
+//! What a vehicle sees of the deck: its points on lines along the bridge, and what a force there does.
 //!
 //! Knows one vehicle on one operator. Does not know loads, speeds or steps but for the flexibilities that it is asked for.
 
 use super::basis::BridgeOperator;
-use super::level::Level;
+use super::step_constants::StepConstants;
 use crate::bridge::Track;
 use crate::vehicle::{Inertia, Vehicle};
 use nalgebra::DMatrix;
@@ -18,20 +18,20 @@ pub(super) struct WheelLine {
     pub lines: Vec<usize>,
     /// Points from the rear.
     pub points: Vec<OnLine>,
-    /// For each station the reach of a unit force there: `phi`, `R_BL`, `R_VL`, edges inside modules.
-    pub reach: Vec<f64>,
+    /// For each station the influence of a unit force there: `phi`, `R_BL`, `R_VL`, edges inside modules.
+    pub influence: Vec<f64>,
 }
 
-/// A node of the deck under the vehicle: line of [`Wheels`] and station.
+/// A node of the deck under the vehicle: line of [`WheelLines`] and station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Node {
+pub(super) struct DeckNode {
     pub line: usize,
     pub station: usize,
 }
 
 /// A vehicle on an operator's deck.
 #[derive(Debug)]
-pub(crate) struct Wheels {
+pub(crate) struct WheelLines {
     pub(super) vehicle: Vehicle,
     /// Lines for the weights, those that carry the same taken together.
     pub(super) weights: Vec<WheelLine>,
@@ -41,14 +41,14 @@ pub(crate) struct Wheels {
     pub(super) point_lines: Vec<Vec<usize>>,
     /// What the modes leave out between nodes of the masses' lines: for each node every line from `station - band` on.
     residual: Vec<f64>,
-    /// Columns of a reach.
-    pub(super) width: usize,
+    /// Columns of an influence.
+    pub(super) influence_width: usize,
     /// Stations farther apart than this never carry the vehicle at once.
     pub(super) band: usize,
     stations: usize,
 }
 
-impl Wheels {
+impl WheelLines {
     /// A vehicle on the deck of an operator.
     pub(crate) fn new(operator: &BridgeOperator, vehicle: &Vehicle) -> Self {
         let track = &operator.track;
@@ -72,23 +72,23 @@ impl Wheels {
         let mut weights: Vec<WheelLine> = Vec::new();
         let mut masses = Vec::new();
         for (number, (y, points)) in lines.iter().enumerate() {
-            let reach = line_reach(operator, *y);
+            let influence = line_influence(operator, *y);
             match weights.iter_mut().find(|w| w.points == *points) {
                 Some(same) => {
                     same.lines.push(number);
-                    same.reach.iter_mut().zip(&reach).for_each(|(a, b)| *a += b);
+                    same.influence.iter_mut().zip(&influence).for_each(|(a, b)| *a += b);
                 }
                 None => weights.push(WheelLine {
                     lines: vec![number],
                     points: points.clone(),
-                    reach: reach.clone(),
+                    influence: influence.clone(),
                 }),
             }
             if vehicle.inertia != Inertia::None {
                 masses.push(WheelLine {
                     lines: vec![number],
                     points: points.clone(),
-                    reach,
+                    influence,
                 });
             }
         }
@@ -106,7 +106,7 @@ impl Wheels {
             weights,
             masses,
             point_lines,
-            width: operator.sizes.reach(),
+            influence_width: operator.sizes.influence(),
             stations: track.stations(),
         }
     }
@@ -157,7 +157,7 @@ fn residual(operator: &BridgeOperator, across: &[[(usize, f64); 2]], band: usize
     all
 }
 
-impl Wheels {
+impl WheelLines {
     /// R between a node and the stations of a line, from `station - band` on.
     #[inline(always)]
     pub(super) fn residual(&self, line: usize, station: usize, other_line: usize) -> &[f64] {
@@ -172,22 +172,22 @@ impl Wheels {
 }
 
 impl WheelLine {
-    /// The reach of a station.
+    /// The influence of a station.
     #[inline(always)]
-    pub(super) fn reach(&self, station: usize, width: usize) -> &[f64] {
-        &self.reach[station * width..][..width]
+    pub(super) fn influence(&self, station: usize, width: usize) -> &[f64] {
+        &self.influence[station * width..][..width]
     }
 }
 
-/// Reach of unit forces at the stations of the line `y_m`.
-fn line_reach(operator: &BridgeOperator, y_m: f64) -> Vec<f64> {
+/// Influence of unit forces at the stations of the line `y_m`.
+fn line_influence(operator: &BridgeOperator, y_m: f64) -> Vec<f64> {
     let stations = operator.track.stations();
     let [(left, w_left), (right, w_right)] = operator.track.across(y_m);
     (0..stations)
         .flat_map(|s| {
             let (a, b) = (
-                operator.reach(left * stations + s),
-                operator.reach(right * stations + s),
+                operator.influence(left * stations + s),
+                operator.influence(right * stations + s),
             );
             a.iter().zip(b).map(move |(a, b)| w_left * a + w_right * b)
         })
@@ -214,7 +214,7 @@ fn band(track: &Track, vehicle: &Vehicle) -> usize {
 
 /// Small flexibilities of a step at the deck's stations under the masses of one vehicle.
 #[derive(Debug)]
-pub(crate) struct Ride {
+pub(crate) struct WheelCompliance {
     /// Stations farther apart are not kept.
     pub(super) band: usize,
     lines: usize,
@@ -226,14 +226,14 @@ pub(crate) struct Ride {
     connectors: usize,
 }
 
-impl Ride {
+impl WheelCompliance {
     /// The flexibilities of a vehicle at a step length.
-    pub(crate) fn new(operator: &BridgeOperator, level: &Level, wheels: &Wheels) -> Self {
+    pub(crate) fn new(operator: &BridgeOperator, constants: &StepConstants, wheels: &WheelLines) -> Self {
         let (m, nc) = (operator.sizes.modes, operator.sizes.connectors);
         let (lines, stations, band) = (wheels.masses.len(), wheels.stations, wheels.band);
-        let row = |node: usize| wheels.masses[node / stations].reach(node % stations, wheels.width);
-        let c_b: DMatrix<f64> = DMatrix::from_fn(m, nc, |k, i| level.c[k] * operator.b[(i, k)]);
-        let mut ride = Self {
+        let row = |node: usize| wheels.masses[node / stations].influence(node % stations, wheels.influence_width);
+        let c_b: DMatrix<f64> = DMatrix::from_fn(m, nc, |k, i| constants.c[k] * operator.b[(i, k)]);
+        let mut compliance = Self {
             band,
             lines,
             stations,
@@ -244,7 +244,7 @@ impl Ride {
         let mut c_phi = vec![0.0; m];
         for node in 0..lines * stations {
             let own = row(node);
-            for (c_phi, (c, phi)) in c_phi.iter_mut().zip(level.c.iter().zip(own)) {
+            for (c_phi, (c, phi)) in c_phi.iter_mut().zip(constants.c.iter().zip(own)) {
                 *c_phi = c * phi;
             }
             for i in 0..nc {
@@ -253,19 +253,19 @@ impl Ride {
                     .zip(c_b.column(i).iter())
                     .map(|(phi, cb)| phi * cb)
                     .sum();
-                ride.with_connectors.push(modal + level.rho * own[m + i]);
+                compliance.with_connectors.push(modal + constants.rho * own[m + i]);
             }
             let station = node % stations;
             for line in 0..lines {
                 for s in station.saturating_sub(band)..=(station + band).min(stations - 1) {
                     let other = row(line * stations + s);
-                    let at = ride.at(node / stations, station, line, s);
+                    let at = compliance.at(node / stations, station, line, s);
                     let modal: f64 = c_phi.iter().zip(other).map(|(a, b)| a * b).sum();
-                    ride.among[at] = modal + level.rho * wheels.residual[at];
+                    compliance.among[at] = modal + constants.rho * wheels.residual[at];
                 }
             }
         }
-        ride
+        compliance
     }
 
     #[inline(always)]

@@ -1,18 +1,20 @@
-//! The masses that ride along in one lane: where they are, what they see of each other and of the connectors.
+//! The masses that compliance along in one lane: where they are, what they see of each other and of the connectors.
 //!
 //! Knows one vehicle's place at one instant, laid out once so that a step allocates nothing. Does not know the scheme but
 //! for its factors.
 
-use super::beside::{Beside, Pressing};
-use super::level::Level;
+use super::lane_array::LaneArray;
+use super::loads::StationForce;
+use super::local_residual::{LocalResidual, StepForces};
+use super::step_constants::StepConstants;
 use super::sums::{add_to, dot};
-use super::wheels::{Node, Ride, WheelLine, Wheels};
+use super::wheel_lines::{DeckNode, WheelCompliance, WheelLine, WheelLines};
 use crate::bridge::Track;
 use crate::vehicle::{GRAVITY_M_S2, Inertia};
 
 /// A mass and its rows on nodes.
 #[derive(Debug, Clone, Copy)]
-struct Rider {
+struct MovingMass {
     mass_kg: f64,
     axle: usize,
     /// Entries of its row r.
@@ -21,7 +23,7 @@ struct Rider {
     slopes: (usize, usize),
 }
 
-/// Riders on stations of a line side by side.
+/// MovingMasses on stations of a line side by side.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     line: usize,
@@ -40,12 +42,34 @@ struct Point {
     axle: usize,
 }
 
-/// Free motion of the modes at the end of a step: `q, v, a` as they would be without connector and rider forces.
+/// FreeMotion motion of the modes at the end of a step: `q, v, a` as they would be without connector and mass forces.
 #[derive(Debug, Default)]
-pub(super) struct Free {
+pub(super) struct FreeMotion {
     pub q: Vec<f64>,
     pub v: Vec<f64>,
     pub a: Vec<f64>,
+}
+
+impl FreeMotion {
+    /// Rest of so many modes.
+    pub(super) fn new(modes: usize) -> Self {
+        let zeros = || vec![0.0; modes];
+        Self {
+            q: zeros(),
+            v: zeros(),
+            a: zeros(),
+        }
+    }
+
+    /// Reads a lane; accelerations alone where no more is asked for.
+    #[inline(always)]
+    pub(super) fn gather(&mut self, lane: usize, [q, v, a]: &[LaneArray; 3], accelerations_alone: bool) {
+        if !accelerations_alone {
+            q.gather(lane, &mut self.q);
+            v.gather(lane, &mut self.v);
+        }
+        a.gather(lane, &mut self.a);
+    }
 }
 
 /// The masses of one lane at one instant.
@@ -53,34 +77,34 @@ pub(super) struct Free {
 /// Point masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
 /// as many masses D as stations, on rows of two entries, stand for any number of points exactly.
 #[derive(Debug)]
-pub(super) struct Riders {
+pub(super) struct MovingMasses {
     connectors: usize,
-    nodes: Vec<Node>,
-    list: Vec<Rider>,
+    nodes: Vec<DeckNode>,
+    list: Vec<MovingMass>,
     points: Vec<Point>,
     force: Vec<(usize, f64)>,
     slopes: Vec<(usize, f64, f64)>,
-    /// Riders on a station and the next, where all are; and the second entry of the row of each.
+    /// MovingMasses on a station and the next, where all are; and the second entry of the row of each.
     runs: Vec<Run>,
     nexts: Vec<f64>,
     /// Tridiagonal mass matrix of a line: diagonal and the entry to the next station.
     line: Vec<(f64, f64)>,
-    /// Free motion of each node: acceleration, velocity, displacement.
+    /// FreeMotion motion of each node: acceleration, velocity, displacement.
     dots: Vec<[f64; 3]>,
-    /// What a node sees of a unit force of each rider.
+    /// What a node sees of a unit force of each mass.
     seen: Vec<f64>,
     matrix: Vec<f64>,
     connectors_of: Vec<f64>,
     connectors_on: Vec<f64>,
     free: Vec<f64>,
-    /// Nodes' motion beside the modes, near the vehicle; and room for the next list.
-    beside: Beside,
-    next: Beside,
+    /// Nodes' motion local the modes, near the vehicle; and room for the next list.
+    local: LocalResidual,
+    next: LocalResidual,
     /// Scaled force on each node.
     on_nodes: Vec<f64>,
 }
 
-impl Riders {
+impl MovingMasses {
     /// Room for vehicles of at most `nodes` nodes.
     pub(super) fn new(connectors: usize, nodes: usize) -> Self {
         Self {
@@ -99,8 +123,8 @@ impl Riders {
             connectors_of: vec![0.0; nodes * connectors],
             connectors_on: vec![0.0; nodes * connectors],
             free: vec![0.0; nodes],
-            beside: Beside::new(nodes),
-            next: Beside::new(nodes),
+            local: LocalResidual::new(nodes),
+            next: LocalResidual::new(nodes),
             on_nodes: vec![0.0; nodes],
         }
     }
@@ -109,7 +133,7 @@ impl Riders {
         self.list.len()
     }
 
-    /// Whether what a rider sees of another is what that one sees of it.
+    /// Whether what a mass sees of another is what that one sees of it.
     pub(super) fn symmetric(&self) -> bool {
         self.slopes.is_empty()
     }
@@ -133,9 +157,9 @@ impl Riders {
         &self.free[..self.list.len()]
     }
 
-    /// Puts the vehicle's masses where they are: nodes, riders and their rows.
+    /// Puts the vehicle's masses where they are: nodes, masses and their rows.
     #[inline(always)]
-    pub(super) fn place(&mut self, wheels: &Wheels, track: &Track, load_n: f64, front_x_m: f64) {
+    pub(super) fn place(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, front_x_m: f64) {
         self.nodes.clear();
         self.list.clear();
         self.points.clear();
@@ -161,13 +185,13 @@ impl Riders {
         let base = self.nodes.len();
         let mut first = 0;
         for &(ahead_m, share, axle) in &of.points {
-            let Some(place) = track.along(front_x_m + ahead_m) else {
+            let Some(place) = track.cell(front_x_m + ahead_m) else {
                 continue;
             };
             if self.line.is_empty() {
                 first = place.station;
             }
-            let (at, s, mass_kg) = (place.station - first, place.part, share * load_n / GRAVITY_M_S2);
+            let (at, s, mass_kg) = (place.station - first, place.fraction, share * load_n / GRAVITY_M_S2);
             while self.line.len() < at + 2 {
                 self.line.push((0.0, 0.0));
             }
@@ -182,7 +206,7 @@ impl Riders {
             });
         }
         for at in 0..self.line.len() {
-            self.nodes.push(Node {
+            self.nodes.push(DeckNode {
                 line,
                 station: first + at,
             });
@@ -216,7 +240,7 @@ impl Riders {
                     }),
                 }
                 self.nexts.push(next / mass_kg);
-                self.list.push(Rider {
+                self.list.push(MovingMass {
                     mass_kg,
                     axle: 0,
                     force: (from, self.force.len()),
@@ -229,10 +253,10 @@ impl Riders {
     /// The patches' means, measured by `r u'' + 2 V r_x u' + V^2 r_xx u`; the derivatives are differences of the row and of
     /// its slope between the ends of the patch.
     #[inline(always)]
-    fn place_patches(&mut self, wheels: &Wheels, track: &Track, load_n: f64, front_x_m: f64) {
+    fn place_patches(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, front_x_m: f64) {
         for (patch, lines) in wheels.vehicle.patches.iter().zip(&wheels.point_lines) {
             let points = || patch.points.iter().zip(lines);
-            let on = |ahead_m: f64| track.along(front_x_m + ahead_m);
+            let on = |ahead_m: f64| track.cell(front_x_m + ahead_m);
             let share: f64 = points()
                 .filter(|(p, _)| on(p.ahead_m).is_some())
                 .map(|(p, _)| p.share)
@@ -244,9 +268,9 @@ impl Riders {
             for (p, &line) in points() {
                 if let Some(place) = on(p.ahead_m) {
                     let w = p.share / share;
-                    for (station, part) in [(place.station, 1.0 - place.part), (place.station + 1, place.part)] {
+                    for (station, part) in place.shares() {
                         if part != 0.0 {
-                            let node = self.node(Node { line, station });
+                            let node = self.node(DeckNode { line, station });
                             add(&mut self.force, forces, node, w * part);
                         }
                     }
@@ -263,19 +287,19 @@ impl Riders {
             let per = 1.0 / ((right - left) * across().count() as f64);
             for line in across() {
                 for (x, sign) in [(right, per), (left, -per)] {
-                    if let Some(place) = track.along(x) {
+                    if let Some(place) = track.cell(x) {
                         let slope = sign / place.length_m;
                         for (station, r, r_x) in [
-                            (place.station, sign * (1.0 - place.part), -slope),
-                            (place.station + 1, sign * place.part, slope),
+                            (place.station, sign * (1.0 - place.fraction), -slope),
+                            (place.station + 1, sign * place.fraction, slope),
                         ] {
-                            let node = self.node(Node { line, station });
+                            let node = self.node(DeckNode { line, station });
                             self.slopes.push((node, r, r_x));
                         }
                     }
                 }
             }
-            self.list.push(Rider {
+            self.list.push(MovingMass {
                 mass_kg: load_n * share / GRAVITY_M_S2,
                 axle: patch.axle,
                 force: (forces, self.force.len()),
@@ -286,36 +310,36 @@ impl Riders {
 
     /// The number of a node, which is added where it is new.
     #[inline(always)]
-    fn node(&mut self, node: Node) -> usize {
+    fn node(&mut self, node: DeckNode) -> usize {
         self.nodes.iter().position(|n| *n == node).unwrap_or_else(|| {
             self.nodes.push(node);
             self.nodes.len() - 1
         })
     }
 
-    /// The riders' part of the small system, from the free motion at the step's end. Measured in displacement:
+    /// The masses' part of the small system, from the free motion at the step's end. Measured in displacement:
     /// `q' / ((1 - alpha_m) m c_a) = r u'' / c_a + (2 V / c_a) r_x u' + (V^2 / c_a) r_xx u` with `q' = (1 - alpha_m) q`.
     #[inline(always)]
     pub(super) fn couple(
         &mut self,
-        wheels: &Wheels,
-        ride: &Ride,
-        level: &Level,
+        wheels: &WheelLines,
+        compliance: &WheelCompliance,
+        constants: &StepConstants,
         modes: usize,
         speed_m_s: f64,
-        free: &Free,
+        free: &FreeMotion,
     ) {
         let (nr, nc) = (self.list.len(), self.connectors);
         if nr == 0 {
             return;
         }
-        let s = &level.scheme;
+        let s = &constants.scheme;
         let (on_x, on_xx) = (2.0 * speed_m_s / s.c_a, speed_m_s * speed_m_s / s.c_a);
         let convective = !self.slopes.is_empty();
         self.dots.clear();
         for node in &self.nodes {
-            let phi = &wheels.masses[node.line].reach(node.station, wheels.width)[..modes];
-            let [a, v, x] = self.beside.free(*node, s);
+            let phi = &wheels.masses[node.line].influence(node.station, wheels.influence_width)[..modes];
+            let [a, v, x] = self.local.free(*node, s);
             self.dots.push(if convective {
                 [a + dot(phi, &free.a), v + dot(phi, &free.v), x + dot(phi, &free.q)]
             } else {
@@ -323,74 +347,75 @@ impl Riders {
             });
         }
         if self.runs.is_empty() {
-            self.see_rows(ride);
+            self.see_rows(compliance);
         } else {
-            self.see_pairs(ride);
+            self.see_pairs(compliance);
         }
         self.matrix[..nr * nr].fill(0.0);
         self.connectors_of[..nr * nc].fill(0.0);
         if convective {
             self.connectors_on[..nr * nc].fill(0.0);
         }
-        for (i, rider) in self.list.iter().enumerate() {
+        for (i, mass) in self.list.iter().enumerate() {
             let (matrix, of) = (
                 &mut self.matrix[i * nr..][..nr],
                 &mut self.connectors_of[i * nc..][..nc],
             );
             let mut free = 0.0;
-            for &(node, w) in &self.force[rider.force.0..rider.force.1] {
-                let Node { line, station } = self.nodes[node];
+            for &(node, w) in &self.force[mass.force.0..mass.force.1] {
+                let DeckNode { line, station } = self.nodes[node];
                 add_to(matrix, w, &self.seen[node * nr..][..nr]);
-                let there = ride.with_connectors(line, station);
+                let there = compliance.with_connectors(line, station);
                 add_to(of, w, there);
                 if convective {
                     add_to(&mut self.connectors_on[i * nc..][..nc], w, there);
                 }
                 free += w * self.dots[node][0] / s.c_a;
             }
-            for &(node, r_x, r_xx) in &self.slopes[rider.slopes.0..rider.slopes.1] {
-                let (w, Node { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
+            for &(node, r_x, r_xx) in &self.slopes[mass.slopes.0..mass.slopes.1] {
+                let (w, DeckNode { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
                 add_to(matrix, w, &self.seen[node * nr..][..nr]);
-                add_to(of, w, ride.with_connectors(line, station));
+                add_to(of, w, compliance.with_connectors(line, station));
                 free += on_x * r_x * self.dots[node][1] + on_xx * r_xx * self.dots[node][2];
             }
-            self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * rider.mass_kg * s.c_a);
+            self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * mass.mass_kg * s.c_a);
             self.free[i] = free;
         }
     }
 
-    /// What nodes see of riders on any rows.
+    /// What nodes see of masses on any rows.
     #[inline(always)]
-    fn see_rows(&mut self, ride: &Ride) {
+    fn see_rows(&mut self, compliance: &WheelCompliance) {
         let nr = self.list.len();
         for (a, node) in self.nodes.iter().enumerate() {
             let seen = &mut self.seen[a * nr..][..nr];
-            for (seen, rider) in seen.iter_mut().zip(&self.list) {
-                let row = &self.force[rider.force.0..rider.force.1];
+            for (seen, mass) in seen.iter_mut().zip(&self.list) {
+                let row = &self.force[mass.force.0..mass.force.1];
                 let first = self.nodes[row[0].0];
                 // rows lie on few lines, their nodes side by side
-                let (mut line, mut there) = (first.line, ride.row(node.line, node.station, first.line));
+                let (mut line, mut there) = (first.line, compliance.row(node.line, node.station, first.line));
                 let mut sum = 0.0;
                 for &(b, w) in row {
                     let other = self.nodes[b];
                     if other.line != line {
-                        (line, there) = (other.line, ride.row(node.line, node.station, other.line));
+                        (line, there) = (other.line, compliance.row(node.line, node.station, other.line));
                     }
-                    sum += w * there[other.station + ride.band - node.station];
+                    sum += w * there[other.station + compliance.band - node.station];
                 }
                 *seen = sum;
             }
         }
     }
 
-    /// What nodes see of riders on pairs of stations.
+    /// What nodes see of masses on pairs of stations.
     #[inline(always)]
-    fn see_pairs(&mut self, ride: &Ride) {
+    fn see_pairs(&mut self, compliance: &WheelCompliance) {
         let nr = self.list.len();
         for (a, node) in self.nodes.iter().enumerate() {
             let seen = &mut self.seen[a * nr..][..nr];
             for run in &self.runs {
-                let row = &ride.row(node.line, node.station, run.line)[run.first + ride.band - node.station..];
+                let row =
+                    &compliance.row(node.line, node.station, run.line)[run.first + compliance.band - node.station..];
                 let (near, far) = (&row[..run.count], &row[1..][..run.count]);
                 let nexts = &self.nexts[run.from..][..run.count];
                 let seen = &mut seen[run.from..][..run.count];
@@ -401,54 +426,60 @@ impl Riders {
         }
     }
 
-    /// Follows the nodes near the vehicle, see [`Beside::follow`].
+    /// Follows the nodes near the vehicle, see [`LocalResidual::follow`].
     #[inline(always)]
-    pub(super) fn follow(&mut self, wheels: &Wheels, level: &Level, modes: usize, pressing: Pressing) {
+    pub(super) fn follow(
+        &mut self,
+        wheels: &WheelLines,
+        constants: &StepConstants,
+        modes: usize,
+        pressing: StepForces,
+    ) {
         self.next
-            .follow(&self.beside, &self.nodes, wheels, level, modes, pressing);
-        std::mem::swap(&mut self.beside, &mut self.next);
+            .follow(&self.local, &self.nodes, wheels, constants, modes, pressing);
+        std::mem::swap(&mut self.local, &mut self.next);
     }
 
-    /// Back to before [`Riders::follow`], for a step that did not settle.
+    /// Back to before [`MovingMasses::follow`], for a step that did not settle.
     pub(super) fn unfollow(&mut self) {
-        std::mem::swap(&mut self.beside, &mut self.next);
+        std::mem::swap(&mut self.local, &mut self.next);
     }
 
-    /// Takes the nodes near the vehicle to the end of the step, see [`Beside::lead`].
+    /// Takes the nodes near the vehicle to the end of the step, see [`LocalResidual::lead`].
     #[inline(always)]
     pub(super) fn lead(
         &mut self,
-        wheels: &Wheels,
-        level: &Level,
+        wheels: &WheelLines,
+        constants: &StepConstants,
         modes: usize,
-        masses: &[(usize, usize, f64)],
+        masses: &[StationForce],
         n: &[f64],
     ) {
-        self.beside.lead(wheels, level, modes, masses, n);
+        self.local.lead(wheels, constants, modes, masses, n);
     }
 
     /// The nodes near the vehicle.
-    pub(super) fn beside(&self) -> &Beside {
-        &self.beside
+    pub(super) fn local_residual(&self) -> &LocalResidual {
+        &self.local
     }
 
     /// Puts them back.
-    pub(super) fn put_beside(&mut self, saved: &Beside) {
-        self.beside.clone_from(saved);
+    pub(super) fn put_local_residual(&mut self, saved: &LocalResidual) {
+        self.local.clone_from(saved);
     }
 
     /// No nodes near a vehicle.
     pub(super) fn leave(&mut self) {
-        self.beside.clear();
+        self.local.clear();
     }
 
-    /// Force on each node from the riders' forces times `factor`: line, station, force.
+    /// Force on each node from the masses' forces times `factor`: line, station, force.
     #[inline(always)]
-    pub(super) fn on_nodes(&mut self, riders: &[f64], factor: f64, forces: &mut Vec<(usize, usize, f64)>) {
+    pub(super) fn on_nodes(&mut self, masses: &[f64], factor: f64, forces: &mut Vec<StationForce>) {
         let nn = self.nodes.len();
         self.on_nodes[..nn].fill(0.0);
-        for (rider, q) in self.list.iter().zip(riders) {
-            for &(node, w) in &self.force[rider.force.0..rider.force.1] {
+        for (mass, q) in self.list.iter().zip(masses) {
+            for &(node, w) in &self.force[mass.force.0..mass.force.1] {
                 self.on_nodes[node] += w * q;
             }
         }
@@ -457,26 +488,26 @@ impl Riders {
         }
     }
 
-    /// Adds each axle's inertia force `m u''` to `axles`, given the scaled forces of riders and connectors.
+    /// Adds each axle's inertia force `m u''` to `axles`, given the scaled forces of masses and connectors.
     #[inline(always)]
     pub(super) fn add_inertia(
         &mut self,
-        ride: &Ride,
-        level: &Level,
+        compliance: &WheelCompliance,
+        constants: &StepConstants,
         scaled: &[f64],
         connectors: &[f64],
         axles: &mut [f64],
     ) {
-        let (nr, s) = (self.list.len(), &level.scheme);
+        let (nr, s) = (self.list.len(), &constants.scheme);
         if !self.slopes.is_empty() {
-            for (rider, q) in self.list.iter().zip(scaled) {
-                axles[rider.axle] += q / (1.0 - s.alpha_m);
+            for (mass, q) in self.list.iter().zip(scaled) {
+                axles[mass.axle] += q / (1.0 - s.alpha_m);
             }
             return;
         }
-        for (node, Node { line, station }) in self.nodes.iter().enumerate() {
+        for (node, DeckNode { line, station }) in self.nodes.iter().enumerate() {
             let from_riders = dot(&self.seen[node * nr..][..nr], scaled);
-            let from_connectors = dot(ride.with_connectors(*line, *station), connectors);
+            let from_connectors = dot(compliance.with_connectors(*line, *station), connectors);
             self.on_nodes[node] = self.dots[node][0] - s.c_a * (from_riders + from_connectors);
         }
         for p in &self.points {

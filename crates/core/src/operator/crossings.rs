@@ -1,0 +1,248 @@
+//! Crossings side by side: the motion of each, one a SIMD lane.
+//!
+//! Knows the state that a crossing carries from step to step, and how a lane is begun, saved and taken elsewhere. Does not
+//! know the step's arithmetic or when a crossing ends.
+
+use super::basis::BridgeOperator;
+use super::connectors::Connectors;
+use super::energy::Energy;
+use super::envelope::{Envelope, LanePeaks};
+use super::lane::{CrossingInput, Lane};
+use super::lane_array::LaneArray;
+use super::loads::{Loads, StationForce};
+use super::local_residual::LocalResidual;
+use super::modes::Modes;
+use super::panel::InstructionPath;
+use super::residual::Residual;
+use super::step::Unsettled;
+use super::step_constants::StepConstants;
+use super::wheel_lines::WheelCompliance;
+use crate::connector::State;
+use crate::contact::NotSettled;
+use crate::response::Statistics;
+use std::sync::Arc;
+
+/// Crossings side by side on one operator.
+#[derive(Debug)]
+pub(crate) struct Crossings {
+    most_nodes: usize,
+    pub(super) modes: Modes,
+    pub(super) residual: Residual,
+    pub(super) connectors: Connectors,
+    pub(super) loads: Loads,
+    pub(super) energy: Energy,
+    pub(super) envelope: Envelope,
+    pub(super) lanes: Vec<Lane>,
+}
+
+/// A lane's numbers by themselves.
+#[derive(Debug, Clone)]
+pub(crate) struct Saved {
+    numbers: Vec<f64>,
+    states: Vec<State>,
+    local: LocalResidual,
+    mass_forces: Vec<StationForce>,
+    statistics: Statistics,
+}
+
+impl Crossings {
+    /// As many lanes as this machine's vectors have, with room for vehicles of `most_nodes` nodes.
+    pub(crate) fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
+        let width = InstructionPath::of_this_machine().lanes;
+        let sizes = &operator.sizes;
+        let lane = || Lane::new(sizes.modes, sizes.connectors, most_nodes, newton_limit);
+        Self {
+            most_nodes,
+            modes: Modes::new(sizes, width),
+            residual: Residual::new(sizes, width),
+            connectors: Connectors::new(sizes, width),
+            loads: Loads::new(sizes, width),
+            energy: Energy::new(width),
+            envelope: Envelope::new(operator, width),
+            lanes: (0..width).map(|_| lane()).collect(),
+        }
+    }
+
+    /// Number of lanes.
+    pub(crate) fn width(&self) -> usize {
+        self.lanes.len()
+    }
+
+    /// What a lane carries from step to step.
+    fn carried(&mut self) -> impl Iterator<Item = &mut LaneArray> {
+        let motion = self.modes.carried().into_iter().chain(self.residual.carried());
+        let forces = self.connectors.carried().into_iter().chain(self.loads.carried());
+        let told = self.energy.carried().into_iter().chain(self.envelope.carried());
+        motion.chain(forces).chain(told)
+    }
+
+    /// Begins a crossing at rest, the front of the vehicle where it is one step before the first one.
+    pub(crate) fn begin(&mut self, operator: &BridgeOperator, lane: usize, crossing: CrossingInput, time_s: f64) {
+        self.rest(lane);
+        self.envelope.begin(lane);
+        self.connectors.take_law(lane, &crossing.law);
+        let of = &mut self.lanes[lane];
+        of.contact.forget();
+        of.contact.states.fill(crossing.law.state(0.0));
+        of.statistics = Statistics::default();
+        of.unloaded = 0;
+        of.masses.leave();
+        of.mass_forces.clear();
+        of.take(crossing);
+        of.place(time_s);
+        self.loads.place(operator, lane, of);
+        self.loads.weights.copy_lane(lane, &self.loads.weights_now);
+    }
+
+    /// Says where a lane's vehicle is at the end of the coming step.
+    pub(crate) fn place(&mut self, lane: usize, time_s: f64) {
+        self.lanes[lane].place(time_s);
+    }
+
+    /// Frees a lane, which then rests.
+    pub(crate) fn end(&mut self, lane: usize) {
+        self.rest(lane);
+        let of = &mut self.lanes[lane];
+        of.crossing = None;
+        of.weights.clear();
+        of.mass_forces.clear();
+    }
+
+    /// Zeros in a lane.
+    fn rest(&mut self, lane: usize) {
+        self.carried().for_each(|array| array.clear(lane));
+        let left = self.loads.left().into_iter().chain(self.connectors.left());
+        left.for_each(|array| array.clear(lane));
+    }
+
+    /// Whether a lane's last step found no equilibrium; it then stands where it stood before.
+    pub(crate) fn unsettled(&self, lane: usize) -> Option<NotSettled> {
+        self.lanes[lane].unsettled
+    }
+
+    /// Whether a lane's energies are finite.
+    pub(crate) fn is_finite(&self, lane: usize) -> bool {
+        self.energy.is_finite(lane)
+    }
+
+    /// What the solver did in a lane.
+    pub(crate) fn statistics(&mut self, lane: usize) -> &mut Statistics {
+        &mut self.lanes[lane].statistics
+    }
+
+    /// A lane's numbers.
+    pub(crate) fn save(&mut self, lane: usize) -> Saved {
+        let mut numbers = Vec::new();
+        self.carried().for_each(|array| numbers.extend(array.lane(lane)));
+        let of = &self.lanes[lane];
+        Saved {
+            numbers,
+            states: of.contact.states.clone(),
+            local: of.masses.local_residual().clone(),
+            mass_forces: of.mass_forces.clone(),
+            statistics: of.statistics,
+        }
+    }
+
+    /// Puts numbers back into a lane, or into another of the same operator.
+    pub(crate) fn restore(&mut self, lane: usize, saved: &Saved) {
+        let places = self.carried().flat_map(|array| array.lane_mut(lane));
+        places.zip(&saved.numbers).for_each(|(x, saved)| *x = *saved);
+        let of = &mut self.lanes[lane];
+        of.contact.forget();
+        of.contact.states.copy_from_slice(&saved.states);
+        of.statistics = saved.statistics;
+        of.masses.put_local_residual(&saved.local);
+        of.mass_forces.clone_from(&saved.mass_forces);
+        // the load's traces in the step under way are written anew
+        of.unloaded = 0;
+    }
+
+    /// Takes up a crossing that was saved elsewhere, with the small compliances of its step length.
+    pub(crate) fn resume(&mut self, lane: usize, crossing: CrossingInput, saved: &Saved) {
+        // a crossing without riding masses writes no inertia forces, so that none may be left of the one before
+        self.rest(lane);
+        self.connectors.take_law(lane, &crossing.law);
+        self.lanes[lane].take(crossing);
+        self.restore(lane, saved);
+    }
+
+    /// Changes to another step length.
+    pub(crate) fn take_compliance(&mut self, lane: usize, compliance: Arc<WheelCompliance>) {
+        let of = &mut self.lanes[lane];
+        of.contact.forget();
+        if let Some(crossing) = &mut of.crossing {
+            crossing.compliance = compliance;
+        }
+    }
+
+    /// Nodes of the largest vehicle that has room.
+    pub(crate) fn most_nodes(&self) -> usize {
+        self.most_nodes
+    }
+
+    /// Whether any lane's vehicle has masses that ride along.
+    #[inline(always)]
+    pub(super) fn any_mass(&self) -> bool {
+        self.lanes.iter().any(Lane::has_masses)
+    }
+
+    /// The crossing of a lane.
+    pub(crate) fn crossing(&self, lane: usize) -> Option<&CrossingInput> {
+        self.lanes[lane].crossing.as_ref()
+    }
+
+    /// What a lane's crossing leaves behind, peaks in the order of positions and joints.
+    pub(crate) fn peaks(&self, lane: usize) -> LanePeaks {
+        self.envelope.peaks(lane, self.energy.summary(lane))
+    }
+
+    /// Deflection of a position now, positive downward `[m]`.
+    pub(crate) fn deflection_m(&self, lane: usize, position: usize) -> f64 {
+        // nothing is 0, not -0
+        0.0 - self.envelope.observed_m(position - 1, lane)
+    }
+
+    /// Force of a joint now, its connectors added, tension positive `[N]`.
+    pub(crate) fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
+        let per_joint = self.envelope.per_joint();
+        let forces = self.connectors.n.lane(lane).skip((joint - 2) * per_joint);
+        forces.take(per_joint).sum()
+    }
+
+    /// Puts the weights of all vehicles where they are at the end of the step (O5).
+    #[inline(always)]
+    pub(super) fn place_loads(&mut self, operator: &BridgeOperator) {
+        for (lane, of) in self.lanes.iter_mut().enumerate() {
+            self.loads.place(operator, lane, of);
+        }
+    }
+
+    /// Solves the contact of each lane (C1); those that do not settle as they stood before the step.
+    #[inline(always)]
+    pub(super) fn solve_contact(
+        &mut self,
+        operator: &BridgeOperator,
+        constants: &StepConstants,
+        newton_limit: usize,
+    ) -> Unsettled {
+        let mut unsettled: Unsettled = None;
+        for lane in 0..self.lanes.len() {
+            let (modes, connectors) = (&self.modes, &mut self.connectors);
+            let parts = (modes, connectors, &mut self.loads, &mut self.envelope);
+            if !self.lanes[lane].solve(lane, operator, constants, newton_limit, parts) {
+                let saved = self.save(lane);
+                unsettled.get_or_insert_default().push((lane, saved));
+            }
+        }
+        unsettled
+    }
+
+    /// Puts lanes back to before the step.
+    #[inline(always)]
+    pub(super) fn restore_all(&mut self, unsettled: Unsettled) {
+        for (lane, saved) in unsettled.into_iter().flatten() {
+            self.restore(lane, &saved);
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! What is read of every lane after a step (R2): peaks with their times, roll, edges, axle forces.
+//!
+//! Knows the observed rows. Does not know how the motion came about.
+
+use super::basis::{BridgeOperator, Observed};
+use super::connectors::Connectors;
+use super::energy::Energy;
+use super::lane::Lane;
+use super::lane_array::LaneArray;
+use super::modes::Modes;
+use super::panel::{lanes, lanes_mut};
+use super::residual::Residual;
+use super::step_constants::StepConstants;
+use super::vector::Ops;
+use crate::response::{EnergySummary, ForcePeaks, JointPeaks, Peak};
+use crate::scheme::Arithmetic;
+use pulp::Simd;
+
+/// More lanes than any vector has.
+const MOST_LANES: usize = 16;
+
+/// Running extremes of every lane.
+#[derive(Debug, Clone)]
+pub(super) struct Envelope {
+    rows: Observed,
+    per_joint: usize,
+    /// Largest values, downward and upward of each position, then pushing and pulling of each joint's sum and each
+    /// connector; and when.
+    value: LaneArray,
+    time: LaneArray,
+    /// Time of the step `[s]`.
+    now: LaneArray,
+    /// Largest downward deflection of corners and edges, height of bottom corners, roll; largest corner deflection.
+    edge: LaneArray,
+    corner: LaneArray,
+    bottom: LaneArray,
+    roll: LaneArray,
+    /// Smallest force of an axle.
+    axle: LaneArray,
+    /// Largest deflection of each module's corners now.
+    of_module: LaneArray,
+    /// `[q; s]`, observed rows, edges inside one module, now.
+    motion: LaneArray,
+    observed: LaneArray,
+    inside: LaneArray,
+    breadth_m: f64,
+}
+
+impl Envelope {
+    pub(super) fn new(operator: &BridgeOperator, lanes: usize) -> Self {
+        let of = |rows: usize| LaneArray::new(rows, lanes);
+        let (rows, sizes) = (operator.rows, &operator.sizes);
+        let joints = sizes.modules - 1;
+        let peaks = 2 * (rows.positions + joints + sizes.connectors);
+        Self {
+            rows,
+            per_joint: sizes.connectors.checked_div(joints).unwrap_or(0),
+            value: of(peaks),
+            time: of(peaks),
+            now: of(1),
+            edge: of(1),
+            corner: of(1),
+            bottom: of(1),
+            roll: of(1),
+            axle: of(1),
+            of_module: of(sizes.modules),
+            motion: of(sizes.modes + sizes.connectors),
+            observed: of(sizes.observed),
+            inside: of(sizes.inside),
+            breadth_m: operator.breadth_m,
+        }
+    }
+
+    /// What a lane carries from step to step.
+    pub(super) fn carried(&mut self) -> [&mut LaneArray; 7] {
+        [
+            &mut self.value,
+            &mut self.time,
+            &mut self.edge,
+            &mut self.corner,
+            &mut self.bottom,
+            &mut self.roll,
+            &mut self.axle,
+        ]
+    }
+
+    pub(super) fn begin(&mut self, lane: usize) {
+        *self.axle.at_mut(0, lane) = f64::INFINITY;
+    }
+
+    /// Connectors of a joint.
+    pub(super) fn per_joint(&self) -> usize {
+        self.per_joint
+    }
+
+    /// Height of an observed row now `[m]`.
+    pub(super) fn observed_m(&self, row: usize, lane: usize) -> f64 {
+        self.observed.at(row, lane)
+    }
+
+    /// Smallest force of an axle while it is whole on the bridge.
+    #[inline(always)]
+    pub(super) fn record_axles(&mut self, lane: usize, axles: &[(f64, bool)], inertia: &[f64]) {
+        let least = self.axle.at_mut(0, lane);
+        for (&(weight, whole), inertia) in axles.iter().zip(inertia) {
+            if whole {
+                *least = least.min(weight + inertia);
+            }
+        }
+    }
+
+    /// Reads the rows after a step.
+    #[inline(always)]
+    pub(super) fn update<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        operator: &BridgeOperator,
+        constants: &StepConstants,
+        (modes, residual, connectors, energy): (&Modes, &Residual, &Connectors, &Energy),
+        lanes: &[Lane],
+    ) {
+        self.now.write_row(lanes.iter().map(|lane| lane.time_s));
+        self.motion.join([&modes.q, &residual.followed_force.x]);
+        let observed = self.observed.vectors_mut::<S>();
+        constants.panels.v.multiply(o, self.motion.vectors::<S>(), observed);
+        let beside = &residual.load_residual.x.vectors::<S>()[connectors.count()..];
+        for (z, r) in observed.iter_mut().zip(beside) {
+            *z = o.add(*z, *r);
+        }
+        self.update_peaks(o, connectors);
+        self.update_corners(o);
+        self.update_edges(o, operator, constants, energy, lanes);
+    }
+
+    /// Peaks of positions, joints and connectors.
+    #[inline(always)]
+    fn update_peaks<S: Simd>(&mut self, o: Ops<S>, connectors: &Connectors) {
+        let mut peaks = Peaks::<S> {
+            o,
+            now: self.now.vectors::<S>()[0],
+            rows: self
+                .value
+                .vectors_mut::<S>()
+                .iter_mut()
+                .zip(self.time.vectors_mut::<S>()),
+        };
+        for &z in &self.observed.vectors::<S>()[..self.rows.positions] {
+            peaks.update_both(z);
+        }
+        for joint in connectors.n.vectors::<S>().chunks_exact(self.per_joint.max(1)) {
+            let mut sum = o.splat(0.0);
+            for &force in joint {
+                sum = o.add(sum, force);
+            }
+            peaks.update_both(sum);
+            for &force in joint {
+                peaks.update_both(force);
+            }
+        }
+    }
+
+    /// Corners: module after module, left and right end, right and left edge.
+    #[inline(always)]
+    fn update_corners<S: Simd>(&mut self, o: Ops<S>) {
+        let Observed {
+            positions,
+            corners,
+            bottom_corners,
+        } = self.rows;
+        let observed = self.observed.vectors::<S>();
+        let per = o.splat(1.0 / self.breadth_m);
+        let mut roll = self.roll.vectors::<S>()[0];
+        let mut corner = self.corner.vectors::<S>()[0];
+        let of_corners = observed[positions..][..corners].chunks_exact(4);
+        for (module, ends) in self.of_module.vectors_mut::<S>().iter_mut().zip(of_corners) {
+            let mut down = o.neg(ends[0]);
+            for end in ends.chunks_exact(2) {
+                roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
+                for &z in end {
+                    down = o.max(down, o.neg(z));
+                }
+            }
+            *module = down;
+            corner = o.max(corner, down);
+        }
+        self.roll.vectors_mut::<S>()[0] = roll;
+        self.corner.vectors_mut::<S>()[0] = corner;
+        let edge = &mut self.edge.vectors_mut::<S>()[0];
+        *edge = o.max(*edge, corner);
+        let bottom = &mut self.bottom.vectors_mut::<S>()[0];
+        for &z in &observed[positions + corners..][..bottom_corners] {
+            *bottom = o.max(*bottom, z);
+        }
+    }
+
+    /// Edges inside the modules, where one may be lower than any edge before. A station is off the straight line between its
+    /// module's corners by no more than Cauchy and Schwarz allow: `(row u)^2 <= (sum of phi^2 / omega^2) (sum of omega^2
+    /// q^2)` for the modes, R and s in their place for what the connectors add, the load times its largest influence for the
+    /// rest, which follows the load at once.
+    #[inline(always)]
+    fn update_edges<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        operator: &BridgeOperator,
+        constants: &StepConstants,
+        energy: &Energy,
+        each: &[Lane],
+    ) {
+        let mut loads = [0.0; MOST_LANES];
+        for (load, of) in loads.iter_mut().zip(each) {
+            for (.., force) in of.weights.iter().chain(&of.mass_forces) {
+                *load += force.abs();
+            }
+        }
+        let modal = o.0.sqrt_f64s(energy.modal_strain.vectors::<S>()[0]);
+        let residual = energy.residual_strain.vectors::<S>()[0];
+        let residual = o.0.sqrt_f64s(o.max(residual, o.splat(0.0)));
+        let load = lanes::<S>(&loads)[0];
+        for (module, bound) in operator.inside_bounds.iter().enumerate() {
+            let [of_modes, of_residual, of_load] = [o.splat(bound[0]), o.splat(bound[1]), o.splat(bound[2])];
+            let margin = o.fma(of_modes, modal, o.fma(of_residual, residual, o.mul(of_load, load)));
+            let lowest = o.add(self.of_module.vectors::<S>()[module], margin);
+            let lower = o.0.greater_than_f64s(lowest, self.edge.vectors::<S>()[0]);
+            if o.0.first_true_m64s(lower) >= S::F64_LANES {
+                continue;
+            }
+            let mut lowests = [0.0; MOST_LANES];
+            lanes_mut::<S>(&mut lowests)[0] = lowest;
+            let is_lower = |edge: &LaneArray, lane: usize| lowests[lane] > edge.at(0, lane);
+            if (0..each.len()).any(|lane| each[lane].crossing.is_some() && is_lower(&self.edge, lane)) {
+                let inside = self.inside.vectors_mut::<S>();
+                constants.panels.inside[module].multiply(o, self.motion.vectors::<S>(), inside);
+            }
+            for (lane, of) in each.iter().enumerate() {
+                if is_lower(&self.edge, lane) {
+                    self.update_edge(operator, module, lane, of);
+                }
+            }
+        }
+    }
+
+    /// Stations of the edges of one module in one lane.
+    #[inline(always)]
+    fn update_edge(&mut self, operator: &BridgeOperator, module: usize, lane: usize, of: &Lane) {
+        let (Some(crossing), sizes) = (&of.crossing, &operator.sizes) else {
+            return;
+        };
+        let corner = |i: usize| self.observed.at(self.rows.positions + 4 * module + i, lane);
+        let first = sizes.followed() + module * sizes.inside;
+        let wheels = &crossing.wheels;
+        for i in 0..sizes.inside {
+            let (place, side) = (operator.places[i / 2], i % 2);
+            let straight = (1.0 - place) * corner(side) + place * corner(2 + side);
+            let mut z = straight + self.inside.at(i, lane);
+            for (lines, forces) in [(&wheels.weights, &of.weights), (&wheels.masses, &of.mass_forces)] {
+                for &(line, station, force) in forces {
+                    z -= force * lines[line].influence(station, wheels.influence_width)[first + i];
+                }
+            }
+            let edge = self.edge.at_mut(0, lane);
+            *edge = edge.max(-z);
+        }
+    }
+
+    /// What a lane's crossing leaves behind, peaks in the order of positions and joints.
+    pub(super) fn peaks(&self, lane: usize, energy: EnergySummary) -> LanePeaks {
+        let at = |row: usize| Peak {
+            value: self.value.at(row, lane),
+            time_s: self.time.at(row, lane),
+        };
+        let forces = |row: usize| ForcePeaks {
+            compression: at(row),
+            tension: at(row + 1),
+        };
+        LanePeaks {
+            positions: (0..self.rows.positions).map(|i| [at(2 * i), at(2 * i + 1)]).collect(),
+            forces: (self.rows.positions..self.value.rows() / 2)
+                .map(|i| forces(2 * i))
+                .collect(),
+            edge_m: self.edge.at(0, lane),
+            corner_m: self.corner.at(0, lane),
+            bottom_m: self.bottom.at(0, lane),
+            roll_rad: self.roll.at(0, lane),
+            min_contact_force_n: self.axle.at(0, lane),
+            energy,
+        }
+    }
+}
+
+/// Peaks of all rows, to be raised one after the other.
+struct Peaks<'a, S: Simd> {
+    o: Ops<S>,
+    now: S::f64s,
+    rows: std::iter::Zip<std::slice::IterMut<'a, S::f64s>, std::slice::IterMut<'a, S::f64s>>,
+}
+
+impl<S: Simd> Peaks<'_, S> {
+    /// Takes the next row's value where it is larger than all before.
+    #[inline(always)]
+    fn update_max(&mut self, value: S::f64s) {
+        if let Some((best, time)) = self.rows.next() {
+            let larger = self.o.0.greater_than_f64s(value, *best);
+            *best = self.o.0.select_f64s(larger, value, *best);
+            *time = self.o.0.select_f64s(larger, self.now, *time);
+        }
+    }
+
+    /// The next two rows: one for the value's other sense, one for its own.
+    #[inline(always)]
+    fn update_both(&mut self, value: S::f64s) {
+        self.update_max(self.o.neg(value));
+        self.update_max(value);
+    }
+}
+
+/// What a lane's crossing leaves behind.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LanePeaks {
+    /// Downward and upward of each position `[m]`.
+    pub positions: Vec<[Peak; 2]>,
+    /// Of each joint the sum, then each connector `[N]`.
+    pub forces: Vec<ForcePeaks>,
+    /// Largest downward deflection of the deck's edges `[m]`.
+    pub edge_m: f64,
+    /// Largest downward deflection of the deck's corners alone `[m]`.
+    pub corner_m: f64,
+    /// Largest height of a bottom corner `[m]`; 0 where none is followed.
+    pub bottom_m: f64,
+    /// Largest roll of a module end `[rad]`.
+    pub roll_rad: f64,
+    /// Smallest force of an axle `[N]`.
+    pub min_contact_force_n: f64,
+    /// The energy balance.
+    pub energy: EnergySummary,
+}
+
+impl LanePeaks {
+    /// Peaks of the joints 2 to modules with their connectors at `y_m`.
+    pub(crate) fn joints(&self, y_m: &[f64]) -> Vec<JointPeaks> {
+        (2..)
+            .zip(self.forces.chunks_exact(1 + y_m.len()))
+            .map(|(joint, forces)| JointPeaks {
+                joint,
+                sum: forces[0],
+                connectors: y_m.iter().copied().zip(forces[1..].iter().copied()).collect(),
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,175 @@
+//! Numbers of several crossings side by side: rows, in each of them one number a lane.
+//!
+//! Knows rows and lanes. Does not know what the numbers mean.
+
+use super::step_constants::ResidualRule;
+use super::vector::Ops;
+use crate::scheme::Newmark;
+use pulp::Simd;
+
+/// Rows of one number a lane.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LaneArray {
+    numbers: Vec<f64>,
+    lanes: usize,
+}
+
+impl LaneArray {
+    /// Zeros.
+    pub(super) fn new(rows: usize, lanes: usize) -> Self {
+        Self {
+            numbers: vec![0.0; rows * lanes],
+            lanes,
+        }
+    }
+
+    /// Number of rows.
+    pub(super) fn rows(&self) -> usize {
+        self.numbers.len() / self.lanes.max(1)
+    }
+
+    /// The rows as vectors of lanes.
+    #[inline(always)]
+    pub(super) fn vectors<S: Simd>(&self) -> &[S::f64s] {
+        S::as_simd_f64s(&self.numbers).0
+    }
+
+    /// The rows as vectors of lanes, to be written.
+    #[inline(always)]
+    pub(super) fn vectors_mut<S: Simd>(&mut self) -> &mut [S::f64s] {
+        S::as_mut_simd_f64s(&mut self.numbers).0
+    }
+
+    /// A lane's number in a row.
+    #[inline(always)]
+    pub(super) fn at(&self, row: usize, lane: usize) -> f64 {
+        self.numbers[row * self.lanes + lane]
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub(super) fn at_mut(&mut self, row: usize, lane: usize) -> &mut f64 {
+        &mut self.numbers[row * self.lanes + lane]
+    }
+
+    /// A lane's numbers, row after row.
+    #[inline(always)]
+    pub(super) fn lane(&self, lane: usize) -> impl Iterator<Item = f64> {
+        self.numbers.iter().skip(lane).step_by(self.lanes).copied()
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub(super) fn lane_mut(&mut self, lane: usize) -> impl Iterator<Item = &mut f64> {
+        self.numbers.iter_mut().skip(lane).step_by(self.lanes)
+    }
+
+    /// Rows from `first` on, to be written lane by lane.
+    #[inline(always)]
+    pub(super) fn rows_from_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
+        self.numbers[first * self.lanes..].chunks_exact_mut(self.lanes)
+    }
+
+    /// Reads a lane's numbers from between those of the others.
+    #[inline(always)]
+    pub(super) fn gather(&self, lane: usize, to: &mut [f64]) {
+        for (to, row) in to.iter_mut().zip(self.numbers.chunks_exact(self.lanes)) {
+            *to = row[lane];
+        }
+    }
+
+    /// Writes a lane's numbers between those of the others.
+    #[inline(always)]
+    pub(super) fn scatter(&mut self, lane: usize, from: &[f64]) {
+        for (row, x) in self.numbers.chunks_exact_mut(self.lanes).zip(from) {
+            row[lane] = *x;
+        }
+    }
+
+    /// Writes the one row of an array lane by lane.
+    #[inline(always)]
+    pub(super) fn write_row(&mut self, row: impl Iterator<Item = f64>) {
+        self.numbers.iter_mut().zip(row).for_each(|(to, x)| *to = x);
+    }
+
+    /// Zeros in a lane.
+    pub(super) fn clear(&mut self, lane: usize) {
+        self.lane_mut(lane).for_each(|x| *x = 0.0);
+    }
+
+    /// Copies a lane of another array of as many rows.
+    pub(super) fn copy_lane(&mut self, lane: usize, from: &Self) {
+        self.lane_mut(lane).zip(from.lane(lane)).for_each(|(to, x)| *to = x);
+    }
+
+    /// Writes the rows of others, one array after the other.
+    #[inline(always)]
+    pub(super) fn join(&mut self, [first, second]: [&Self; 2]) {
+        let (a, b) = self.numbers.split_at_mut(first.numbers.len());
+        a.copy_from_slice(&first.numbers);
+        b.copy_from_slice(&second.numbers);
+    }
+}
+
+/// What is carried from step to step of a quantity without mass: `x, x', x''`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Trace {
+    pub(super) x: LaneArray,
+    pub(super) x1: LaneArray,
+    pub(super) x2: LaneArray,
+}
+
+/// The rows of a [`Trace`] as vectors.
+#[derive(Debug)]
+pub(super) struct TraceRows<'a, S: Simd> {
+    x: &'a mut [S::f64s],
+    x1: &'a mut [S::f64s],
+    x2: &'a mut [S::f64s],
+}
+
+impl Trace {
+    /// Zeros.
+    pub(super) fn new(rows: usize, lanes: usize) -> Self {
+        let zeros = || LaneArray::new(rows, lanes);
+        Self {
+            x: zeros(),
+            x1: zeros(),
+            x2: zeros(),
+        }
+    }
+
+    /// Its arrays.
+    pub(super) fn all(&mut self) -> [&mut LaneArray; 3] {
+        [&mut self.x, &mut self.x1, &mut self.x2]
+    }
+
+    /// Its rows as vectors.
+    #[inline(always)]
+    pub(super) fn vectors_mut<S: Simd>(&mut self) -> TraceRows<'_, S> {
+        TraceRows {
+            x: self.x.vectors_mut::<S>(),
+            x1: self.x1.vectors_mut::<S>(),
+            x2: self.x2.vectors_mut::<S>(),
+        }
+    }
+}
+
+impl<S: Simd> TraceRows<'_, S> {
+    /// The change of row i under a force, by the rule of what has no mass.
+    #[inline(always)]
+    pub(super) fn change(&self, o: Ops<S>, rule: &ResidualRule<Ops<S>>, i: usize, force: S::f64s) -> S::f64s {
+        rule.change(o, force, [self.x[i], self.x1[i], self.x2[i]])
+    }
+
+    /// Row i and its derivative.
+    #[inline(always)]
+    pub(super) fn at(&self, i: usize) -> [S::f64s; 2] {
+        [self.x[i], self.x1[i]]
+    }
+
+    /// Takes row i to the end of a step in which it changes by `d`.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, o: Ops<S>, by: &Newmark<Ops<S>>, i: usize, d: S::f64s) {
+        [self.x[i], self.x1[i], self.x2[i]] = by.advance(o, d, [self.x[i], self.x1[i], self.x2[i]]);
+    }
+}

@@ -1,0 +1,109 @@
+//! Downward forces of every lane's vehicle on the deck, as modes, connectors and observed rows see them.
+//!
+//! Knows weights at their places and inertia forces of masses that ride along. Does not know how masses are solved for.
+
+use super::basis::{BridgeOperator, Sizes};
+use super::lane::Lane;
+use super::lane_array::LaneArray;
+use super::wheel_lines::WheelLine;
+
+/// A force on a station of a line of the deck: line, station, downward force `[N]`.
+pub(super) type StationForce = (usize, usize, f64);
+
+/// Columns that are summed at once.
+const COLUMNS: usize = 16;
+
+/// Forces at the last step and at the one under way, one row a mode, connector and observed row.
+#[derive(Debug, Clone)]
+pub(super) struct Loads {
+    pub(super) weights: LaneArray,
+    pub(super) weights_now: LaneArray,
+    pub(super) inertia: LaneArray,
+    pub(super) inertia_now: LaneArray,
+}
+
+impl Loads {
+    pub(super) fn new(sizes: &Sizes, lanes: usize) -> Self {
+        let zeros = || LaneArray::new(sizes.followed(), lanes);
+        Self {
+            weights: zeros(),
+            weights_now: zeros(),
+            inertia: zeros(),
+            inertia_now: zeros(),
+        }
+    }
+
+    /// What a lane carries from step to step.
+    pub(super) fn carried(&mut self) -> [&mut LaneArray; 2] {
+        [&mut self.weights, &mut self.inertia]
+    }
+
+    /// What a step leaves in a lane that no crossing writes any more.
+    pub(super) fn left(&mut self) -> [&mut LaneArray; 2] {
+        [&mut self.weights_now, &mut self.inertia_now]
+    }
+
+    /// Puts the weights of a lane's vehicle where they are at the end of the step (O5).
+    #[inline(always)]
+    pub(super) fn place(&mut self, operator: &BridgeOperator, lane: usize, of: &mut Lane) {
+        of.place_weights(operator);
+        let Some(crossing) = &of.crossing else {
+            return;
+        };
+        let wheels = &*crossing.wheels;
+        if of.weights.is_empty() {
+            if of.unloaded < 2 {
+                of.unloaded += 1;
+                self.left().into_iter().for_each(|forces| forces.clear(lane));
+            }
+            return;
+        }
+        of.unloaded = 0;
+        apply_forces(
+            &wheels.weights,
+            wheels.influence_width,
+            &of.weights,
+            &mut self.weights_now,
+            lane,
+        );
+    }
+
+    /// Ends the step: its forces are the old ones of the next.
+    pub(super) fn end_step(&mut self) {
+        std::mem::swap(&mut self.weights, &mut self.weights_now);
+        std::mem::swap(&mut self.inertia, &mut self.inertia_now);
+    }
+}
+
+/// Writes the sum of forces times the influence of their stations into a lane.
+#[inline(always)]
+pub(super) fn apply_forces(
+    lines: &[WheelLine],
+    influence_width: usize,
+    forces: &[StationForce],
+    to: &mut LaneArray,
+    lane: usize,
+) {
+    let columns = to.rows();
+    let mut from = 0;
+    while from < columns {
+        let many = COLUMNS.min(columns - from);
+        let mut sums = [0.0; COLUMNS];
+        for &(line, station, force) in forces {
+            let of = &lines[line].influence(station, influence_width)[from..from + many];
+            if let Some(of) = of.first_chunk::<COLUMNS>() {
+                for i in 0..COLUMNS {
+                    sums[i] = f64::mul_add(force, of[i], sums[i]);
+                }
+            } else {
+                for (sum, x) in sums.iter_mut().zip(of) {
+                    *sum = force.mul_add(*x, *sum);
+                }
+            }
+        }
+        for (row, sum) in to.rows_from_mut(from).take(many).zip(&sums) {
+            row[lane] = *sum;
+        }
+        from += many;
+    }
+}
