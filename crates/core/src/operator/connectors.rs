@@ -5,8 +5,6 @@
 use super::basis::Sizes;
 use super::energy::Terms;
 use super::lane_array::LaneArray;
-use super::modes::Modes;
-use super::residual::Residual;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
 use crate::connector::{Law, State};
@@ -71,26 +69,27 @@ impl Connectors {
         *self.half_compliance.at_mut(0, lane) = 0.5 / law.branch(at_work).stiffness;
     }
 
-    /// Trial elongations, without new connector and inertia forces (O8): `e + B Phi d + dr - R_BB ds`.
+    /// Trial elongations, without new connector and inertia forces (O8): `e + B Phi d + dr - R_BB ds`, from the
+    /// changes of modes, load residuals and connector residuals.
     #[inline(always)]
-    pub(super) fn try_elongations<S: Simd>(
+    pub(super) fn predict<S: Simd>(
         &mut self,
         o: Ops<S>,
         constants: &StepConstants,
-        modes: &Modes,
-        residual: &Residual,
+        d: &LaneArray,
+        [d_load, d_connector]: [&LaneArray; 2],
     ) {
         let (e_now, e) = (self.e_now.vectors_mut::<S>(), self.e.vectors::<S>());
-        constants.panels.b.multiply(o, modes.d.vectors::<S>(), e_now);
-        let (d_load, d_connector) = (residual.d_load.vectors::<S>(), residual.d_connector.vectors::<S>());
+        constants.panels.b.multiply(o, d.vectors::<S>(), e_now);
+        let (d_load, d_connector) = (d_load.vectors::<S>(), d_connector.vectors::<S>());
         for i in 0..e.len() {
             e_now[i] = o.add(e[i], o.add(e_now[i], o.sub(d_load[i], d_connector[i])));
         }
     }
 
-    /// Forces found, as modes and residual see them: `Phi^T B^T N` and `R_BB N`.
+    /// Forces found, as modes and residual see them, the modes in `on_modes`: `Phi^T B^T N` and `R_BB N`.
     #[inline(always)]
-    pub(super) fn apply<S: Simd>(&mut self, o: Ops<S>, constants: &StepConstants, modes: &mut Modes) {
+    pub(super) fn apply<S: Simd>(&mut self, o: Ops<S>, constants: &StepConstants, on_modes: &mut LaneArray) {
         let zero = o.splat(0.0);
         let n = self.n_now.vectors::<S>();
         self.active.clear();
@@ -100,8 +99,8 @@ impl Connectors {
             }
         }
         let panels = &constants.panels;
-        let contact = modes.contact_now.vectors_mut::<S>();
-        panels.b_t.multiply_listed(o, &self.active, n, contact);
+        let on_modes = on_modes.vectors_mut::<S>();
+        panels.b_t.multiply_listed(o, &self.active, n, on_modes);
         let rn = self.rn_now.vectors_mut::<S>();
         panels.r_bb.multiply_listed(o, &self.active, n, rn);
     }

@@ -16,10 +16,12 @@ use super::panel::InstructionPath;
 use super::residual::Residual;
 use super::step::Unsettled;
 use super::step_constants::StepConstants;
+use super::vector::Ops;
 use super::wheel_lines::WheelCompliance;
 use crate::connector::State;
 use crate::contact::NotSettled;
 use crate::response::Statistics;
+use pulp::Simd;
 use std::sync::Arc;
 
 /// Crossings side by side on one operator.
@@ -90,7 +92,7 @@ impl Crossings {
         of.mass_forces.clear();
         of.take(crossing);
         of.place(time_s);
-        self.loads.place(operator, lane, of);
+        of.place_loads(lane, operator, &mut self.loads);
         self.loads.weights.copy_lane(lane, &self.loads.weights_now);
     }
 
@@ -181,6 +183,13 @@ impl Crossings {
         self.most_nodes
     }
 
+    /// Reads what is observed at the step's end (R2).
+    #[inline(always)]
+    pub(super) fn update_envelope<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, constants: &StepConstants) {
+        let motion = (&self.modes, &self.residual, &self.connectors, &self.energy);
+        self.envelope.update(o, operator, constants, motion, &self.lanes);
+    }
+
     /// Whether any lane's vehicle has masses that ride along.
     #[inline(always)]
     pub(super) fn any_mass(&self) -> bool {
@@ -214,7 +223,7 @@ impl Crossings {
     #[inline(always)]
     pub(super) fn place_loads(&mut self, operator: &BridgeOperator) {
         for (lane, of) in self.lanes.iter_mut().enumerate() {
-            self.loads.place(operator, lane, of);
+            of.place_loads(lane, operator, &mut self.loads);
         }
     }
 
@@ -229,8 +238,13 @@ impl Crossings {
         let mut unsettled: Unsettled = None;
         for lane in 0..self.lanes.len() {
             let (modes, connectors) = (&self.modes, &mut self.connectors);
-            let parts = (modes, connectors, &mut self.loads, &mut self.envelope);
-            if !self.lanes[lane].solve(lane, operator, constants, newton_limit, parts) {
+            let parts = (modes, connectors, &mut self.loads);
+            let of = &mut self.lanes[lane];
+            if of.solve(lane, operator, constants, newton_limit, parts) {
+                if of.crossing.is_some() {
+                    self.envelope.record_axles(lane, &of.axles, &of.inertia);
+                }
+            } else {
                 let saved = self.save(lane);
                 unsettled.get_or_insert_default().push((lane, saved));
             }

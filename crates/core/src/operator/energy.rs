@@ -3,7 +3,6 @@
 //!
 //! Knows the terms of a step and their sums over a crossing. Does not know how the motion came about.
 
-use super::connectors::Connectors;
 use super::lane_array::LaneArray;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
@@ -145,18 +144,17 @@ impl Energy {
         self.kinetic.at(0, lane).is_finite() && self.strain.at(0, lane).is_finite()
     }
 
-    /// Accounts for a step.
+    /// Accounts for a step, at whose end the connectors have the energy `springs`.
     #[inline(always)]
     pub(super) fn account<S: Simd>(
         &mut self,
         o: Ops<S>,
         constants: &StepConstants,
         terms: &Terms<S>,
-        connectors: &Connectors,
+        springs: S::f64s,
     ) {
         let half = o.splat(0.5);
         let (kinetic, strain) = (o.mul(half, terms.kinetic), o.mul(half, terms.strain));
-        let springs = connectors.energy(o);
         let before = o.add(
             o.add(self.kinetic.vectors::<S>()[0], self.strain.vectors::<S>()[0]),
             self.springs.vectors::<S>()[0],

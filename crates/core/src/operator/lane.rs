@@ -5,9 +5,8 @@
 use super::basis::BridgeOperator;
 use super::connectors::Connectors;
 use super::contact_system::ContactSystem;
-use super::envelope::Envelope;
 use super::lane_array::LaneArray;
-use super::loads::{Loads, StationForce, apply_forces};
+use super::loads::{Loads, StationForce};
 use super::local_residual::StepForces;
 use super::modes::Modes;
 use super::moving_masses::{FreeMotion, MovingMasses};
@@ -98,9 +97,25 @@ impl Lane {
         self.crossing.as_ref().is_some_and(|c| !c.wheels.masses.is_empty())
     }
 
+    /// Puts the weights where the vehicle is at the end of the step (O5).
+    #[inline(always)]
+    pub(super) fn place_loads(&mut self, lane: usize, operator: &BridgeOperator, loads: &mut Loads) {
+        self.place_weights(operator);
+        let Some(crossing) = &self.crossing else {
+            return;
+        };
+        if !self.weights.is_empty() {
+            self.unloaded = 0;
+            loads.apply_weights(lane, &crossing.wheels, &self.weights);
+        } else if self.unloaded < 2 {
+            self.unloaded += 1;
+            loads.left().into_iter().for_each(|forces| forces.clear(lane));
+        }
+    }
+
     /// Weights on stations and axles at the vehicle's place.
     #[inline(always)]
-    pub(super) fn place_weights(&mut self, operator: &BridgeOperator) {
+    fn place_weights(&mut self, operator: &BridgeOperator) {
         let Some(crossing) = &self.crossing else {
             return;
         };
@@ -133,7 +148,7 @@ impl Lane {
         operator: &BridgeOperator,
         constants: &StepConstants,
         newton_limit: usize,
-        (modes, connectors, loads, envelope): (&Modes, &mut Connectors, &mut Loads, &mut Envelope),
+        (modes, connectors, loads): (&Modes, &mut Connectors, &mut Loads),
     ) -> bool {
         let Some(crossing) = &self.crossing else {
             return true;
@@ -175,14 +190,13 @@ impl Lane {
         for (to, scaled) in connectors.n_now.rows_from_mut(0).zip(&self.contact.linear.forces) {
             to[lane] = scaled / weight;
         }
-        self.apply_masses(lane, constants, &connectors.n_now, &mut loads.inertia_now);
-        envelope.record_axles(lane, &self.axles, &self.inertia);
+        self.apply_masses(lane, constants, &connectors.n_now, loads);
         true
     }
 
     /// Inertia forces of the masses, forces settled.
     #[inline(always)]
-    fn apply_masses(&mut self, lane: usize, constants: &StepConstants, n: &LaneArray, inertia: &mut LaneArray) {
+    fn apply_masses(&mut self, lane: usize, constants: &StepConstants, n: &LaneArray, loads: &mut Loads) {
         let (Some(crossing), masses) = (&self.crossing, &mut self.masses) else {
             return;
         };
@@ -201,7 +215,7 @@ impl Lane {
         );
         let unscale = 1.0 / (1.0 - constants.scheme.alpha_m);
         masses.on_nodes(scaled, unscale, &mut self.mass_forces);
-        apply_forces(&wheels.masses, wheels.influence_width, &self.mass_forces, inertia, lane);
+        loads.apply_inertia(lane, wheels, &self.mass_forces);
         n.gather(lane, &mut self.n);
         masses.lead(wheels, constants, constants.c.len(), &self.mass_forces, &self.n);
     }

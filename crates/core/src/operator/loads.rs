@@ -2,10 +2,9 @@
 //!
 //! Knows weights at their places and inertia forces of masses that ride along. Does not know how masses are solved for.
 
-use super::basis::{BridgeOperator, Sizes};
-use super::lane::Lane;
+use super::basis::Sizes;
 use super::lane_array::LaneArray;
-use super::wheel_lines::WheelLine;
+use super::wheel_lines::{WheelLine, WheelLines};
 
 /// A force on a station of a line of the deck: line, station, downward force `[N]`.
 pub(super) type StationForce = (usize, usize, f64);
@@ -43,29 +42,18 @@ impl Loads {
         [&mut self.weights_now, &mut self.inertia_now]
     }
 
-    /// Puts the weights of a lane's vehicle where they are at the end of the step (O5).
+    /// Weights of a lane's vehicle on stations.
     #[inline(always)]
-    pub(super) fn place(&mut self, operator: &BridgeOperator, lane: usize, of: &mut Lane) {
-        of.place_weights(operator);
-        let Some(crossing) = &of.crossing else {
-            return;
-        };
-        let wheels = &*crossing.wheels;
-        if of.weights.is_empty() {
-            if of.unloaded < 2 {
-                of.unloaded += 1;
-                self.left().into_iter().for_each(|forces| forces.clear(lane));
-            }
-            return;
-        }
-        of.unloaded = 0;
-        apply_forces(
-            &wheels.weights,
-            wheels.influence_width,
-            &of.weights,
-            &mut self.weights_now,
-            lane,
-        );
+    pub(super) fn apply_weights(&mut self, lane: usize, wheels: &WheelLines, weights: &[StationForce]) {
+        let to = &mut self.weights_now;
+        apply_forces(&wheels.weights, wheels.influence_width, weights, to, lane);
+    }
+
+    /// Inertia forces of a lane's masses on stations.
+    #[inline(always)]
+    pub(super) fn apply_inertia(&mut self, lane: usize, wheels: &WheelLines, forces: &[StationForce]) {
+        let to = &mut self.inertia_now;
+        apply_forces(&wheels.masses, wheels.influence_width, forces, to, lane);
     }
 
     /// Ends the step: its forces are the old ones of the next.
@@ -77,13 +65,7 @@ impl Loads {
 
 /// Writes the sum of forces times the influence of their stations into a lane.
 #[inline(always)]
-pub(super) fn apply_forces(
-    lines: &[WheelLine],
-    influence_width: usize,
-    forces: &[StationForce],
-    to: &mut LaneArray,
-    lane: usize,
-) {
+fn apply_forces(lines: &[WheelLine], influence_width: usize, forces: &[StationForce], to: &mut LaneArray, lane: usize) {
     let columns = to.rows();
     let mut from = 0;
     while from < columns {

@@ -2,7 +2,7 @@
 //!
 //! Knows uncoupled modes under modal forces. Does not know connectors or vehicles.
 
-use super::basis::Sizes;
+use super::basis::{BridgeOperator, Sizes};
 use super::energy::Terms;
 use super::lane_array::LaneArray;
 use super::loads::Loads;
@@ -92,8 +92,8 @@ impl Modes {
     pub(super) fn correct<S: Simd>(
         &mut self,
         o: Ops<S>,
+        operator: &BridgeOperator,
         constants: &StepConstants,
-        omega2: &[f64],
         loads: &Loads,
         terms: &mut Terms<S>,
     ) {
@@ -112,7 +112,7 @@ impl Modes {
             &loads.inertia_now.vectors::<S>()[..m],
             &loads.inertia.vectors::<S>()[..m],
         );
-        let (omega2, c) = (&omega2[..m], &constants.c[..m]);
+        let (omega2, c) = (&operator.omega2[..m], &constants.c[..m]);
         let q = &mut self.q.vectors_mut::<S>()[..m];
         let v = &mut self.v.vectors_mut::<S>()[..m];
         let a = &mut self.a.vectors_mut::<S>()[..m];

@@ -23,8 +23,8 @@ pub(super) struct Residual {
     pub(super) load_residual: Trace,
     /// Changes of the three in the step without new connector and inertia forces.
     d_force: LaneArray,
-    pub(super) d_connector: LaneArray,
-    pub(super) d_load: LaneArray,
+    d_connector: LaneArray,
+    d_load: LaneArray,
 }
 
 impl Residual {
@@ -48,6 +48,11 @@ impl Residual {
             &mut self.load_residual,
         ];
         traces.into_iter().flat_map(Trace::all)
+    }
+
+    /// Changes of load residuals and connector residuals without new forces.
+    pub(super) fn changes(&self) -> [&LaneArray; 2] {
+        [&self.d_load, &self.d_connector]
     }
 
     /// The step without new connector and inertia forces (O7).

@@ -38,48 +38,22 @@ impl WithSimd for Step<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (o, constants) = (Ops(simd), self.constants);
-        let riding = self.crossings.any_mass();
-        self.crossings.place_loads(self.operator);
-        let unsettled = {
-            let Crossings {
-                modes,
-                residual,
-                connectors,
-                loads,
-                ..
-            } = &mut *self.crossings;
-            modes.predict(o, constants, loads, riding);
-            residual.predict(o, constants, loads, connectors);
-            connectors.try_elongations(o, constants, modes, residual);
-            self.crossings
-                .solve_contact(self.operator, constants, self.newton_limit)
-        };
-        let Crossings {
-            modes,
-            residual,
-            connectors,
-            loads,
-            energy,
-            envelope,
-            lanes,
-            ..
-        } = &mut *self.crossings;
+        let (o, operator, constants) = (Ops(simd), self.operator, self.constants);
+        let c = self.crossings;
+        c.place_loads(operator); // (O5)
+        c.modes.predict(o, constants, &c.loads, c.any_mass()); // (O6)
+        c.residual.predict(o, constants, &c.loads, &c.connectors); // (O7)
+        c.connectors.predict(o, constants, &c.modes.d, c.residual.changes()); // (O8)
+        let unsettled = c.solve_contact(operator, constants, self.newton_limit); // (C1), (C2)
         let mut terms = Terms::new(o);
-        connectors.apply(o, constants, modes);
-        modes.correct(o, constants, &self.operator.omega2, loads, &mut terms);
-        residual.correct(o, constants, loads, connectors, &mut terms);
-        connectors.correct(o, constants, &mut terms);
-        loads.end_step();
-        energy.account(o, constants, &terms, connectors);
-        envelope.update(
-            o,
-            self.operator,
-            constants,
-            (modes, residual, connectors, energy),
-            lanes,
-        );
-        self.crossings.restore_all(unsettled);
+        c.connectors.apply(o, constants, &mut c.modes.contact_now);
+        c.modes.correct(o, operator, constants, &c.loads, &mut terms); // (O6)
+        c.residual.correct(o, constants, &c.loads, &c.connectors, &mut terms); // (O7)
+        c.connectors.correct(o, constants, &mut terms);
+        c.loads.end_step();
+        c.energy.account(o, constants, &terms, c.connectors.energy(o)); // (R1)
+        c.update_envelope(o, operator, constants); // (R2)
+        c.restore_all(unsettled);
     }
 }
 

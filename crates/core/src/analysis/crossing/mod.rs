@@ -1,12 +1,13 @@
-//! Crossings, by two solvers: `step`, `under_way` and `observe` integrate directly (the reference solver), `operated` goes
+//! Crossings, by two solvers: `step`, `run` and `observe` integrate directly (the reference solver), `operated` goes
 //! through the bridge operator. Both answer a [`Crossing`] with a [`CrossingResponse`].
 //!
 //! Knows one vehicle on one bridge at one time step, on any model. Does not know studies or threads.
 
+mod halving;
 mod observe;
 mod operated;
+mod run;
 mod step;
-mod under_way;
 
 use super::AnalysisError;
 use super::modes::Rayleigh;
@@ -19,9 +20,9 @@ use crate::scheme::Scheme;
 use crate::vehicle::Vehicle;
 use observe::Observer;
 pub use operated::{OperatorSolver, REFINEMENTS};
+pub use run::CrossingRun;
 use std::sync::{Arc, OnceLock};
-use step::{Instant, Stepper};
-pub use under_way::UnderWay;
+use step::Stepper;
 
 /// What all crossings of a solver share.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,12 +63,12 @@ pub struct CrossingSolver {
     track: Track,
     settings: CrossingSettings,
     /// The step's matrix for each number of halvings, factorised when first needed.
-    levels: Vec<OnceLock<Result<Level, FemError>>>,
+    step_matrices: Vec<OnceLock<Result<StepMatrix, FemError>>>,
 }
 
 /// One step length.
 #[derive(Debug)]
-struct Level {
+struct StepMatrix {
     scheme: Scheme,
     flexibility: Flexibility,
 }
@@ -78,14 +79,14 @@ impl CrossingSolver {
     /// # Errors
     /// [`AnalysisError::Factor`].
     pub fn new(bridge: &Arc<Bridge>, settings: &CrossingSettings) -> Result<Self, AnalysisError> {
-        let levels = (0..=settings.bisection_limit).map(|_| OnceLock::new()).collect();
+        let step_matrices = (0..=settings.bisection_limit).map(|_| OnceLock::new()).collect();
         let solver = Self {
             bridge: Arc::clone(bridge),
             track: Track::new(bridge),
             settings: *settings,
-            levels,
+            step_matrices,
         };
-        solver.level(0)?;
+        solver.step_matrix(0)?;
         Ok(solver)
     }
 
@@ -107,7 +108,7 @@ impl CrossingSolver {
     }
 
     /// Begins a crossing that can be looked at between its steps; taken to its end it is the one of [`Self::solve`].
-    pub fn begin<'a>(&'a self, vehicle: &'a Vehicle, crossing: &Crossing) -> UnderWay<'a> {
+    pub fn begin<'a>(&'a self, vehicle: &'a Vehicle, crossing: &Crossing) -> CrossingRun<'a> {
         let stepper = Stepper {
             bridge: &self.bridge,
             track: &self.track,
@@ -121,57 +122,20 @@ impl CrossingSolver {
             },
         };
         let observer = Observer::new(&self.bridge, &crossing.record);
-        UnderWay::new(self, stepper, observer, crossing.tail_s)
+        CrossingRun::new(self, stepper, observer, crossing.tail_s)
     }
 
-    /// One step to `to_s`, halved where the contact does not settle.
-    fn advance(
-        &self,
-        stepper: &Stepper<'_>,
-        observer: &mut Observer<'_>,
-        now: &Instant,
-        to_s: f64,
-        halvings: usize,
-    ) -> Result<Instant, AnalysisError> {
-        let level = self.level(halvings)?;
-        match stepper.step(level, now, to_s, self.settings.newton_limit) {
-            Ok(next) => {
-                if !next.is_finite() {
-                    return Err(AnalysisError::NotFinite { time_s: to_s });
-                }
-                observer.note_step(now, &next);
-                Ok(next)
-            }
-            Err(stuck) if halvings == self.settings.bisection_limit => {
-                let place = &self.bridge.connectors[stuck.connector];
-                Err(AnalysisError::NotConverged {
-                    time_s: to_s,
-                    connector: stuck.connector + 1,
-                    joint: place.joint,
-                    y_m: place.y_m,
-                    bisections: halvings,
-                })
-            }
-            Err(stuck) => {
-                observer.note_bisection(stuck.iterations);
-                let middle_s = now.time_s + 0.5 * (to_s - now.time_s);
-                let middle = self.advance(stepper, observer, now, middle_s, halvings + 1)?;
-                self.advance(stepper, observer, &middle, to_s, halvings + 1)
-            }
-        }
-    }
-
-    fn level(&self, halvings: usize) -> Result<&Level, AnalysisError> {
-        let level = self.levels[halvings].get_or_init(|| {
+    fn step_matrix(&self, halvings: usize) -> Result<&StepMatrix, AnalysisError> {
+        let matrix = self.step_matrices[halvings].get_or_init(|| {
             let h = self.settings.time_step_s / (1_u64 << halvings) as f64;
             let scheme = Scheme::new(h, self.settings.spectral_radius);
             let (c_m, c_c, c_k) = scheme.effective();
             let Rayleigh { a, b } = self.settings.rayleigh;
             let matrix = SymmetricMatrix::combine(&[(c_m + c_c * b, &self.bridge.m), (c_k + c_c * a, &self.bridge.k)])?;
             let flexibility = Flexibility::new("matrix of the time step", &matrix, &self.bridge)?;
-            Ok(Level { scheme, flexibility })
+            Ok(StepMatrix { scheme, flexibility })
         });
-        level.as_ref().map_err(|error| AnalysisError::Factor(error.clone()))
+        matrix.as_ref().map_err(|error| AnalysisError::Factor(error.clone()))
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Knows the bridge's observed rows and what is kept of each. Does not know the scheme.
 
-use super::step::Instant;
+use super::step::Motion;
 use crate::bridge::Bridge;
 use crate::response::{
     CrossingResponse, EnergyBalance, ForcePeaks, History, JointPeaks, Peak, PositionPeaks, Quantity, Record, Statistics,
@@ -62,21 +62,21 @@ impl<'a> Observer<'a> {
     }
 
     /// Takes note of a halved step and the Newton solutions it cost.
-    pub(super) fn note_bisection(&mut self, iterations: usize) {
+    pub(super) fn record_bisection(&mut self, iterations: usize) {
         self.statistics.bisections += 1;
         self.statistics.newton_iterations += iterations;
     }
 
     /// Takes note of the motion after an accepted step.
-    pub(super) fn note_step(&mut self, old: &Instant, new: &Instant) {
+    pub(super) fn record_step(&mut self, old: &Motion, new: &Motion) {
         self.statistics.steps += 1;
         self.statistics.newton_iterations += new.newton_iterations;
         self.statistics.contact_switches += old.states.iter().zip(&new.states).filter(|(a, b)| a != b).count();
         self.energy.take(&new.spent);
-        self.note_peaks(new);
+        self.record_peaks(new);
     }
 
-    fn note_peaks(&mut self, now: &Instant) {
+    fn record_peaks(&mut self, now: &Motion) {
         let (t, u) = (now.time_s, &now.u);
         for (peaks, row) in self.positions.iter_mut().zip(&self.bridge.positions) {
             let z = row.dot(u);
@@ -115,7 +115,7 @@ impl<'a> Observer<'a> {
     }
 
     /// Records the histories asked for at a whole step.
-    pub(super) fn note_history(&mut self, now: &Instant) {
+    pub(super) fn record_history(&mut self, now: &Motion) {
         if self.histories.is_empty() {
             return;
         }

@@ -2,6 +2,7 @@
 //!
 //! Knows when a crossing begins, is halved and ends, and what a lane leaves behind. Does not know the step's arithmetic.
 
+use super::halving::{Halving, halve};
 use super::{Crossing, CrossingSettings, span};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign};
@@ -18,7 +19,7 @@ pub struct OperatorSolver {
     design: BridgeDesign,
     operator: Arc<BridgeOperator>,
     settings: CrossingSettings,
-    levels: Vec<OnceLock<StepConstants>>,
+    constants: Vec<OnceLock<StepConstants>>,
 }
 
 /// Vehicles that are kept ready at once.
@@ -65,7 +66,7 @@ impl OperatorSolver {
             design: bridge.design().clone(),
             operator: Arc::clone(operator),
             settings: *settings,
-            levels: (0..=settings.bisection_limit + REFINEMENTS)
+            constants: (0..=settings.bisection_limit + REFINEMENTS)
                 .map(|_| OnceLock::new())
                 .collect(),
         }
@@ -117,8 +118,8 @@ impl OperatorSolver {
         self.settings.time_step_s / (1_u64 << halvings) as f64
     }
 
-    fn level(&self, halvings: usize) -> &StepConstants {
-        self.levels[halvings].get_or_init(|| {
+    fn constants(&self, halvings: usize) -> &StepConstants {
+        self.constants[halvings].get_or_init(|| {
             let CrossingSettings {
                 spectral_radius,
                 rayleigh,
@@ -151,7 +152,7 @@ impl Crew<'_> {
                     self.lanes.place(lane, self.time_s(of));
                 }
             }
-            let level = self.solver.level(self.refinement);
+            let level = self.solver.constants(self.refinement);
             let limit = self.solver.settings.newton_limit;
             step(&mut self.lanes, &self.solver.operator, level, limit);
             for (lane, slot) in under.iter_mut().enumerate() {
@@ -230,7 +231,7 @@ impl Crew<'_> {
     }
 
     fn compliance(&mut self, mount: usize, halvings: usize) -> Arc<WheelCompliance> {
-        let (operator, level) = (&*self.solver.operator, self.solver.level(halvings));
+        let (operator, level) = (&*self.solver.operator, self.solver.constants(halvings));
         let mount = &mut self.mounts[mount];
         if mount.compliances.len() <= halvings {
             mount.compliances.resize(halvings + 1, None);
@@ -263,13 +264,7 @@ impl Crew<'_> {
     }
 
     /// Does a lane's step again in halves, by itself.
-    fn halve(
-        &mut self,
-        lane: usize,
-        mount: usize,
-        stuck: NotSettled,
-        [from_s, to_s]: [f64; 2],
-    ) -> Result<(), AnalysisError> {
+    fn halve(&mut self, lane: usize, mount: usize, stuck: NotSettled, span_s: [f64; 2]) -> Result<(), AnalysisError> {
         let Some(input) = self.lanes.crossing(lane).cloned() else {
             return Ok(());
         };
@@ -283,52 +278,15 @@ impl Crew<'_> {
             .filter(fits)
             .unwrap_or_else(|| Crossings::new(operator, most, limit));
         solo.resume(0, input, &saved);
-        let done = self.parts(&mut solo, mount, stuck, from_s, to_s, 0);
+        let mut alone = Alone {
+            crew: self,
+            lane: &mut solo,
+            mount,
+        };
+        let done = halve(&mut alone, stuck, span_s, 0);
         self.lanes.restore(lane, &solo.save(0));
         self.solo = Some(solo);
         done
-    }
-
-    /// The two halves of a step that did not settle after `halvings` halvings.
-    fn parts(
-        &mut self,
-        solo: &mut Crossings,
-        mount: usize,
-        stuck: NotSettled,
-        from_s: f64,
-        to_s: f64,
-        halvings: usize,
-    ) -> Result<(), AnalysisError> {
-        if halvings == self.solver.settings.bisection_limit {
-            let y_m = &self.solver.design.connectors.y_m;
-            return Err(AnalysisError::NotConverged {
-                time_s: to_s,
-                connector: stuck.connector + 1,
-                joint: stuck.connector / y_m.len() + 2,
-                y_m: y_m[stuck.connector % y_m.len()],
-                bisections: halvings,
-            });
-        }
-        let statistics = solo.statistics(0);
-        statistics.bisections += 1;
-        statistics.newton_iterations += stuck.iterations;
-        let level = self.refinement + halvings + 1;
-        let compliance = self.compliance(mount, level);
-        let middle_s = from_s + 0.5 * (to_s - from_s);
-        for (from_s, to_s) in [(from_s, middle_s), (middle_s, to_s)] {
-            solo.take_compliance(0, Arc::clone(&compliance));
-            solo.place(0, to_s);
-            step(
-                solo,
-                &self.solver.operator,
-                self.solver.level(level),
-                self.solver.settings.newton_limit,
-            );
-            if let Some(stuck) = solo.unsettled(0) {
-                self.parts(solo, mount, stuck, from_s, to_s, halvings + 1)?;
-            }
-        }
-        Ok(())
     }
 
     fn response(&mut self, lane: usize, of: &mut Under<'_>) -> CrossingResponse {
@@ -353,6 +311,47 @@ impl Crew<'_> {
             energy: peaks.energy,
             history_time_s: std::mem::take(&mut of.time_s),
             histories: std::mem::take(&mut of.histories),
+        }
+    }
+}
+
+/// A lane by itself, whose steps are halved.
+struct Alone<'a, 's> {
+    crew: &'a mut Crew<'s>,
+    lane: &'a mut Crossings,
+    mount: usize,
+}
+
+impl Halving for Alone<'_, '_> {
+    fn limit(&self) -> usize {
+        self.crew.solver.settings.bisection_limit
+    }
+
+    fn step(&mut self, to_s: f64, halvings: usize) -> Result<Result<(), NotSettled>, AnalysisError> {
+        let halvings = self.crew.refinement + halvings;
+        let compliance = self.crew.compliance(self.mount, halvings);
+        self.lane.take_compliance(0, compliance);
+        self.lane.place(0, to_s);
+        let solver = self.crew.solver;
+        let limit = solver.settings.newton_limit;
+        step(self.lane, &solver.operator, solver.constants(halvings), limit);
+        Ok(self.lane.unsettled(0).map_or(Ok(()), Err))
+    }
+
+    fn record_bisection(&mut self, stuck: NotSettled) {
+        let statistics = self.lane.statistics(0);
+        statistics.bisections += 1;
+        statistics.newton_iterations += stuck.iterations;
+    }
+
+    fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
+        let y_m = &self.crew.solver.design.connectors.y_m;
+        AnalysisError::NotConverged {
+            time_s,
+            connector: stuck.connector + 1,
+            joint: stuck.connector / y_m.len() + 2,
+            y_m: y_m[stuck.connector % y_m.len()],
+            bisections,
         }
     }
 }

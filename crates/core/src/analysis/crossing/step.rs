@@ -2,19 +2,20 @@
 //!
 //! Knows the balance at alpha and its energies. Does not know when to stop or what is reported.
 
-use super::Level;
+use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
 use crate::bridge::{Bridge, Load, Rider, Track};
 use crate::connector::{Law, State};
 use crate::contact::{ContactProblem, NotSettled};
 use crate::fem::SparseRow;
 use crate::response::StepEnergies;
+use crate::scheme::{Newmark, Scalar};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
 /// The motion at one time, with what the next step and the energy balance need of it.
 #[derive(Debug, Clone)]
-pub(super) struct Instant {
+pub(super) struct Motion {
     pub time_s: f64,
     pub u: Vec<f64>,
     pub v: Vec<f64>,
@@ -35,7 +36,7 @@ pub(super) struct Instant {
     pub spent: StepEnergies,
 }
 
-impl Instant {
+impl Motion {
     pub(super) fn is_finite(&self) -> bool {
         self.spent.kinetic.is_finite() && self.spent.strain.is_finite()
     }
@@ -55,12 +56,12 @@ pub(super) struct Stepper<'a> {
 
 impl Stepper<'_> {
     /// Rest under the vehicle's first place.
-    pub(super) fn at_rest(&self, time_s: f64) -> Instant {
+    pub(super) fn at_rest(&self, time_s: f64) -> Motion {
         let load = self.load(time_s);
         let zero = vec![0.0; self.bridge.dofs()];
         let connectors = self.bridge.connectors.len();
         let riders = load.riders.len();
-        Instant {
+        Motion {
             time_s,
             u: zero.clone(),
             v: zero.clone(),
@@ -81,22 +82,22 @@ impl Stepper<'_> {
     /// One step: predict, meet the contact, correct, account.
     pub(super) fn step(
         &self,
-        level: &Level,
-        old: &Instant,
+        matrix: &StepMatrix,
+        old: &Motion,
         time_s: f64,
         newton_limit: usize,
-    ) -> Result<Instant, NotSettled> {
+    ) -> Result<Motion, NotSettled> {
         let load = self.load(time_s);
-        let s = &level.scheme;
-        let flexibility = &level.flexibility;
+        let s = &matrix.scheme;
+        let flexibility = &matrix.flexibility;
 
         // the step without new connector and inertia forces:  A d = f - M (y_m + b y_v) - K (u_0 + a y_v)
-        let mut d = self.known_forces(level, old);
+        let mut d = self.known_forces(matrix, old);
         flexibility.add_track_force(&load.weight, -(1.0 - s.alpha_f), &mut d);
         flexibility.solve(&mut d);
 
         // the connectors and the riding masses, together
-        let problem = self.contact_problem(level, old, &load, &d);
+        let problem = self.contact_problem(matrix, old, &load, &d);
         let contact = problem.solve(&self.law, &old.states, newton_limit)?;
         for (i, force) in contact.forces.iter().enumerate() {
             flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * force, &mut d);
@@ -109,15 +110,11 @@ impl Stepper<'_> {
 
         // the new instant
         let n = d.len();
-        let mut new = Instant {
+        let mut new = Motion {
             time_s,
-            u: (0..n).map(|i| old.u[i] + d[i]).collect(),
-            v: (0..n)
-                .map(|i| s.c_v * d[i] + s.v_v * old.v[i] + s.v_a * old.a[i])
-                .collect(),
-            a: (0..n)
-                .map(|i| s.c_a * d[i] + s.a_v * old.v[i] + s.a_a * old.a[i])
-                .collect(),
+            u: vec![0.0; n],
+            v: vec![0.0; n],
+            a: vec![0.0; n],
             ku: vec![0.0; n],
             mv: vec![0.0; n],
             ma: vec![0.0; n],
@@ -129,10 +126,14 @@ impl Stepper<'_> {
             newton_iterations: contact.iterations,
             spent: StepEnergies::default(),
         };
+        let newmark = Newmark::of(Scalar, s);
+        for (i, &d) in d.iter().enumerate() {
+            [new.u[i], new.v[i], new.a[i]] = newmark.advance(Scalar, d, [old.u[i], old.v[i], old.a[i]]);
+        }
         self.bridge.times_k.multiply(&new.u, &mut new.ku);
         self.bridge.times_m.multiply(&new.v, &mut new.mv);
         self.bridge.times_m.multiply(&new.a, &mut new.ma);
-        new.spent = self.account(level, old, &new, &d);
+        new.spent = self.account(matrix, old, &new, &d);
         Ok(new)
     }
 
@@ -142,8 +143,8 @@ impl Stepper<'_> {
     }
 
     /// All forces of the balance at alpha that do not wait for the new instant.
-    fn known_forces(&self, level: &Level, old: &Instant) -> Vec<f64> {
-        let (s, Rayleigh { a, b }) = (&level.scheme, self.rayleigh);
+    fn known_forces(&self, matrix: &StepMatrix, old: &Motion) -> Vec<f64> {
+        let (s, Rayleigh { a, b }) = (&matrix.scheme, self.rayleigh);
         let (on_v, on_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
         let y_v: Vec<f64> = old.v.iter().zip(&old.a).map(|(v, a)| on_v * v + on_a * a).collect();
         let mut f = vec![0.0; y_v.len()];
@@ -156,20 +157,20 @@ impl Stepper<'_> {
         for (connector, force) in self.bridge.connectors.iter().zip(&old.forces) {
             connector.row.add_to(-s.alpha_f * force, &mut f);
         }
-        level.flexibility.add_track_force(&old.load.weight, -s.alpha_f, &mut f);
+        matrix.flexibility.add_track_force(&old.load.weight, -s.alpha_f, &mut f);
         for (rider, q) in old.load.riders.iter().zip(&old.inertia) {
-            level.flexibility.add_track_force(&rider.row, -s.alpha_m * q, &mut f);
+            matrix.flexibility.add_track_force(&rider.row, -s.alpha_m * q, &mut f);
         }
         f
     }
 
     /// The small system of the step. Riders are measured in displacement: `q' / ((1 - alpha_m) m c_a) = g . d + known`
     /// with `g = r + (2 V c_v/c_a) r_x + (V^2/c_a) r_xx` and `q' = (1 - alpha_m) q`.
-    fn contact_problem<'l>(&self, level: &'l Level, old: &Instant, load: &Load, d: &[f64]) -> ContactProblem<'l> {
-        let (s, flexibility) = (&level.scheme, &level.flexibility);
+    fn contact_problem<'l>(&self, matrix: &'l StepMatrix, old: &Motion, load: &Load, d: &[f64]) -> ContactProblem<'l> {
+        let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         let connectors = &self.bridge.connectors;
         let (nc, nr) = (connectors.len(), load.riders.len());
-        let measures: Vec<SparseRow> = load.riders.iter().map(|rider| self.measure(level, rider)).collect();
+        let measures: Vec<SparseRow> = load.riders.iter().map(|rider| self.measure(matrix, rider)).collect();
         let mut riders = DMatrix::from_fn(nr, nr, |i, j| {
             flexibility.track_to_track(&measures[i], &load.riders[j].row)
         });
@@ -209,8 +210,8 @@ impl Stepper<'_> {
         }
     }
 
-    fn measure(&self, level: &Level, rider: &Rider) -> SparseRow {
-        let s = &level.scheme;
+    fn measure(&self, matrix: &StepMatrix, rider: &Rider) -> SparseRow {
+        let s = &matrix.scheme;
         match &rider.derivatives {
             None => rider.row.clone(),
             Some((r_x, r_xx)) => {
@@ -226,8 +227,8 @@ impl Stepper<'_> {
 
     /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives
     /// beyond the change of its energy is numerical dissipation.
-    fn account(&self, level: &Level, old: &Instant, new: &Instant, d: &[f64]) -> StepEnergies {
-        let (s, flexibility) = (&level.scheme, &level.flexibility);
+    fn account(&self, matrix: &StepMatrix, old: &Motion, new: &Motion, d: &[f64]) -> StepEnergies {
+        let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         let kinetic = 0.5 * dot(&new.v, &new.mv);
         let strain = 0.5 * dot(&new.u, &new.ku);
         let connectors: f64 = new.elongations.iter().map(|&e| self.law.energy(e)).sum();
@@ -241,7 +242,7 @@ impl Stepper<'_> {
         let springs: f64 = (0..new.forces.len())
             .map(|i| (new.elongations[i] - old.elongations[i]) * s.at_f(new.forces[i], old.forces[i]))
             .sum();
-        let riders = |instant: &Instant| -> f64 {
+        let riders = |instant: &Motion| -> f64 {
             instant
                 .load
                 .riders

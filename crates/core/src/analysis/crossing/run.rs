@@ -2,21 +2,23 @@
 //!
 //! Knows where it is, when it ends and how its state is told. Does not know the step's arithmetic, nor who looks.
 
+use super::halving::{Halving, advance};
 use super::observe::Observer;
-use super::step::{Instant, Stepper};
+use super::step::{Motion, Stepper};
 use super::{CrossingSolver, span};
 use crate::analysis::AnalysisError;
 use crate::analysis::modes::Rayleigh;
 use crate::analysis::snapshot::{Snapshot, connectors, wheels};
+use crate::contact::NotSettled;
 use crate::response::CrossingResponse;
 
 /// A crossing that was begun, see [`CrossingSolver::begin`].
 #[derive(Debug)]
-pub struct UnderWay<'a> {
+pub struct CrossingRun<'a> {
     solver: &'a CrossingSolver,
     stepper: Stepper<'a>,
     observer: Observer<'a>,
-    now: Instant,
+    now: Motion,
     /// Whole steps taken.
     taken: usize,
     /// Steps before t = 0 and all steps.
@@ -24,7 +26,7 @@ pub struct UnderWay<'a> {
     steps: usize,
 }
 
-impl<'a> UnderWay<'a> {
+impl<'a> CrossingRun<'a> {
     pub(super) fn new(
         solver: &'a CrossingSolver,
         stepper: Stepper<'a>,
@@ -35,7 +37,7 @@ impl<'a> UnderWay<'a> {
         let length_m = solver.bridge.design().length_m();
         let (before, after) = span(length_m, stepper.vehicle, h, stepper.speed_m_s, tail_s);
         let now = stepper.at_rest(-(before as f64) * h);
-        observer.note_history(&now);
+        observer.record_history(&now);
         Self {
             solver,
             stepper,
@@ -57,10 +59,8 @@ impl<'a> UnderWay<'a> {
         }
         self.taken += 1;
         let to_s = (self.taken as f64 - self.before as f64) * self.solver.settings.time_step_s;
-        self.now = self
-            .solver
-            .advance(&self.stepper, &mut self.observer, &self.now, to_s, 0)?;
-        self.observer.note_history(&self.now);
+        advance(self, [self.now.time_s, to_s], 0)?;
+        self.observer.record_history(&self.now);
         Ok(true)
     }
 
@@ -88,5 +88,41 @@ impl<'a> UnderWay<'a> {
     /// What it reports of the steps taken.
     pub fn finish(self) -> CrossingResponse {
         self.observer.finish()
+    }
+}
+
+impl Halving for CrossingRun<'_> {
+    fn limit(&self) -> usize {
+        self.solver.settings.bisection_limit
+    }
+
+    fn step(&mut self, to_s: f64, halvings: usize) -> Result<Result<(), NotSettled>, AnalysisError> {
+        let matrix = self.solver.step_matrix(halvings)?;
+        let limit = self.solver.settings.newton_limit;
+        let next = match self.stepper.step(matrix, &self.now, to_s, limit) {
+            Ok(next) => next,
+            Err(stuck) => return Ok(Err(stuck)),
+        };
+        if !next.is_finite() {
+            return Err(AnalysisError::NotFinite { time_s: to_s });
+        }
+        self.observer.record_step(&self.now, &next);
+        self.now = next;
+        Ok(Ok(()))
+    }
+
+    fn record_bisection(&mut self, stuck: NotSettled) {
+        self.observer.record_bisection(stuck.iterations);
+    }
+
+    fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
+        let place = &self.solver.bridge.connectors[stuck.connector];
+        AnalysisError::NotConverged {
+            time_s,
+            connector: stuck.connector + 1,
+            joint: place.joint,
+            y_m: place.y_m,
+            bisections,
+        }
     }
 }
