@@ -16,6 +16,8 @@ CODE_OR_MATH = re.compile(
     r"|\$(?P<inline>[^\s$](?:[^$\n]*[^\s$])?)\$",
     re.DOTALL | re.MULTILINE,
 )
+# The number of an equation, which is set beside it.
+TAG = re.compile(r"\\tag\{([A-Z]\d+)\}")
 # Text between tags, and what Markdown would take for its own there.
 TEXT = re.compile(r"(?<=>)[^<]+")
 HARMLESS = {c: f"&#{ord(c)};" for c in "*_`[]|\\~"}
@@ -29,9 +31,12 @@ def set_equations(text, page):
         tex = match["display"] or match["inline"]
         if tex is None:
             return match[0]
+        number = TAG.search(tex)
+        tex = TAG.sub("", tex)
+        beside = f'<span class="number" id="{number[1]}">({number[1]})</span>' if number else ""
         try:
             mathml = convert.convert_with_local_state(tex.strip(), displaystyle=match["display"] is not None)
-            return TEXT.sub(lambda text: "".join(HARMLESS.get(c, c) for c in text[0]), mathml)
+            return TEXT.sub(lambda text: "".join(HARMLESS.get(c, c) for c in text[0]), mathml) + beside
         except math_core.LatexError as error:
             sys.exit(f"{page}: no equation: {tex.strip()}: {error}")
 

@@ -13,6 +13,9 @@ LINK = re.compile(r"!?\[[^\]]*\]\((?P<to>[^)\s]+)\)")
 INCLUDE = re.compile(r"\{\{#include ([^}]+)\}\}")
 SPAN = re.compile(r"`([^`\n]+)`")
 EQUATION = re.compile(r"\$\$.+?\$\$", re.DOTALL)
+# The number of an equation; where the code cites one.
+TAG = re.compile(r"\\tag\{([A-Z]\d+)\}")
+CITED = re.compile(r"\(([A-Z]\d+)\)")
 HEADING = re.compile(r"^#+ +(.+?)\s*$", re.MULTILINE)
 # What a path in the text may begin with: folders of the repository.
 ROOTS = ("crates/", "studies/", "scripts/", "tests/", "examples/", "book/", "fuzz/", ".ci/")

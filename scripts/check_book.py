@@ -50,6 +50,44 @@ def faults_of_pages(pages, source):
     return faults
 
 
+def faults_of_equations(pages, cited):
+    """Equations of the theory without a number or with another's, and what the code cites too little or too much.
+
+    `cited` has the place of each number that the code cites; none where no code belongs to the pages.
+    """
+    faults, numbers = [], {}
+    for page in pages.values():
+        if not page.name.startswith("theory/"):
+            continue
+        for match in book_pages.EQUATION.finditer(page.text):
+            place = f"{page.name}:{page.text.count(chr(10), 0, match.start()) + 1}"
+            tag = book_pages.TAG.search(match[0])
+            if tag is None:
+                faults.append(f"{place}: an equation without a number")
+            elif tag[1] in numbers:
+                faults.append(f"{place}: equation ({tag[1]}) is at {numbers[tag[1]]} already")
+            else:
+                numbers[tag[1]] = place
+    if cited is None:
+        return faults
+    for name in sorted(set(numbers) - set(cited)):
+        faults.append(f"{numbers[name]}: equation ({name}) is cited nowhere in the code")
+    for name in sorted(set(cited) - set(numbers)):
+        faults.append(f"{cited[name]}: ({name}) is no equation of the theory")
+    return faults
+
+
+def cited_in(folder):
+    """The equations that comments of Rust files cite, each with the first place."""
+    cited = {}
+    for path in sorted(folder.rglob("*.rs")):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            _, comment, text = line.partition("//")
+            for name in book_pages.CITED.findall(text) if comment else []:
+                cited.setdefault(name, f"{path.relative_to(ROOT)}:{number}")
+    return cited
+
+
 def faults_of_patches(source):
     """Patches of the book that do not apply to the sources as they are."""
     faults = []
@@ -199,7 +237,9 @@ def main():
         for page in read:
             page.path.write_text(book_columns.filled(page.text, registry))
         return 0
+    own = source == (ROOT / "book/src").resolve()
     faults = faults_of_pages(pages, source) + faults_of_patches(source)
+    faults += faults_of_equations(pages, cited_in(ROOT / "crates/core/src") if own else None)
     counts = Counter()
     if not arguments.text:
         faults += book_columns.faults(read, book_columns.registered(program()))

@@ -5,6 +5,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+import book_pages
+import check_book
+
 CHECK = Path(__file__).with_name("check_book.py")
 SUMMARY = "# Summary\n\n[One](one.md)\n"
 FENCE = "```"
@@ -124,8 +127,28 @@ def check(pages):
         return done.returncode, done.stdout + done.stderr
 
 
+def wrong_of_equations():
+    """What the check of equations gets wrong."""
+    page = book_pages.Page(Path("theory/one.md"), "theory/one.md", "$$ a \\tag{A1} $$\n\n$$ b \\tag{A2} $$\n")
+    bare = book_pages.Page(Path("theory/two.md"), "theory/two.md", "$$ a $$\n")
+    again = book_pages.Page(Path("theory/two.md"), "theory/two.md", "$$ a \\tag{A1} $$\n")
+    both = {"A1": "a.rs:1", "A2": "a.rs:2"}
+    trials = [
+        ("right", [page], both, 0),
+        ("an equation without a number", [page, bare], both, 1),
+        ("a number twice", [page, again], both, 1),
+        ("an equation that is not cited", [page], {"A1": "a.rs:1"}, 1),
+        ("a citation of none", [page], both | {"A3": "a.rs:3"}, 1),
+    ]
+    found = [
+        (what, check_book.faults_of_equations({str(i): page for i, page in enumerate(pages)}, cited), count)
+        for what, pages, cited, count in trials
+    ]
+    return [f"equations, {what}: {faults}" for what, faults, count in found if len(faults) != count]
+
+
 def main():
-    wrong = []
+    wrong = wrong_of_equations()
     trials = [
         (what, {"SUMMARY.md": SUMMARY, "one.md": right}, {"SUMMARY.md": SUMMARY, "one.md": fault})
         for what, right, fault in TRIALS

@@ -3,6 +3,7 @@
 //! Knows force against elongation. Does not know where the elongation comes from.
 
 /// How the trusses of every connector work in a job.
+/// Equation (J3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Connection {
     /// Both trusses at work at once, without gaps: `N = 2 k e`.
@@ -62,6 +63,7 @@ impl Law {
     }
 
     /// The branch of the law in a state.
+    /// Equation (J2).
     #[inline]
     pub(crate) fn branch(&self, state: State) -> Branch {
         match (state, self.connection) {

@@ -41,6 +41,7 @@ pub(crate) struct Scheme {
 
 impl Scheme {
     /// The constants for a step `h` `[s]` and spectral radius `rho` from 0 to 1.
+    /// Equation (T1).
     pub(crate) fn new(h: f64, rho: f64) -> Self {
         let alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
         let alpha_f = rho / (rho + 1.0);
@@ -62,6 +63,7 @@ impl Scheme {
     }
 
     /// Factors of M, C and K in the matrix of the step.
+    /// Equation (T4).
     pub(crate) fn effective(&self) -> (f64, f64, f64) {
         (
             (1.0 - self.alpha_m) * self.c_a,
@@ -129,7 +131,7 @@ impl Arithmetic for Scalar {
     }
 }
 
-/// Newmark's update (T3): velocity and acceleration at the end of a step in which the displacement changes by d.
+/// Newmark's update (T2): velocity and acceleration at the end of a step in which the displacement changes by d.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Newmark<A: Arithmetic> {
     on_velocity: [A::Number; 3],

@@ -31,6 +31,7 @@ impl SuperElement {
     ///
     /// # Errors
     /// [`FemError`] where the slaves' stiffness is not positive definite: the masters leave a mechanism.
+    /// Equation (P1).
     pub fn condense(
         k: &SymmetricMatrix,
         m: &SymmetricMatrix,

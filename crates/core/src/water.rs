@@ -24,6 +24,7 @@ pub enum WaterDistribution {
 ///
 /// Consistent on a rectangle of area A: `A/36` times 4 on the diagonal, 2 between neighbours, 1 across; lumped: `A/4` on
 /// the diagonal.
+/// Equation (W2).
 pub fn spread(grid: &Grid, per_area: f64, distribution: WaterDistribution) -> Vec<(NodeId, NodeId, f64)> {
     let mut entries = Vec::new();
     for (nodes, area) in grid.bottom_cells() {

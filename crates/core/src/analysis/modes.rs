@@ -126,6 +126,7 @@ fn name_unrestored(bridge: &Bridge, pairs: &mut EigenPairs) {
 }
 
 /// K with the linear connection: `K + sum of 2 k b b^T`.
+/// Equation (M1).
 pub(super) fn linear_stiffness(bridge: &Bridge) -> Result<SymmetricMatrix, AnalysisError> {
     let k = 2.0 * bridge.design().connectors.stiffness_n_m;
     let mut entries: Vec<_> = bridge.k.entries().collect();
@@ -139,6 +140,7 @@ pub(super) fn linear_stiffness(bridge: &Bridge) -> Result<SymmetricMatrix, Analy
 
 /// `a, b` that give `ratio` of critical damping at two frequencies [31-33]:
 /// `ratio = a omega / 2 + b / (2 omega)` at both.
+/// Equation (M2).
 pub fn rayleigh(ratio: f64, frequencies_hz: [f64; 2]) -> Rayleigh {
     let [w1, w2] = frequencies_hz.map(|f| 2.0 * PI * f);
     let a = 2.0 * ratio / (w1 + w2);

@@ -11,6 +11,7 @@ use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 use crate::module::Grid;
 
 /// One connector: where it is and the row of B that gives its elongation.
+/// Equation (J1).
 #[derive(Debug, Clone)]
 pub struct ConnectorPlace {
     /// Position number of the joint, 2 to modules.
@@ -22,6 +23,7 @@ pub struct ConnectorPlace {
 }
 
 /// An assembled bridge: `K`, `M` with ties and supports exact, connectors apart. Shared read-only between jobs and threads.
+/// Equation (K1).
 #[derive(Debug)]
 pub struct Bridge {
     design: BridgeDesign,

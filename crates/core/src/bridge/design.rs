@@ -397,6 +397,7 @@ impl Todd {
     }
 
     /// `m_a = 1/2 pi rho_w C J (B/2)^2` `[kg/m]`.
+    /// Equation (W1).
     pub fn added_mass_kg_m(&self, breadth_m: f64) -> f64 {
         0.5 * std::f64::consts::PI
             * self.water_density_kg_m3

@@ -33,6 +33,7 @@ pub(crate) struct Load {
 
 impl Load {
     /// A vehicle of weight `load_n` with its front at `front_x_m`. A point off the bridge neither loads nor weighs.
+    /// Equation (V1).
     pub(crate) fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64) -> Self {
         let mut load = Self {
             axles: vec![(0.0, true); vehicle.axles],
@@ -82,6 +83,7 @@ impl Load {
 
 /// r_x and r_xx of the row averaged over the part of a patch centred at `x` that is on the bridge: differences of the row
 /// and of its slope between the part's ends, over its length.
+/// Equation (V2).
 fn derivatives(track: &Track, patch: &Patch, x: f64) -> (SparseRow, SparseRow) {
     let mut ys: Vec<f64> = patch.points.iter().map(|p| p.y_m).collect();
     ys.sort_by(f64::total_cmp);

@@ -12,6 +12,7 @@ pub(crate) use warm::WarmContact;
 /// The small system: with `N' = weight N(e)` and the scaled rider forces q',
 ///
 /// `e = e_free - connectors N' - connectors_riders q'`, `riders q' = riders_free - riders_connectors N'`.
+/// Equation (C1).
 #[derive(Debug)]
 pub(crate) struct ContactProblem<'a> {
     /// Elongations without connector and rider forces `[m]`.
@@ -70,6 +71,7 @@ impl ContactProblem<'_> {
     }
 
     /// One Newton solution: the linear system of an active set.
+    /// Equation (C2).
     fn linear(&self, law: &Law, states: &[State]) -> Option<ContactSolution> {
         let active: Vec<usize> = (0..states.len()).filter(|&i| states[i] != State::Open).collect();
         let (na, nr) = (active.len(), self.riders_free.len());

@@ -98,6 +98,7 @@ impl Beam {
     }
 
     /// `Phi = 12 E I / (G A_s L^2)`, 0 without shear deformation.
+    /// Equation (E5).
     fn phi(&self, i: f64) -> f64 {
         let s = &self.section;
         let g = 0.5 * s.youngs_modulus_pa / (1.0 + s.poissons_ratio);

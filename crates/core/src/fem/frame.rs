@@ -113,6 +113,7 @@ impl QuadFrame {
     }
 
     /// Bilinear shape functions `N_i = (1 + xi_i xi)(1 + eta_i eta)/4` at a point.
+    /// Equation (E1).
     pub(super) fn shape(&self, xi: f64, eta: f64) -> ShapeAt {
         let jacobian = self.jacobian(xi, eta);
         let det = jacobian.determinant();

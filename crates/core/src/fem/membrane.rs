@@ -55,6 +55,7 @@ fn strain(at: &ShapeAt) -> SMatrix<f64, 3, 12> {
 }
 
 /// `(eps_x, eps_y, gamma_xy)` of the incompatible modes `(u_1, v_1, u_2, v_2)`.
+/// Equation (E2).
 fn incompatible_strain(centre: &ShapeAt, at: &ShapeAt, xi: f64, eta: f64) -> SMatrix<f64, 3, 4> {
     let mut b = SMatrix::<f64, 3, 4>::zeros();
     let scale = centre.det / at.det;
@@ -69,6 +70,7 @@ fn incompatible_strain(centre: &ShapeAt, at: &ShapeAt, xi: f64, eta: f64) -> SMa
     b
 }
 
+/// Stiffness of rotations about the normal against the membrane. Equation (E3).
 fn drilling(frame: &QuadFrame, section: &ShellSection, centre: &ShapeAt) -> MembraneMatrix {
     let g = section.shear_modulus_pa() * section.thickness_m;
     let row = |at: &ShapeAt| {

@@ -35,6 +35,7 @@ pub(super) fn stiffness(frame: &QuadFrame, section: &ShellSection) -> PlateMatri
 }
 
 /// `(kappa_x, kappa_y, kappa_xy) = (beta_x,x, beta_y,y, beta_x,y + beta_y,x)`.
+/// Equation (E4).
 fn curvature(at: &ShapeAt) -> SMatrix<f64, 3, 12> {
     let mut b = SMatrix::<f64, 3, 12>::zeros();
     for i in 0..4 {

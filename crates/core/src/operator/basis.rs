@@ -63,7 +63,8 @@ pub(super) struct Observed {
 /// Modes of the connector-free bridge up to a cut-off and the residual flexibilities among connectors, deck and observed
 /// rows. Independent of gaps, connector stiffness, damping, speed, load and vehicle; shared read-only.
 ///
-/// `R_ab = a K^-1 b^T - sum of (a phi)(b phi) / omega^2`.
+/// `R_ab = a K^-1 b^T - sum of (a phi)(b phi) / omega^2` (O3).
+/// Equation (O1).
 #[derive(Debug, Clone)]
 pub struct BridgeOperator {
     pub(super) sizes: Sizes,

@@ -69,7 +69,7 @@ impl Connectors {
         *self.half_compliance.at_mut(0, lane) = 0.5 / law.branch(at_work).stiffness;
     }
 
-    /// Trial elongations, without new connector and inertia forces (O8): `e + B Phi d + dr - R_BB ds`, from the
+    /// Trial elongations, without new connector and inertia forces (O4): `e + B Phi d + dr - R_BB ds`, from the
     /// changes of modes, load residuals and connector residuals.
     #[inline(always)]
     pub(super) fn predict<S: Simd>(

@@ -183,7 +183,7 @@ impl Crossings {
         self.most_nodes
     }
 
-    /// Reads what is observed at the step's end (R2).
+    /// Reads what is observed at the step's end.
     #[inline(always)]
     pub(super) fn update_envelope<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, constants: &StepConstants) {
         let motion = (&self.modes, &self.residual, &self.connectors, &self.energy);
@@ -219,7 +219,7 @@ impl Crossings {
         forces.take(per_joint).sum()
     }
 
-    /// Puts the weights of all vehicles where they are at the end of the step (O5).
+    /// Puts the weights of all vehicles where they are at the end of the step (V1).
     #[inline(always)]
     pub(super) fn place_loads(&mut self, operator: &BridgeOperator) {
         for (lane, of) in self.lanes.iter_mut().enumerate() {

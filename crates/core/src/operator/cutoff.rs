@@ -38,6 +38,7 @@ pub(super) struct Judge {
 impl Judge {
     /// The fewest of the pairs whose error is within `tolerance`; none where all are not enough. `shift` is that of the
     /// flexibilities.
+    /// Equation (O5).
     pub(super) fn fewest(&self, pairs: &EigenPairs, shift: f64, tolerance: f64) -> Result<Cutoff, Cutoff> {
         let omega2 = (2.0 * PI * REFERENCE_HZ).powi(2);
         let mut left = self.dynamic.clone();

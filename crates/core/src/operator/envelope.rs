@@ -1,4 +1,4 @@
-//! What is read of every lane after a step (R2): peaks with their times, roll, edges, axle forces.
+//! What is read of every lane after a step: peaks with their times, roll, edges, axle forces.
 //!
 //! Knows the observed rows. Does not know how the motion came about.
 

@@ -97,7 +97,7 @@ impl Lane {
         self.crossing.as_ref().is_some_and(|c| !c.wheels.masses.is_empty())
     }
 
-    /// Puts the weights where the vehicle is at the end of the step (O5).
+    /// Puts the weights where the vehicle is at the end of the step (V1).
     #[inline(always)]
     pub(super) fn place_loads(&mut self, lane: usize, operator: &BridgeOperator, loads: &mut Loads) {
         self.place_weights(operator);

@@ -20,6 +20,7 @@ struct Run {
 }
 
 /// The nodes' motion, one entry a node. Forces are what a node sees of them, `R f`, downward and pulling positive.
+/// Equation (O2).
 #[derive(Debug, Default)]
 pub(super) struct LocalResidual {
     runs: Vec<Run>,

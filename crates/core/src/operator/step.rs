@@ -1,4 +1,4 @@
-//! The step of all lanes (O5) to (O8), (C1), (R1), (R2).
+//! The step of all lanes (V1), (O6), (O7), (O4), (C1), (R1).
 //!
 //! Knows the order of the parts, the same for every lane whatever is beside it. Does not know when a crossing ends.
 
@@ -40,10 +40,10 @@ impl WithSimd for Step<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let (o, operator, constants) = (Ops(simd), self.operator, self.constants);
         let c = self.crossings;
-        c.place_loads(operator); // (O5)
+        c.place_loads(operator); // (V1)
         c.modes.predict(o, constants, &c.loads, c.any_mass()); // (O6)
         c.residual.predict(o, constants, &c.loads, &c.connectors); // (O7)
-        c.connectors.predict(o, constants, &c.modes.d, c.residual.changes()); // (O8)
+        c.connectors.predict(o, constants, &c.modes.d, c.residual.changes()); // (O4)
         let unsettled = c.solve_contact(operator, constants, self.newton_limit); // (C1), (C2)
         let mut terms = Terms::new(o);
         c.connectors.apply(o, constants, &mut c.modes.contact_now);
@@ -52,7 +52,7 @@ impl WithSimd for Step<'_> {
         c.connectors.correct(o, constants, &mut terms);
         c.loads.end_step();
         c.energy.account(o, constants, &terms, c.connectors.energy(o)); // (R1)
-        c.update_envelope(o, operator, constants); // (R2)
+        c.update_envelope(o, operator, constants);
         c.restore_all(unsettled);
     }
 }

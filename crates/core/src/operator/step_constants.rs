@@ -24,7 +24,7 @@ pub(crate) struct StepConstants {
     pub(super) rho: f64,
     pub(super) on_s1: f64,
     pub(super) on_s2: f64,
-    /// Compliance of a step among connectors, `B Phi c Phi^T B^T + rho R_BB` (O9).
+    /// Compliance of a step among connectors, `B Phi c Phi^T B^T + rho R_BB` (O8).
     pub(super) connector_compliance: DMatrix<f64>,
     /// Products with lanes.
     pub(super) panels: Panels,

@@ -42,6 +42,7 @@ pub struct EnergySummary {
 
 impl EnergyBalance {
     /// Takes a step.
+    /// Equation (R1).
     pub fn take(&mut self, step: &StepEnergies) {
         self.rayleigh += step.rayleigh;
         self.numerical += step.numerical;

@@ -143,6 +143,7 @@ impl Stepper<'_> {
     }
 
     /// All forces of the balance at alpha that do not wait for the new instant.
+    /// Equation (T3).
     fn known_forces(&self, matrix: &StepMatrix, old: &Motion) -> Vec<f64> {
         let (s, Rayleigh { a, b }) = (&matrix.scheme, self.rayleigh);
         let (on_v, on_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
@@ -210,6 +211,7 @@ impl Stepper<'_> {
         }
     }
 
+    /// The row by which a rider is measured. Equation (T5).
     fn measure(&self, matrix: &StepMatrix, rider: &Rider) -> SparseRow {
         let s = &matrix.scheme;
         match &rider.derivatives {

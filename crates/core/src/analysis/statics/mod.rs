@@ -72,6 +72,7 @@ impl StaticSolver {
     ///
     /// # Errors
     /// [`AnalysisError::StaticNotConverged`].
+    /// Equation (S1).
     pub fn solve(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
         let (_, contact, u) = self.rest(vehicle, case)?;
         let bridge = &self.bridge;
