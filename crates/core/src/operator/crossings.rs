@@ -14,7 +14,6 @@ use super::local_residual::LocalResidual;
 use super::modes::Modes;
 use super::panel::InstructionPath;
 use super::residual::Residual;
-use super::step::Unsettled;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
 use super::wheel_lines::WheelCompliance;
@@ -46,6 +45,9 @@ pub(crate) struct Saved {
     mass_forces: Vec<StationForce>,
     statistics: Statistics,
 }
+
+/// Lanes that did not settle, as they stood before the step.
+pub(super) type Unsettled = Option<Vec<(usize, Saved)>>;
 
 impl Crossings {
     /// As many lanes as this machine's vectors have, with room for vehicles of `most_nodes` nodes.

@@ -3,7 +3,7 @@
 //! Knows the order of the parts, the same for every lane whatever is beside it. Does not know when a crossing ends.
 
 use super::basis::BridgeOperator;
-use super::crossings::{Crossings, Saved};
+use super::crossings::Crossings;
 use super::energy::Terms;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
@@ -56,6 +56,3 @@ impl WithSimd for Step<'_> {
         c.restore_all(unsettled);
     }
 }
-
-/// Lanes that did not settle, as they stood before the step.
-pub(super) type Unsettled = Option<Vec<(usize, Saved)>>;
