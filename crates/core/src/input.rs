@@ -103,13 +103,13 @@ impl InvalidInput {
         }
     }
 
-    /// The same error with another problem.
+    /// This error with another problem.
     #[must_use]
     pub fn because(self, problem: Problem) -> Self {
         Self { problem, ..self }
     }
 
-    /// The same error with `prefix` put before its key.
+    /// This error with `prefix` put before its key.
     #[must_use]
     pub fn under(mut self, prefix: &str) -> Self {
         self.key = if self.key.is_empty() {

@@ -47,12 +47,12 @@ const RIGID_SHARE: f64 = 0.95;
 pub fn modes(bridge: &Bridge, count: usize) -> Result<(Vec<Mode>, EigenPairs), AnalysisError> {
     let mut pairs = lowest_modes(&linear_stiffness(bridge)?, &bridge.m, count, SHIFT)?;
     name_unrestored(bridge, &mut pairs);
-    let mut names = Names::default();
+    let mut names = ShapeNames::default();
     let modes = (0..pairs.lambda.len())
         .map(|j| {
             let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
             let frequency_hz = pairs.lambda[j].max(0.0).sqrt() / (2.0 * PI);
-            let motion = Motion::of(bridge, &shape);
+            let motion = ShapeMotion::of(bridge, &shape);
             Mode {
                 frequency_hz,
                 name: names.next(&motion, frequency_hz < RIGID_BELOW_HZ),
@@ -175,14 +175,14 @@ pub fn bending_frequencies_hz(free: &Bridge) -> Result<[f64; 2], AnalysisError> 
     missing
 }
 
-/// Names in order of frequency.
+/// ShapeNames in order of frequency.
 #[derive(Default)]
-struct Names {
+struct ShapeNames {
     count: BTreeMap<&'static str, usize>,
 }
 
-impl Names {
-    fn next(&mut self, motion: &Motion, unrestored: bool) -> String {
+impl ShapeNames {
+    fn next(&mut self, motion: &ShapeMotion, unrestored: bool) -> String {
         let families = [
             ("vertical bending", &motion.vertical, Some(("heave", "pitch"))),
             ("torsion", &motion.torsion, Some(("roll", "torsion"))),
@@ -229,14 +229,14 @@ struct Profile {
 
 /// The four motions of the sections in a shape of unit modal mass.
 #[derive(Debug, Clone, Copy, Default)]
-struct Motion {
+struct ShapeMotion {
     vertical: Profile,
     torsion: Profile,
     horizontal: Profile,
     axial: Profile,
 }
 
-impl Motion {
+impl ShapeMotion {
     fn of(bridge: &Bridge, shape: &[f64]) -> Self {
         let design = bridge.design();
         let (mut z, mut roll) = (Vec::new(), Vec::new());

@@ -30,9 +30,9 @@ pub struct Bridge {
     model: Model,
     pub(crate) k: SymmetricMatrix,
     pub(crate) m: SymmetricMatrix,
-    /// Products with `k` and `m`.
+    /// Products with `k`, module by module.
     pub(crate) times_k: ModuleProduct,
-    /// See `times_k`.
+    /// Products with `m`.
     pub(crate) times_m: ModuleProduct,
     /// Connectors, joint after joint, each joint's in the design's order.
     pub(crate) connectors: Vec<ConnectorPlace>,
@@ -42,9 +42,9 @@ pub struct Bridge {
     pub(crate) centre_line: Vec<(f64, SparseRow)>,
     /// z of the deck's two edges.
     pub(crate) edges: Vec<SparseRow>,
-    /// z of the deck's and the bottom's corners.
+    /// z of the deck's corners.
     pub(crate) deck_corners: Vec<SparseRow>,
-    /// See `deck_corners`.
+    /// z of the bottom's corners.
     pub(crate) bottom_corners: Vec<SparseRow>,
     /// Motion along, across and up of each module's eight corners, see [`crate::analysis::modes::shapes`].
     pub(crate) corners: Vec<[SparseRow; 3]>,

@@ -207,7 +207,7 @@ impl Water {
 struct Reduced {
     k: SymmetricMatrix,
     m: SymmetricMatrix,
-    /// See [`PreparedModule::direct`].
+    /// Where each dof of the full module lies in `k` and `m`; none of a dof that is condensed.
     direct: Vec<Option<usize>>,
     condensed: Option<SuperElement>,
 }

@@ -22,7 +22,7 @@ pub struct Provenance {
     pub checks: usize,
     /// Sum of the squares of `(found - expected) / tolerance` at the start.
     pub sum_of_squares_start: f64,
-    /// The same at the end.
+    /// The sum of squares at the end.
     pub sum_of_squares_best: f64,
     /// Why the fit ended.
     pub ending: String,

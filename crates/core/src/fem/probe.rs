@@ -56,7 +56,7 @@ pub(super) fn backward_error(a: &SymmetricMatrix, sizes: &[f64], solve: impl FnO
     residual(a, sizes, &x, &b)
 }
 
-/// The same of any x and b.
+/// The probe of any x and b.
 pub(crate) fn residual(a: &SymmetricMatrix, sizes: &[f64], x: &[f64], b: &[f64]) -> f64 {
     let n = a.order();
     let mut ax = vec![0.0; n];

@@ -2,8 +2,8 @@
 //!
 //! Knows the bridge's matrices and rows. Does not know step lengths, vehicles or connector laws.
 
-use super::cutoff::{Cutoff, Judge};
-use super::persist::{OperatorParts, Reader};
+use super::cutoff::{Cutoff, CutoffJudge};
+use super::persist::{NumberReader, OperatorParts};
 use crate::bridge::{Bridge, Track};
 use crate::fem::{Factor, FemError, SparseRow, SymmetricMatrix, lowest_modes};
 use faer::Mat;
@@ -80,9 +80,9 @@ pub struct BridgeOperator {
     pub(super) v: DMatrix<f64>,
     /// `R_VB`, observed x connectors.
     pub(super) r_vb: DMatrix<f64>,
-    /// Edges inside modules, measured from the straight line between the module's corners: x modes, x connectors.
+    /// Edges inside modules, measured from the straight line between the module's corners, on the modes.
     pub(super) inside: DMatrix<f64>,
-    /// See `inside`.
+    /// Residual of these edges with connectors, `R_DB`.
     pub(super) r_inside_b: DMatrix<f64>,
     /// For each module the largest `sqrt(sum of phi^2 / omega^2)`, `sqrt(R)` and influence of the deck on these rows.
     pub(super) inside_bounds: Vec<[f64; 3]>,
@@ -116,7 +116,7 @@ impl BridgeOperator {
         let dynamic = (0..judged.len())
             .map(|i| bridge.m.form(column(&solved, i), column(&solved, i)))
             .collect();
-        let mut judge = Judge {
+        let mut judge = CutoffJudge {
             flexibility,
             dynamic,
             shapes: Mat::zeros(0, 0),
@@ -139,23 +139,10 @@ impl BridgeOperator {
 
     /// The operator with the modes that a cut-off keeps.
     fn of(bridge: &Bridge, track: Track, factor: &Factor, lambda: &[f64], shapes: &Mat<f64>, cutoff: Cutoff) -> Self {
-        let m = cutoff.modes;
+        let (m, design, lambda) = (cutoff.modes, bridge.design(), &lambda[..cutoff.modes]);
         let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
-        let design = bridge.design();
-        let mut observed = bridge.positions.clone();
-        observed.extend(bridge.deck_corners.iter().cloned());
-        let bottom: &[SparseRow] = if design.draft_m.is_some() {
-            &bridge.bottom_corners
-        } else {
-            &[]
-        };
-        observed.extend(bottom.iter().cloned());
+        let (rows, observed) = observed(bridge);
         let (places, inside) = inside(bridge);
-        let rows = Observed {
-            positions: bridge.positions.len(),
-            corners: bridge.deck_corners.len(),
-            bottom_corners: bottom.len(),
-        };
         let sizes = Sizes {
             modes: m,
             connectors: connectors.len(),
@@ -163,69 +150,25 @@ impl BridgeOperator {
             inside: inside.len() / design.modules,
             modules: design.modules,
         };
-        let modal = |rows: &[SparseRow]| DMatrix::from_fn(rows.len(), m, |i, k| dot(&rows[i], shapes, k));
-        let (b, v, d) = (modal(&connectors), modal(&observed), modal(&inside));
-        let all: Vec<SparseRow> = [&connectors, &observed, &inside]
-            .into_iter()
-            .flatten()
-            .cloned()
-            .collect();
-        let solved = columns(factor, &all);
-        let modal_of = |i: usize, k: usize| match (i.checked_sub(b.nrows()), i.checked_sub(b.nrows() + v.nrows())) {
-            (None, _) => b[(i, k)],
-            (Some(i), None) => v[(i, k)],
-            (_, Some(i)) => d[(i, k)],
-        };
-        // R between a row with its modal values and one of `all`
-        let residual = |row: &SparseRow, own: &dyn Fn(usize) -> f64, other: usize| {
-            let whole = row.dot(column(&solved, other));
-            let of_modes: f64 = (0..m).map(|k| own(k) * modal_of(other, k) / (lambda[k] + SHIFT)).sum();
-            whole - of_modes
-        };
-        let among = |i: usize, j: usize| residual(&all[i], &|k| modal_of(i, k), j);
-        let (nc, nv) = (sizes.connectors, sizes.observed);
-        let deck: Vec<f64> = (0..track.lines() * track.stations())
-            .flat_map(|c| {
-                let row = SparseRow(vec![(track.dof(c), 1.0)]);
-                let phi: Vec<f64> = (0..m).map(|k| shapes[(track.dof(c), k)]).collect();
-                let r: Vec<f64> = (0..all.len()).map(|j| residual(&row, &|k| phi[k], j)).collect();
-                [phi, r].concat()
-            })
-            .collect();
+        let (nc, nv, ni) = (connectors.len(), observed.len(), inside.len());
+        let all = ResidualRows::new(factor, [connectors, observed, inside].concat(), lambda, shapes);
+        let deck = all.deck(&track, shapes);
         let near = track.stations() / design.modules;
-        let r_deck = residual_of_deck(factor, &track, shapes, &lambda[..m], near);
-        let inside_bounds = (0..design.modules)
-            .map(|j| {
-                let own = j * sizes.inside..(j + 1) * sizes.inside;
-                let modal = |i: usize| (0..m).map(|k| d[(i, k)].powi(2) / lambda[k].max(1.0)).sum::<f64>();
-                let influence = deck
-                    .chunks_exact(sizes.influence())
-                    .flat_map(|r| &r[sizes.followed()..][own.clone()]);
-                [
-                    own.clone().map(modal).fold(0.0, f64::max).sqrt(),
-                    own.clone()
-                        .map(|i| among(nc + nv + i, nc + nv + i))
-                        .fold(0.0, f64::max)
-                        .sqrt(),
-                    influence.fold(0.0, |most, r| r.abs().max(most)),
-                ]
-            })
-            .collect();
         Self {
             sizes,
             rows,
             cutoff,
-            omega2: lambda[..m].to_vec(),
-            r_bb: DMatrix::from_fn(nc, nc, |i, j| among(i.min(j), i.max(j))),
-            r_vb: DMatrix::from_fn(nv, nc, |i, j| among(nc + i, j)),
-            r_inside_b: DMatrix::from_fn(inside.len(), nc, |i, j| among(nc + nv + i, j)),
-            inside_bounds,
-            r_deck,
+            omega2: lambda.to_vec(),
+            r_bb: DMatrix::from_fn(nc, nc, |i, j| all.among(i.min(j), i.max(j))),
+            r_vb: DMatrix::from_fn(nv, nc, |i, j| all.among(nc + i, j)),
+            r_inside_b: DMatrix::from_fn(ni, nc, |i, j| all.among(nc + nv + i, j)),
+            inside_bounds: all.bounds(&sizes, &deck),
+            r_deck: residual_of_deck(factor, &track, shapes, lambda, near),
             near,
             breadth_m: design.module.breadth_m,
-            b,
-            v,
-            inside: d,
+            b: all.phi.rows(0, nc).into_owned(),
+            v: all.phi.rows(nc, nv).into_owned(),
+            inside: all.phi.rows(nc + nv, ni).into_owned(),
             places,
             deck,
             track,
@@ -295,55 +238,26 @@ impl BridgeOperator {
 
     /// The operator of `bridge` from its numbers; none where they do not fit the bridge.
     pub fn from_parts(bridge: &Bridge, parts: &OperatorParts) -> Option<Self> {
-        let counts: Vec<usize> = parts
-            .counts
-            .iter()
-            .map(|&n| usize::try_from(n).ok())
-            .collect::<Option<_>>()?;
-        let &[
-            modes,
-            connectors,
-            observed,
-            inside,
-            modules,
-            positions,
-            corners,
-            bottom_corners,
-            near,
-        ] = &counts[..]
-        else {
-            return None;
-        };
-        let (track, design) = (Track::new(bridge), bridge.design());
-        let sizes = Sizes {
-            modes,
-            connectors,
-            observed,
-            inside,
-            modules,
-        };
-        let fits = modules == design.modules
-            && connectors == bridge.connectors.len()
-            && positions == bridge.positions.len()
-            && corners == bridge.deck_corners.len()
-            && observed == positions + corners + bottom_corners
-            && near == track.stations() / modules
-            && modes <= bridge.dofs();
-        if !fits {
+        let (sizes, rows, near) = counts(parts)?;
+        let track = Track::new(bridge);
+        if !fits(bridge, &sizes, &rows) || near != track.stations() / sizes.modules {
             return None;
         }
-        let mut r = Reader::new(&parts.numbers);
+        let Sizes {
+            modes,
+            connectors,
+            observed,
+            ..
+        } = sizes;
+        let inside = sizes.inside * sizes.modules;
         let nodes = track.lines() * track.stations();
+        let mut r = NumberReader::new(&parts.numbers);
         let &[frequency_hz, tolerance, error, breadth_m] = &r.list(4)?[..] else {
             return None;
         };
         let operator = Self {
             sizes,
-            rows: Observed {
-                positions,
-                corners,
-                bottom_corners,
-            },
+            rows,
             cutoff: Cutoff {
                 modes,
                 frequency_hz,
@@ -355,18 +269,145 @@ impl BridgeOperator {
             r_bb: r.matrix(connectors, connectors)?,
             v: r.matrix(observed, modes)?,
             r_vb: r.matrix(observed, connectors)?,
-            inside: r.matrix(inside * modules, modes)?,
-            r_inside_b: r.matrix(inside * modules, connectors)?,
-            places: r.list(inside / 2)?,
+            inside: r.matrix(inside, modes)?,
+            r_inside_b: r.matrix(inside, connectors)?,
+            places: r.list(sizes.inside / 2)?,
             deck: r.list(nodes * sizes.influence())?,
             r_deck: r.list(nodes * track.lines() * (2 * near + 1))?,
-            inside_bounds: r.list(3 * modules)?.as_chunks().0.to_vec(),
+            inside_bounds: r.list(3 * sizes.modules)?.as_chunks().0.to_vec(),
             near,
             track,
             breadth_m,
         };
         r.is_empty().then_some(operator)
     }
+}
+
+/// The counts of an operator's numbers, and how many stations are near.
+fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
+    let counts = parts.counts.iter().map(|&n| usize::try_from(n).ok());
+    let counts: Vec<usize> = counts.collect::<Option<_>>()?;
+    let &[
+        modes,
+        connectors,
+        observed,
+        inside,
+        modules,
+        positions,
+        corners,
+        bottom_corners,
+        near,
+    ] = &counts[..]
+    else {
+        return None;
+    };
+    let sizes = Sizes {
+        modes,
+        connectors,
+        observed,
+        inside,
+        modules,
+    };
+    let rows = Observed {
+        positions,
+        corners,
+        bottom_corners,
+    };
+    Some((sizes, rows, near))
+}
+
+/// Whether counts are those of a bridge.
+fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
+    sizes.modules == bridge.design().modules
+        && sizes.connectors == bridge.connectors.len()
+        && rows.positions == bridge.positions.len()
+        && rows.corners == bridge.deck_corners.len()
+        && sizes.observed == rows.positions + rows.corners + rows.bottom_corners
+        && sizes.modes <= bridge.dofs()
+}
+
+/// Rows of connectors, observed rows and edges inside modules, with what the modes leave out between them (O3).
+struct ResidualRows<'a> {
+    rows: Vec<SparseRow>,
+    /// Their values on the modes.
+    phi: DMatrix<f64>,
+    /// `K^-1` of each.
+    solved: Mat<f64>,
+    lambda: &'a [f64],
+}
+
+impl<'a> ResidualRows<'a> {
+    fn new(factor: &Factor, rows: Vec<SparseRow>, lambda: &'a [f64], shapes: &Mat<f64>) -> Self {
+        Self {
+            phi: DMatrix::from_fn(rows.len(), lambda.len(), |i, k| dot(&rows[i], shapes, k)),
+            solved: columns(factor, &rows),
+            rows,
+            lambda,
+        }
+    }
+
+    /// R between a row with its modal values and one of these.
+    fn between(&self, row: &SparseRow, own: &dyn Fn(usize) -> f64, other: usize) -> f64 {
+        let whole = row.dot(column(&self.solved, other));
+        let of_mode = |(k, lambda): (usize, &f64)| own(k) * self.phi[(other, k)] / (lambda + SHIFT);
+        let of_modes: f64 = self.lambda.iter().enumerate().map(of_mode).sum();
+        whole - of_modes
+    }
+
+    /// R between two of these.
+    fn among(&self, i: usize, j: usize) -> f64 {
+        self.between(&self.rows[i], &|k| self.phi[(i, k)], j)
+    }
+
+    /// For each track column its influence: `phi`, then R with all rows.
+    fn deck(&self, track: &Track, shapes: &Mat<f64>) -> Vec<f64> {
+        let influence = |c: usize| {
+            let row = SparseRow(vec![(track.dof(c), 1.0)]);
+            let phi: Vec<f64> = (0..self.lambda.len()).map(|k| shapes[(track.dof(c), k)]).collect();
+            let r = (0..self.rows.len()).map(|j| self.between(&row, &|k| phi[k], j));
+            let r: Vec<f64> = r.collect();
+            [phi, r].concat()
+        };
+        (0..track.lines() * track.stations()).flat_map(influence).collect()
+    }
+
+    /// Bounds of the edges inside each module, see [`BridgeOperator::inside_bounds`].
+    fn bounds(&self, sizes: &Sizes, deck: &[f64]) -> Vec<[f64; 3]> {
+        let first = sizes.connectors + sizes.observed;
+        let modal = |i: usize| {
+            let of_mode = |(k, lambda): (usize, &f64)| self.phi[(first + i, k)].powi(2) / lambda.max(1.0);
+            self.lambda.iter().enumerate().map(of_mode).sum::<f64>()
+        };
+        let of_module = |j: usize| {
+            let own = j * sizes.inside..(j + 1) * sizes.inside;
+            let influence = deck
+                .chunks_exact(sizes.influence())
+                .flat_map(|r| &r[sizes.followed()..][own.clone()]);
+            let residual = own.clone().map(|i| self.among(first + i, first + i));
+            [
+                own.clone().map(modal).fold(0.0, f64::max).sqrt(),
+                residual.fold(0.0, f64::max).sqrt(),
+                influence.fold(0.0, |most, r| r.abs().max(most)),
+            ]
+        };
+        (0..sizes.modules).map(of_module).collect()
+    }
+}
+
+/// The rows that are followed through every step: positions, deck corners, and where a draft is given bottom corners.
+fn observed(bridge: &Bridge) -> (Observed, Vec<SparseRow>) {
+    let bottom: &[SparseRow] = if bridge.design().draft_m.is_some() {
+        &bridge.bottom_corners
+    } else {
+        &[]
+    };
+    let rows = Observed {
+        positions: bridge.positions.len(),
+        corners: bridge.deck_corners.len(),
+        bottom_corners: bottom.len(),
+    };
+    let parts: [&[SparseRow]; 3] = [&bridge.positions, &bridge.deck_corners, bottom];
+    (rows, parts.concat())
 }
 
 /// R among the deck's nodes: for each column `lines * (2 near + 1)` numbers.

@@ -240,7 +240,7 @@ fn factor(a: &mut [f64], lower: &mut [f64], stride: usize, n: usize) {
     }
 }
 
-/// The same of a symmetric matrix: its upper half is enough.
+/// `A = L U` of a symmetric matrix, whose upper half is enough.
 #[inline(always)]
 fn factor_symmetric(a: &mut [f64], lower: &mut [f64], stride: usize, n: usize) {
     let end = n.next_multiple_of(CHUNK);

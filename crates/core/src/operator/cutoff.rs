@@ -26,7 +26,7 @@ pub struct Cutoff {
 }
 
 /// The rows by which the cut-off is judged: their modal values and their whole flexibilities.
-pub(super) struct Judge {
+pub(super) struct CutoffJudge {
     /// `r K^-1 r^T` of each row.
     pub flexibility: Vec<f64>,
     /// `r K^-1 M K^-1 r^T` of each row.
@@ -35,7 +35,7 @@ pub(super) struct Judge {
     pub shapes: Mat<f64>,
 }
 
-impl Judge {
+impl CutoffJudge {
     /// The fewest of the pairs whose error is within `tolerance`; none where all are not enough. `shift` is that of the
     /// flexibilities.
     /// Equation (O5).
@@ -96,7 +96,7 @@ mod tests {
         };
         let inverse = k.clone().try_inverse().expect("grounded");
         let pairs = lowest_modes(&sparse(&k), &sparse(&m), n, 1.0).expect("modes");
-        let judge = Judge {
+        let judge = CutoffJudge {
             flexibility: (0..n).map(|i| inverse[(i, i)]).collect(),
             dynamic: (0..n)
                 .map(|i| (0..n).map(|j| mass(j) * inverse[(j, i)].powi(2)).sum())

@@ -46,7 +46,7 @@ impl LaneArray {
         self.numbers[row * self.lanes + lane]
     }
 
-    /// The same, to be written.
+    /// A lane's number in a row, to be written.
     #[inline(always)]
     pub(super) fn at_mut(&mut self, row: usize, lane: usize) -> &mut f64 {
         &mut self.numbers[row * self.lanes + lane]
@@ -58,7 +58,7 @@ impl LaneArray {
         self.numbers.iter().skip(lane).step_by(self.lanes).copied()
     }
 
-    /// The same, to be written.
+    /// A lane's numbers, to be written.
     #[inline(always)]
     pub(super) fn lane_mut(&mut self, lane: usize) -> impl Iterator<Item = &mut f64> {
         self.numbers.iter_mut().skip(lane).step_by(self.lanes)

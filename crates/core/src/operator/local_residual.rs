@@ -11,7 +11,7 @@ use crate::scheme::{Newmark, Scalar, Scheme};
 
 /// Stations of a line side by side, the vehicle's own and one more at each end.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct NodeRun {
     line: usize,
     first: usize,
     count: usize,
@@ -23,7 +23,7 @@ struct Run {
 /// Equation (O2).
 #[derive(Debug, Default)]
 pub(super) struct LocalResidual {
-    runs: Vec<Run>,
+    runs: Vec<NodeRun>,
     x: [Vec<f64>; 3],
     /// Of weights, inertia and connectors at the last step.
     weights: Vec<f64>,
@@ -127,7 +127,7 @@ impl LocalResidual {
                 }
             }
             if new {
-                self.runs.push(Run {
+                self.runs.push(NodeRun {
                     line: node.line,
                     first: node.station,
                     count: 1,
@@ -168,7 +168,7 @@ impl LocalResidual {
 
     /// A run's motion: that of nodes known before, rest of the others.
     #[inline(always)]
-    fn take_over(&mut self, run: Run, old: &Self, wheels: &WheelLines, modes: usize, pressing: StepForces) {
+    fn take_over(&mut self, run: NodeRun, old: &Self, wheels: &WheelLines, modes: usize, pressing: StepForces) {
         let (mut lo, mut hi) = (run.first, run.first);
         for before in &old.runs {
             if before.line == run.line {
@@ -244,7 +244,7 @@ impl LocalResidual {
 
 /// Adds what nodes see of a force on a station.
 #[inline(always)]
-fn press(runs: &[Run], seen: &mut [f64], wheels: &WheelLines, line: usize, station: usize, force: f64) {
+fn press(runs: &[NodeRun], seen: &mut [f64], wheels: &WheelLines, line: usize, station: usize, force: f64) {
     let band = wheels.band;
     for run in runs {
         let lo = run.first.max(station.saturating_sub(band));

@@ -25,7 +25,7 @@ struct MovingMass {
 
 /// MovingMasses on stations of a line side by side.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct MassRun {
     line: usize,
     first: usize,
     count: usize,
@@ -35,7 +35,7 @@ struct Run {
 
 /// A point of a patch between a node and the next.
 #[derive(Debug, Clone, Copy)]
-struct Point {
+struct MassPoint {
     node: usize,
     part: f64,
     mass_kg: f64,
@@ -74,18 +74,18 @@ impl FreeMotion {
 
 /// The masses of one lane at one instant.
 ///
-/// Point masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
+/// MassPoint masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
 /// as many masses D as stations, on rows of two entries, stand for any number of points exactly.
 #[derive(Debug)]
 pub(super) struct MovingMasses {
     connectors: usize,
     nodes: Vec<DeckNode>,
     list: Vec<MovingMass>,
-    points: Vec<Point>,
+    points: Vec<MassPoint>,
     force: Vec<(usize, f64)>,
     slopes: Vec<(usize, f64, f64)>,
     /// MovingMasses on a station and the next, where all are; and the second entry of the row of each.
-    runs: Vec<Run>,
+    runs: Vec<MassRun>,
     nexts: Vec<f64>,
     /// Tridiagonal mass matrix of a line: diagonal and the entry to the next station.
     line: Vec<(f64, f64)>,
@@ -181,6 +181,21 @@ impl MovingMasses {
     /// `u''` of the deck under each point: the line's mass matrix and its factors.
     #[inline(always)]
     fn place_line(&mut self, line: usize, of: &WheelLine, track: &Track, load_n: f64, front_x_m: f64) {
+        let first = self.gather_line(of, track, load_n, front_x_m);
+        let base = self.nodes.len();
+        for at in 0..self.line.len() {
+            let station = first + at;
+            self.nodes.push(DeckNode { line, station });
+            let mass_kg = self.factor_line(at);
+            if mass_kg > 0.0 {
+                self.add_mass(DeckNode { line, station }, base + at, mass_kg, self.line[at].1);
+            }
+        }
+    }
+
+    /// The mass matrix of a line's points, and its first station.
+    #[inline(always)]
+    fn gather_line(&mut self, of: &WheelLine, track: &Track, load_n: f64, front_x_m: f64) -> usize {
         self.line.clear();
         let base = self.nodes.len();
         let mut first = 0;
@@ -198,56 +213,60 @@ impl MovingMasses {
             self.line[at].0 += mass_kg * (1.0 - s) * (1.0 - s);
             self.line[at].1 += mass_kg * s * (1.0 - s);
             self.line[at + 1].0 += mass_kg * s * s;
-            self.points.push(Point {
+            self.points.push(MassPoint {
                 node: base + at,
                 part: s,
                 mass_kg,
                 axle,
             });
         }
-        for at in 0..self.line.len() {
-            self.nodes.push(DeckNode {
-                line,
-                station: first + at,
-            });
-            let (whole, next) = self.line[at];
-            let mut taken = 0.0;
-            if at > 0 {
-                let (before, coupling) = self.line[at - 1];
-                taken = if before > 0.0 {
-                    coupling * coupling / before
-                } else {
-                    0.0
-                };
-            }
-            let left = whole - taken;
-            // fewer points than stations: what is left is rounding
-            let mass_kg = if left > 1e-12 * whole { left } else { 0.0 };
-            self.line[at].0 = mass_kg;
-            if mass_kg > 0.0 {
-                let from = self.force.len();
-                self.force.push((base + at, 1.0));
-                if next != 0.0 {
-                    self.force.push((base + at + 1, next / mass_kg));
-                }
-                match self.runs.last_mut() {
-                    Some(run) if run.line == line && run.first + run.count == first + at => run.count += 1,
-                    _ => self.runs.push(Run {
-                        line,
-                        first: first + at,
-                        from: self.list.len(),
-                        count: 1,
-                    }),
-                }
-                self.nexts.push(next / mass_kg);
-                self.list.push(MovingMass {
-                    mass_kg,
-                    axle: 0,
-                    force: (from, self.force.len()),
-                    slopes: (0, 0),
-                });
-            }
+        first
+    }
+
+    /// The mass of a station in `M = V D V^T`, in place of its diagonal entry.
+    #[inline(always)]
+    fn factor_line(&mut self, at: usize) -> f64 {
+        let whole = self.line[at].0;
+        let mut taken = 0.0;
+        if at > 0 {
+            let (before, coupling) = self.line[at - 1];
+            taken = if before > 0.0 {
+                coupling * coupling / before
+            } else {
+                0.0
+            };
         }
+        let left = whole - taken;
+        // fewer points than stations: what is left is rounding
+        let mass_kg = if left > 1e-12 * whole { left } else { 0.0 };
+        self.line[at].0 = mass_kg;
+        mass_kg
+    }
+
+    /// A mass on the row of a station and of the next, to which the matrix has the entry `next`.
+    #[inline(always)]
+    fn add_mass(&mut self, DeckNode { line, station }: DeckNode, node: usize, mass_kg: f64, next: f64) {
+        let from = self.force.len();
+        self.force.push((node, 1.0));
+        if next != 0.0 {
+            self.force.push((node + 1, next / mass_kg));
+        }
+        match self.runs.last_mut() {
+            Some(run) if run.line == line && run.first + run.count == station => run.count += 1,
+            _ => self.runs.push(MassRun {
+                line,
+                first: station,
+                from: self.list.len(),
+                count: 1,
+            }),
+        }
+        self.nexts.push(next / mass_kg);
+        self.list.push(MovingMass {
+            mass_kg,
+            axle: 0,
+            force: (from, self.force.len()),
+            slopes: (0, 0),
+        });
     }
 
     /// The patches' means, measured by `r u'' + 2 V r_x u' + V^2 r_xx u`; the derivatives are differences of the row and of
@@ -336,16 +355,7 @@ impl MovingMasses {
         let s = &constants.scheme;
         let (on_x, on_xx) = (2.0 * speed_m_s / s.c_a, speed_m_s * speed_m_s / s.c_a);
         let convective = !self.slopes.is_empty();
-        self.dots.clear();
-        for node in &self.nodes {
-            let phi = &wheels.masses[node.line].influence(node.station, wheels.influence_width)[..modes];
-            let [a, v, x] = self.local.free(*node, s);
-            self.dots.push(if convective {
-                [a + dot(phi, &free.a), v + dot(phi, &free.v), x + dot(phi, &free.q)]
-            } else {
-                [a + dot(phi, &free.a), 0.0, 0.0]
-            });
-        }
+        self.free_nodes(wheels, constants, modes, free);
         if self.runs.is_empty() {
             self.see_rows(compliance);
         } else {
@@ -380,6 +390,22 @@ impl MovingMasses {
             }
             self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * mass.mass_kg * s.c_a);
             self.free[i] = free;
+        }
+    }
+
+    /// Free motion of the nodes, without new connector and inertia forces.
+    #[inline(always)]
+    fn free_nodes(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, free: &FreeMotion) {
+        let convective = !self.slopes.is_empty();
+        self.dots.clear();
+        for node in &self.nodes {
+            let phi = &wheels.masses[node.line].influence(node.station, wheels.influence_width)[..modes];
+            let [a, v, x] = self.local.free(*node, &constants.scheme);
+            self.dots.push(if convective {
+                [a + dot(phi, &free.a), v + dot(phi, &free.v), x + dot(phi, &free.q)]
+            } else {
+                [a + dot(phi, &free.a), 0.0, 0.0]
+            });
         }
     }
 

@@ -17,9 +17,9 @@ pub struct OperatorParts {
 }
 
 /// Takes numbers off the front.
-pub(super) struct Reader<'a>(&'a [f64]);
+pub(super) struct NumberReader<'a>(&'a [f64]);
 
-impl<'a> Reader<'a> {
+impl<'a> NumberReader<'a> {
     pub(super) fn new(numbers: &'a [f64]) -> Self {
         Self(numbers)
     }

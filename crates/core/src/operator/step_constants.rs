@@ -65,7 +65,7 @@ pub(super) struct Panels {
     pub r_bb: Panel,
     /// `[V Phi, -R_VB]`.
     pub v: Panel,
-    /// The same of the edges inside each module.
+    /// `[D Phi, -R_DB]` of the edges inside each module.
     pub inside: Vec<Panel>,
 }
 

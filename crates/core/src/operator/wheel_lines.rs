@@ -116,7 +116,7 @@ impl WheelLines {
         self.masses.len() * (self.band + 1)
     }
 
-    /// The same of a vehicle that is not on the deck yet, or more.
+    /// No fewer nodes than a vehicle takes that is not on the deck yet.
     pub(crate) fn most_nodes_of(operator: &BridgeOperator, vehicle: &Vehicle) -> usize {
         let mut lines: Vec<f64> = vehicle.points().map(|p| p.y_m).collect();
         lines.sort_by(f64::total_cmp);

@@ -112,7 +112,7 @@ impl StaticSolver {
         })
     }
 
-    /// The same as the whole state of the bridge.
+    /// The static case as the whole state of the bridge.
     ///
     /// # Errors
     /// As [`Self::solve`].
