@@ -429,8 +429,16 @@ def opensees_statics(bridge, shell, connection):
 # ---- the chain in OpenSees
 
 
+# Stiffness that stands for a hinge where a constraint may not [N/m]: 150 times an element's own.
+HINGE_N_M = 1e12
+
+
 class ChainPeer:
-    """The plane chain in OpenSees' domain; dofs x, z, rotation."""
+    """The plane chain in OpenSees' domain; dofs x, z, rotation.
+
+    Posts are stiff beams on every node of the line. With `"posts": "rigid"` they are rigid links at the module ends
+    alone, as somebody would script it; their nodes cannot be tied at the hinges as well, which are stiff springs then.
+    """
 
     def __init__(self, chain, connection):
         self.parts, self.modules = chain["elements_along_module"], chain["modules"]
@@ -448,11 +456,12 @@ class ChainPeer:
         k = chain["connectors"]["stiffness_of_a_joint_n_m"]
         law, *numbers = connector_law(connection, k, chain["connectors"])
         ops.uniaxialMaterial(law, 3, *numbers)
+        ops.uniaxialMaterial("Elastic", 4, HINGE_N_M)
+        rigid = chain.get("posts") == "rigid"
         for module in range(self.modules):
             for i in range(self.parts + 1):
                 node, x = self.node(module, i), module * chain["module_length_m"] + i * self.element_m
                 ops.node(node, x, 0.0)
-                ops.node(tops + node, x, depth_m)
                 ops.node(grounds + node, x, 0.0)
                 ops.fix(grounds + node, 1, 1, 1)
                 share = 1 if i in (0, self.parts) else 2
@@ -460,16 +469,21 @@ class ChainPeer:
                 ops.element(
                     "zeroLength", next(elements), grounds + node, node, "-mat", share, "-dir", 2, "-doRayleigh", 1
                 )
-                ops.element(
-                    "elasticBeamColumn",
-                    next(elements),
-                    node,
-                    tops + node,
-                    post["area_m2"],
-                    post["youngs_modulus_pa"],
-                    post["second_moment_m4"],
-                    1,
-                )
+                if not rigid:
+                    ops.node(tops + node, x, depth_m)
+                    ops.element(
+                        "elasticBeamColumn",
+                        next(elements),
+                        node,
+                        tops + node,
+                        post["area_m2"],
+                        post["youngs_modulus_pa"],
+                        post["second_moment_m4"],
+                        1,
+                    )
+                elif i in (0, self.parts):
+                    ops.node(tops + node, x, depth_m)
+                    ops.rigidLink("beam", node, tops + node)
                 if i:
                     ops.element(
                         "elasticBeamColumn",
@@ -487,7 +501,10 @@ class ChainPeer:
         self.connectors = []
         for module in range(1, self.modules):
             left, right = self.node(module - 1, self.parts), self.node(module, 0)
-            ops.equalDOF(left, right, 1, 2)
+            if rigid:
+                ops.element("zeroLength", next(elements), left, right, "-mat", 4, 4, "-dir", 1, 2)
+            else:
+                ops.equalDOF(left, right, 1, 2)
             self.connectors.append(next(elements))
             ops.element("zeroLength", self.connectors[-1], tops + left, tops + right, "-mat", 3, "-dir", 1)
         ops.fix(self.node(0, 0), 1, 1, 0)

@@ -15,10 +15,10 @@
 #![allow(clippy::expect_used)]
 
 use pontoon_core::analysis::crossing::Crossing;
-use pontoon_core::operator::InstructionPath;
+use pontoon_core::operator::{InstructionPath, StepClock, StepPart};
 use pontoon_core::response::{CrossingResponse, Quantity};
 use pontoon_core::vehicle::{Inertia, Vehicle};
-use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, vehicle};
+use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, vehicle, vehicle_off_centre};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::{Value, json};
 use std::hint::black_box;
@@ -53,6 +53,7 @@ fn main() {
             "observed_rows": sizes.observed,
         },
         "crossings": crossings,
+        "breakdown": breakdown(&scenario, seconds),
         "peak_flop_per_s": peak_flop_per_s(seconds),
     });
     println!("{report}");
@@ -104,6 +105,103 @@ fn figures(scenario: &Scenario, sizes: &Sizes, vehicle: &Vehicle, crossing: &Cro
         "full_step_s": full_s / steps / jobs.len() as f64,
         "flop_per_step": sizes.flop_per_step(active),
     })
+}
+
+/// Where the time of a step goes at 15 m/s: weight only, `local` and `convective`, on the centre line and off it, one lane at work
+/// and all of them.
+fn breakdown(scenario: &Scenario, seconds: f64) -> Vec<Value> {
+    let crossing = scenario.crossing(15.0, scenario.everything());
+    let lanes = InstructionPath::of_this_machine().lanes;
+    let mut cases = Vec::new();
+    for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
+        for (place, vehicle) in [
+            ("centred", vehicle(inertia)),
+            ("off the centre", vehicle_off_centre(inertia)),
+        ] {
+            for at_work in [1, lanes] {
+                let jobs = vec![(&vehicle, &crossing); at_work];
+                cases.push(json!({
+                    "inertia": inertia,
+                    "place": place,
+                    "lanes": at_work,
+                    "parts": parts(scenario, &jobs, seconds),
+                }));
+            }
+        }
+    }
+    cases
+}
+
+/// Seconds and operations of each part of a step, of one crossing of those that are solved side by side.
+fn parts(scenario: &Scenario, jobs: &[(&Vehicle, &Crossing)], seconds: f64) -> Vec<Value> {
+    let begun = Instant::now();
+    let mut least: Option<Laps> = None;
+    while least.is_none() || begun.elapsed().as_secs_f64() < seconds {
+        let mut laps = Laps::default();
+        black_box(scenario.solver.solve_all_timed(jobs, 0, &mut laps));
+        if least.as_ref().is_none_or(|known| laps.total_s() < known.total_s()) {
+            least = Some(laps);
+        }
+    }
+    let laps = least.unwrap_or_default();
+    let of = (laps.steps * jobs.len()) as f64;
+    let part = |part: StepPart| {
+        let i = part as usize;
+        // what all lanes do at once is counted for one, what each does by itself for all
+        let crossings = match part {
+            StepPart::Loads | StepPart::RidingMasses | StepPart::Contact | StepPart::GatherAndScatter => of,
+            _ => of / jobs.len() as f64,
+        };
+        json!({ "part": format!("{part:?}"), "seconds": laps.seconds[i] / of, "flop": laps.flop[i] / crossings })
+    };
+    StepPart::ALL.map(part).to_vec()
+}
+
+/// A clock that is looked at between the parts of all steps.
+struct Laps {
+    last: Instant,
+    /// What a look at the clock takes.
+    look_s: f64,
+    steps: usize,
+    seconds: [f64; StepPart::ALL.len()],
+    flop: [f64; StepPart::ALL.len()],
+}
+
+impl Laps {
+    fn total_s(&self) -> f64 {
+        self.seconds.iter().sum()
+    }
+}
+
+impl Default for Laps {
+    fn default() -> Self {
+        const LOOKS: u32 = 1000;
+        let begun = Instant::now();
+        for _ in 0..LOOKS {
+            black_box(Instant::now());
+        }
+        Self {
+            last: Instant::now(),
+            look_s: begun.elapsed().as_secs_f64() / f64::from(LOOKS),
+            steps: 0,
+            seconds: [0.0; StepPart::ALL.len()],
+            flop: [0.0; StepPart::ALL.len()],
+        }
+    }
+}
+
+impl StepClock for Laps {
+    fn begin(&mut self) {
+        self.steps += 1;
+        self.last = Instant::now();
+    }
+
+    fn lap(&mut self, part: StepPart, flop: impl FnOnce() -> f64) {
+        let now = Instant::now();
+        self.seconds[part as usize] += ((now - self.last).as_secs_f64() - self.look_s).max(0.0);
+        self.flop[part as usize] += flop();
+        self.last = Instant::now();
+    }
 }
 
 /// Crossings that a lane takes one after the other.

@@ -123,3 +123,8 @@ impl Default for Scenario {
 pub fn vehicle(inertia: Inertia) -> Vehicle {
     footprint(&[-1.4, 1.4], inertia)
 }
+
+/// The paper's vehicle, a metre and a half off the centre line.
+pub fn vehicle_off_centre(inertia: Inertia) -> Vehicle {
+    footprint(&[0.1, 2.9], inertia)
+}

@@ -105,6 +105,11 @@ impl Connectors {
         panels.r_bb.multiply_listed(o, &self.active, n, rn);
     }
 
+    /// Operations of [`Connectors::apply`] on so many modes, a lane.
+    pub(super) fn flop_of_application(&self, modes: usize) -> f64 {
+        (2 * self.active.len() * (modes + self.count())) as f64
+    }
+
     /// The step's end: what the connectors took up, and the new forces in place of the old.
     #[inline(always)]
     pub(super) fn correct<S: Simd>(&mut self, o: Ops<S>, constants: &StepConstants, terms: &mut Terms<S>) {

@@ -93,6 +93,17 @@ impl ContactSystem {
         self.linear.factored_for = None;
     }
 
+    /// Operations of a solution with so many masses: factors, substitutions and elongations of each Newton solution; factors
+    /// that were kept are counted as if they were made.
+    pub(super) fn flop(&self, masses: usize, solved: &Result<(usize, usize), NotSettled>) -> f64 {
+        let solutions = match solved {
+            Ok((solutions, _)) => *solutions,
+            Err(stuck) => stuck.iterations,
+        };
+        let (c, n) = (self.states.len(), self.linear.active.len() + masses);
+        (solutions * (n * n * n / 3 + 2 * n * n + 2 * c * n)) as f64
+    }
+
     /// Solves from `states`, with `e` the elongations without forces; leaves the new states, elongations, forces and mass
     /// forces and gives the number of Newton solutions and of states that changed. Where it does not settle, the states are
     /// as before.

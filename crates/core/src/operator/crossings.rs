@@ -4,8 +4,9 @@
 //! know the step's arithmetic or when a crossing ends.
 
 use super::basis::BridgeOperator;
+use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
-use super::energy::Energy;
+use super::energy::{Energy, Terms};
 use super::envelope::{Envelope, LanePeaks};
 use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
@@ -236,13 +237,14 @@ impl Crossings {
         operator: &BridgeOperator,
         constants: &StepConstants,
         newton_limit: usize,
+        clock: &mut impl StepClock,
     ) -> Unsettled {
         let mut unsettled: Unsettled = None;
         for lane in 0..self.lanes.len() {
             let (modes, connectors) = (&self.modes, &mut self.connectors);
             let parts = (modes, connectors, &mut self.loads);
             let of = &mut self.lanes[lane];
-            if of.solve(lane, operator, constants, newton_limit, parts) {
+            if of.solve(lane, (operator, constants, newton_limit), parts, clock) {
                 if of.crossing.is_some() {
                     self.envelope.record_axles(lane, &of.axles, &of.inertia);
                 }
@@ -252,6 +254,45 @@ impl Crossings {
             }
         }
         unsettled
+    }
+
+    /// Operations of placing the weights, of all lanes.
+    pub(super) fn flop_of_loads(&self) -> f64 {
+        let forces: usize = self.lanes.iter().map(|lane| lane.weights.len()).sum();
+        (2 * forces * self.loads.weights.rows()) as f64
+    }
+
+    /// Operations of reading what is observed, a lane: `V [q; s]`, and peaks.
+    pub(super) fn flop_of_observed(&self) -> f64 {
+        let (m, c, v) = (
+            self.modes.count(),
+            self.connectors.count(),
+            self.envelope.observed_rows(),
+        );
+        (2 * (m + c) * v + 10 * v) as f64
+    }
+
+    /// Takes all lanes to the step's end, contact solved (O6), (O7).
+    #[inline(always)]
+    pub(super) fn correct<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        operator: &BridgeOperator,
+        constants: &StepConstants,
+        clock: &mut impl StepClock,
+    ) -> Terms<S> {
+        let mut terms = Terms::new(o);
+        self.connectors.apply(o, constants, &mut self.modes.contact_now);
+        self.modes.correct(o, operator, constants, &self.loads, &mut terms);
+        clock.lap(StepPart::Modes, || {
+            self.modes.flop_of_correction() + self.connectors.flop_of_application(self.modes.count())
+        });
+        self.residual
+            .correct(o, constants, &self.loads, &self.connectors, &mut terms);
+        self.connectors.correct(o, constants, &mut terms);
+        self.loads.end_step();
+        clock.lap(StepPart::Residual, || self.residual.flop_of_correction());
+        terms
     }
 
     /// Puts lanes back to before the step.

@@ -93,6 +93,11 @@ impl Envelope {
         self.per_joint
     }
 
+    /// Number of observed rows.
+    pub(super) fn observed_rows(&self) -> usize {
+        self.observed.rows()
+    }
+
     /// Height of an observed row now `[m]`.
     pub(super) fn observed_m(&self, row: usize, lane: usize) -> f64 {
         self.observed.at(row, lane)

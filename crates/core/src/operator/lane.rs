@@ -3,6 +3,7 @@
 //! Knows where the vehicle is and how its contact is solved. Does not know the lanes beside it.
 
 use super::basis::BridgeOperator;
+use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
 use super::contact_system::ContactSystem;
 use super::lane_array::LaneArray;
@@ -145,10 +146,9 @@ impl Lane {
     pub(super) fn solve(
         &mut self,
         lane: usize,
-        operator: &BridgeOperator,
-        constants: &StepConstants,
-        newton_limit: usize,
+        (operator, constants, newton_limit): (&BridgeOperator, &StepConstants, usize),
         (modes, connectors, loads): (&Modes, &mut Connectors, &mut Loads),
+        clock: &mut impl StepClock,
     ) -> bool {
         let Some(crossing) = &self.crossing else {
             return true;
@@ -156,10 +156,13 @@ impl Lane {
         let m = constants.c.len();
         let (wheels, compliance, masses) = (&*crossing.wheels, &*crossing.compliance, &mut self.masses);
         masses.place(wheels, &operator.track, crossing.load_n, self.front_x_m);
+        clock.lap(StepPart::RidingMasses, || 0.0);
         if masses.count() > 0 {
             self.free.gather(lane, &modes.free, masses.symmetric());
             connectors.n.gather(lane, &mut self.n);
         }
+        connectors.e_now.gather(lane, &mut self.contact.linear.e);
+        clock.lap(StepPart::GatherAndScatter, || 0.0);
         let forces = StepForces {
             weights: &self.weights,
             masses: &self.mass_forces,
@@ -167,13 +170,14 @@ impl Lane {
         };
         masses.follow(wheels, constants, m, forces);
         masses.couple(wheels, compliance, constants, m, crossing.speed_m_s, &self.free);
-        connectors.e_now.gather(lane, &mut self.contact.linear.e);
+        clock.lap(StepPart::RidingMasses, || masses.flop_of_coupling(m));
         let weight = 1.0 - constants.scheme.alpha_f;
         let compliances = &constants.connector_compliance;
-        match self
+        let solved = self
             .contact
-            .solve(&crossing.law, compliances, weight, masses, newton_limit)
-        {
+            .solve(&crossing.law, compliances, weight, masses, newton_limit);
+        clock.lap(StepPart::Contact, || self.contact.flop(masses.count(), &solved));
+        match solved {
             Ok((iterations, switches)) => {
                 self.unsettled = None;
                 self.statistics.steps += 1;
@@ -190,7 +194,11 @@ impl Lane {
         for (to, scaled) in connectors.n_now.rows_from_mut(0).zip(&self.contact.linear.forces) {
             to[lane] = scaled / weight;
         }
+        clock.lap(StepPart::GatherAndScatter, || 0.0);
         self.apply_masses(lane, constants, &connectors.n_now, loads);
+        clock.lap(StepPart::RidingMasses, || {
+            self.masses.flop_of_leading(loads.inertia.rows())
+        });
         true
     }
 

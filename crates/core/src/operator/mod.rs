@@ -10,6 +10,7 @@
 //! `WheelLines` what a vehicle sees of the deck, `Crossings` the motion.
 
 mod basis;
+mod clock;
 mod connectors;
 mod contact_system;
 mod crossings;
@@ -32,6 +33,7 @@ mod vector;
 mod wheel_lines;
 
 pub use basis::{BridgeOperator, OperatorError};
+pub use clock::{StepClock, StepPart};
 pub(crate) use crossings::Crossings;
 pub use cutoff::Cutoff;
 pub(crate) use lane::CrossingInput;

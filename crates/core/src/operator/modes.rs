@@ -41,6 +41,22 @@ impl Modes {
         }
     }
 
+    /// Number of modes.
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        self.q.rows()
+    }
+
+    /// Operations of [`Modes::predict`], a lane, counted in it.
+    pub(super) fn flop_of_prediction(&self) -> f64 {
+        14.0 * self.count() as f64
+    }
+
+    /// Operations of [`Modes::correct`], a lane, counted in it and in [`Terms::take_mode`].
+    pub(super) fn flop_of_correction(&self) -> f64 {
+        54.0 * self.count() as f64
+    }
+
     /// What a lane carries from step to step.
     pub(super) fn carried(&mut self) -> [&mut LaneArray; 4] {
         [&mut self.q, &mut self.v, &mut self.a, &mut self.contact]

@@ -138,6 +138,20 @@ impl MovingMasses {
         self.slopes.is_empty()
     }
 
+    /// Operations of [`MovingMasses::follow`] and [`MovingMasses::couple`] on so many modes.
+    pub(super) fn flop_of_coupling(&self, modes: usize) -> f64 {
+        let (n, r, c) = (self.nodes.len(), self.list.len(), self.connectors);
+        let motions = if self.symmetric() { 1 } else { 3 };
+        let entries = self.force.len() + self.slopes.len();
+        (2 * motions * modes * n + 2 * n * r + entries * 2 * (r + c) + 12 * n) as f64
+    }
+
+    /// Operations of the masses' forces on so many rows and of [`MovingMasses::lead`].
+    pub(super) fn flop_of_leading(&self, rows: usize) -> f64 {
+        let (n, r, c) = (self.nodes.len(), self.list.len(), self.connectors);
+        (2 * n * rows + 2 * n * (r + c) + 2 * n * c + 2 * self.force.len() + 14 * n) as f64
+    }
+
     pub(super) fn row(&self, i: usize) -> &[f64] {
         &self.matrix[i * self.list.len()..][..self.list.len()]
     }

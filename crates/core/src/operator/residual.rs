@@ -50,6 +50,18 @@ impl Residual {
         traces.into_iter().flat_map(Trace::all)
     }
 
+    /// Operations of [`Residual::predict`] and of the trial elongations `B Phi d` of so many modes, a lane.
+    pub(super) fn flop_of_prediction(&self, modes: usize) -> f64 {
+        let (c, rows) = (self.d_force.rows(), self.d_load.rows());
+        (2 * modes * c + 17 * c + 12 * rows) as f64
+    }
+
+    /// Operations of [`Residual::correct`], a lane, counted in it and in [`Terms::take_residual`].
+    pub(super) fn flop_of_correction(&self) -> f64 {
+        let (c, rows) = (self.d_force.rows(), self.d_load.rows());
+        (72 * c + 13 * rows) as f64
+    }
+
     /// Changes of load residuals and connector residuals without new forces.
     pub(super) fn changes(&self) -> [&LaneArray; 2] {
         [&self.d_load, &self.d_connector]

@@ -3,56 +3,60 @@
 //! Knows the order of the parts, the same for every lane whatever is beside it. Does not know when a crossing ends.
 
 use super::basis::BridgeOperator;
+use super::clock::{StepClock, StepPart};
 use super::crossings::Crossings;
-use super::energy::Terms;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
 use pulp::{Arch, Simd, WithSimd};
 
 /// One step of all lanes that are at work, each to the time it was placed at.
-struct Step<'a> {
+struct Step<'a, C> {
     operator: &'a BridgeOperator,
     constants: &'a StepConstants,
     newton_limit: usize,
     crossings: &'a mut Crossings,
+    clock: &'a mut C,
 }
 
 /// Steps every lane at work to where [`Crossings::place`] has put it. A lane whose contact does not settle stands as before
 /// and says so by [`Crossings::unsettled`].
-pub(crate) fn step(
+pub(crate) fn step<C: StepClock>(
     crossings: &mut Crossings,
     operator: &BridgeOperator,
     constants: &StepConstants,
     newton_limit: usize,
+    clock: &mut C,
 ) {
     Arch::new().dispatch(Step {
         operator,
         constants,
         newton_limit,
         crossings,
+        clock,
     });
 }
 
-impl WithSimd for Step<'_> {
+impl<C: StepClock> WithSimd for Step<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (o, operator, constants) = (Ops(simd), self.operator, self.constants);
-        let c = self.crossings;
+        let (c, clock) = (self.crossings, self.clock);
+        clock.begin();
         c.place_loads(operator); // (V1)
+        clock.lap(StepPart::Loads, || c.flop_of_loads());
         c.modes.predict(o, constants, &c.loads, c.any_mass()); // (O6)
+        clock.lap(StepPart::Modes, || c.modes.flop_of_prediction());
         c.residual.predict(o, constants, &c.loads, &c.connectors); // (O7)
         c.connectors.predict(o, constants, &c.modes.d, c.residual.changes()); // (O4)
-        let unsettled = c.solve_contact(operator, constants, self.newton_limit); // (C1), (C2)
-        let mut terms = Terms::new(o);
-        c.connectors.apply(o, constants, &mut c.modes.contact_now);
-        c.modes.correct(o, operator, constants, &c.loads, &mut terms); // (O6)
-        c.residual.correct(o, constants, &c.loads, &c.connectors, &mut terms); // (O7)
-        c.connectors.correct(o, constants, &mut terms);
-        c.loads.end_step();
+        clock.lap(StepPart::Residual, || c.residual.flop_of_prediction(c.modes.count()));
+        let unsettled = c.solve_contact(operator, constants, self.newton_limit, clock); // (C1), (C2)
+        let terms = c.correct(o, operator, constants, clock); // (O6), (O7)
         c.energy.account(o, constants, &terms, c.connectors.energy(o)); // (R1)
+        clock.lap(StepPart::Accounting, || 2.0 * c.connectors.count() as f64);
         c.update_envelope(o, operator, constants);
+        clock.lap(StepPart::ObservedRows, || c.flop_of_observed());
         c.restore_all(unsettled);
     }
 }

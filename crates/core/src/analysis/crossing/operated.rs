@@ -8,7 +8,9 @@ use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign};
 use crate::connector::Law;
 use crate::contact::NotSettled;
-use crate::operator::{BridgeOperator, CrossingInput, Crossings, StepConstants, WheelCompliance, WheelLines, step};
+use crate::operator::{
+    BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
+};
 use crate::response::{CrossingResponse, History, PositionPeaks, Quantity, Record};
 use crate::vehicle::Vehicle;
 use std::sync::{Arc, OnceLock};
@@ -37,7 +39,7 @@ struct Mount {
 }
 
 /// Crossings under way.
-struct Crew<'a> {
+struct Crew<'a, C> {
     solver: &'a OperatorSolver,
     mounts: Vec<Mount>,
     lanes: Crossings,
@@ -45,6 +47,7 @@ struct Crew<'a> {
     solo: Option<Crossings>,
     /// How often the time step is halved from the beginning.
     refinement: usize,
+    clock: &'a mut C,
 }
 
 /// One crossing under way.
@@ -96,6 +99,19 @@ impl OperatorSolver {
         crossings: &[(&Vehicle, &Crossing)],
         refinement: usize,
     ) -> Vec<Result<CrossingResponse, AnalysisError>> {
+        self.solve_all_timed(crossings, refinement, &mut ())
+    }
+
+    /// Solves crossings side by side under a clock that is looked at between the parts of each step; halved steps are not.
+    ///
+    /// # Errors
+    /// As [`Self::solve_all`].
+    pub fn solve_all_timed(
+        &self,
+        crossings: &[(&Vehicle, &Crossing)],
+        refinement: usize,
+        clock: &mut impl StepClock,
+    ) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let most_nodes = crossings
             .iter()
             .map(|(vehicle, _)| WheelLines::most_nodes_of(&self.operator, vehicle));
@@ -109,6 +125,7 @@ impl OperatorSolver {
             ),
             solo: None,
             refinement: refinement.min(REFINEMENTS),
+            clock,
         };
         crew.run(crossings)
     }
@@ -130,7 +147,7 @@ impl OperatorSolver {
     }
 }
 
-impl Crew<'_> {
+impl<C: StepClock> Crew<'_, C> {
     fn run(&mut self, crossings: &[(&Vehicle, &Crossing)]) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let mut answers: Vec<Option<Result<CrossingResponse, AnalysisError>>> = vec![None; crossings.len()];
         let mut under: Vec<Option<Under<'_>>> = (0..self.lanes.width()).map(|_| None).collect();
@@ -154,7 +171,7 @@ impl Crew<'_> {
             }
             let level = self.solver.constants(self.refinement);
             let limit = self.solver.settings.newton_limit;
-            step(&mut self.lanes, &self.solver.operator, level, limit);
+            step(&mut self.lanes, &self.solver.operator, level, limit, self.clock);
             for (lane, slot) in under.iter_mut().enumerate() {
                 let Some(of) = slot else {
                     continue;
@@ -316,13 +333,13 @@ impl Crew<'_> {
 }
 
 /// A lane by itself, whose steps are halved.
-struct Alone<'a, 's> {
-    crew: &'a mut Crew<'s>,
+struct Alone<'a, 's, C> {
+    crew: &'a mut Crew<'s, C>,
     lane: &'a mut Crossings,
     mount: usize,
 }
 
-impl Halving for Alone<'_, '_> {
+impl<C: StepClock> Halving for Alone<'_, '_, C> {
     fn limit(&self) -> usize {
         self.crew.solver.settings.bisection_limit
     }
@@ -334,7 +351,7 @@ impl Halving for Alone<'_, '_> {
         self.lane.place(0, to_s);
         let solver = self.crew.solver;
         let limit = solver.settings.newton_limit;
-        step(self.lane, &solver.operator, solver.constants(halvings), limit);
+        step(self.lane, &solver.operator, solver.constants(halvings), limit, &mut ());
         Ok(self.lane.unsettled(0).map_or(Ok(()), Err))
     }
 
