@@ -1,0 +1,40 @@
+"""Counts the type names that more than one file defines; scripts/names tells how it is called.
+
+Knows Rust as far as a line that begins a definition. Does not know scopes: types of tests and of traits (`type Value = ..`)
+are left out.
+"""
+
+import re
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DEFINES = re.compile(r"^(?P<indent> *)(?:pub(?:\([a-z ]+\))? )?(?:struct|enum|trait|type) (?P<name>[A-Z]\w*)", re.MULTILINE)
+MOST = 0.04
+
+
+def definitions():
+    """The files that define each name."""
+    files = defaultdict(set)
+    for path in sorted(ROOT.glob("crates/*/src/**/*.rs")):
+        # what a test module defines is its own
+        text = path.read_text().split("#[cfg(test)]\nmod tests {")[0]
+        for match in DEFINES.finditer(text):
+            if not match["indent"]:
+                files[match["name"]].add(path.relative_to(ROOT))
+    return files
+
+
+def main(words):
+    files = definitions()
+    several = {name: where for name, where in files.items() if len(where) > 1}
+    share = len(several) / len(files)
+    for name, where in sorted(several.items(), key=lambda item: (-len(item[1]), item[0])):
+        print(f"{name}: {', '.join(str(path) for path in sorted(where))}")
+    print(f"{len(several)} of {len(files)} type names are defined in more than one file: {100 * share:.1f} %")
+    return 1 if "--check" in words and share >= MOST else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
