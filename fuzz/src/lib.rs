@@ -4,7 +4,7 @@
 //! fuzzer, or the test that replays what is kept (`tests/house/corpus.rs`). Whatever the bytes are, each function returns;
 //! what a reader says of them is not judged here.
 
-use pontoon_journal::{Book, FOLDER};
+use pontoon_journal::{FOLDER, JournalIndex};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Document;
 use pontoon_plan::job::Jobs;
@@ -127,8 +127,8 @@ fn planned(study: &Study) {
 }
 
 /// What a run, and whoever asks how far it has come, reads of a journal.
-fn told(folder: &Path) -> Option<Book> {
-    let book = Book::read(folder).ok()?;
+fn told(folder: &Path) -> Option<JournalIndex> {
+    let book = JournalIndex::read(folder).ok()?;
     for entry in book.entries() {
         let _ = book.record(entry.place);
     }
@@ -138,7 +138,7 @@ fn told(folder: &Path) -> Option<Book> {
 }
 
 /// One job of a journal's study, which decodes its record; `any` says which.
-fn explained(folder: &Path, book: &Book, any: usize) {
+fn explained(folder: &Path, book: &JournalIndex, any: usize) {
     let Some(session) = book.files.iter().find_map(|written| written.session.as_ref()) else {
         return;
     };

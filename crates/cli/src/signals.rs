@@ -3,7 +3,7 @@
 //! Knows what SIGINT, SIGTERM and SIGUSR1 ask of a run. Does not know how a run stops.
 
 use crate::words;
-use pontoon_journal::Writer;
+use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Stop, Tally, Why};
 use pontoon_study::sweep::ended_now;
 use std::process::exit;
@@ -17,7 +17,7 @@ const INTERRUPTED: i32 = 130;
 pub(crate) struct Heard {
     /// The run is to stop.
     pub stop: Stop,
-    journal: Mutex<Weak<Writer>>,
+    journal: Mutex<Weak<JournalWriter>>,
     tally: Mutex<Option<Tally>>,
 }
 
@@ -51,7 +51,7 @@ impl Heard {
     }
 
     /// The journal that is being written.
-    pub(crate) fn writing(&self, journal: &Arc<Writer>) {
+    pub(crate) fn writing(&self, journal: &Arc<JournalWriter>) {
         *self.journal.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(journal);
     }
 

@@ -5,7 +5,7 @@
 use crate::progress::Shown;
 use crate::signals::Heard;
 use crate::words;
-use pontoon_journal::Writer;
+use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Progress, Tally};
 use pontoon_study::sweep::{Apart, ApartEnd, Watcher};
 use std::os::unix::process::ExitStatusExt;
@@ -62,7 +62,7 @@ impl Watcher for Watching<'_> {
         words::note(what);
     }
 
-    fn writing(&self, journal: &Arc<Writer>) {
+    fn writing(&self, journal: &Arc<JournalWriter>) {
         self.heard.writing(journal);
     }
 

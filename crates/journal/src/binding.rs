@@ -60,7 +60,7 @@ pub struct Session {
 
 /// How a process ended by itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Ending {
+pub struct SessionEnd {
     /// When (UTC).
     pub finished: String,
     /// `complete`, `interrupted` or why it could not go on.

@@ -46,16 +46,16 @@ fn checksum(length: [u8; 4], kind: [u8; 4], payload: &[u8]) -> u32 {
 }
 
 /// The head of a frame, as far as it can be judged without its payload.
-struct Head {
+struct FrameHead {
     length: usize,
     crc: u32,
     kind: [u8; 4],
 }
 
-fn head(bytes: &[u8; HEAD]) -> Option<Head> {
+fn head(bytes: &[u8; HEAD]) -> Option<FrameHead> {
     let four = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
     let length = u32::from_le_bytes(four(4)) as usize;
-    (four(0) == MARK && length <= LONGEST).then(|| Head {
+    (four(0) == MARK && length <= LONGEST).then(|| FrameHead {
         length,
         crc: u32::from_le_bytes(four(8)),
         kind: four(12),
@@ -153,7 +153,7 @@ impl Frames {
             return Ok(false);
         }
         self.read(at, &mut bytes)?;
-        let Some(Head { length, crc, kind }) = head(&bytes) else {
+        let Some(FrameHead { length, crc, kind }) = head(&bytes) else {
             return Ok(false);
         };
         let from = at + HEAD as u64;

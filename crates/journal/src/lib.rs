@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `frame` | a frame of bytes that is whole or is not there |
 //! | `binding` | what the records of a journal are bound to, and who wrote them |
-//! | `writer`, `book` | a file of the journal under way; what a journal holds |
+//! | `writer`, `journal_index` | a file of the journal under way; what a journal holds |
 //! | `progress` | how far a run has come, for those who ask from outside |
 //! | `lock` | one process at a time in a folder |
 //! | [`place`] | files that are replaced whole or not at all |
@@ -26,24 +26,24 @@
 //! | 2 | [`Session`], JSON: who writes, when, for which study |
 //! | 3 | a record: key of the job (16 bytes), 1 where it failed else 0, milliseconds since 1970 (8 bytes), what it left |
 //! | 4 | keys of jobs about to be solved together |
-//! | 5 | [`Ending`], JSON: the process came to its own end |
+//! | 5 | [`SessionEnd`], JSON: the process came to its own end |
 //! | 6 | what jobs share, prepared: JSON |
 
 mod binding;
-mod book;
 pub mod fault;
 mod frame;
+mod journal_index;
 mod lock;
 pub mod place;
 mod progress;
 mod writer;
 
-pub use binding::{Binding, Ending, Session};
-pub use book::{Book, Entry, Place};
+pub use binding::{Binding, Session, SessionEnd};
 pub use frame::{Damage, LONGEST};
+pub use journal_index::{JournalIndex, RecordEntry, RecordLocation};
 pub use lock::Lock;
 pub use progress::Standing;
-pub use writer::{NewRecord, Writer};
+pub use writer::{JournalWriter, NewRecord};
 
 use std::io;
 use std::path::{Path, PathBuf};

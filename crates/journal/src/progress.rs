@@ -3,10 +3,10 @@
 //! Knows counts and up to which byte of the journal they hold; what was written since is counted by its frames. Nothing else
 //! hangs on it: where it is missing or does not fit the journal, the journal is read.
 
-use super::book::record_head;
 use super::frame::Frames;
+use super::journal_index::record_head;
 use super::place::HiddenFile;
-use super::{EXTENSION, Ending, FOLDER, Lock, kind};
+use super::{EXTENSION, FOLDER, Lock, SessionEnd, kind};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::Write;
@@ -41,12 +41,12 @@ pub(super) struct Counts {
 
 /// The file: counts, and a checksum of their text.
 #[derive(Debug, Serialize, Deserialize)]
-struct Told {
+struct ProgressFile {
     counts: Counts,
     crc32: u32,
 }
 
-impl Told {
+impl ProgressFile {
     fn checksum(counts: &Counts) -> u32 {
         crc32fast::hash(&serde_json::to_vec(counts).unwrap_or_default())
     }
@@ -81,8 +81,8 @@ impl Standing {
         let files = files
             .filter(|entry| entry.path().extension().is_some_and(|e| e == EXTENSION))
             .count();
-        let told: Told = serde_json::from_slice(&fs::read(folder.join(FILE)).ok()?).ok()?;
-        let fits = told.crc32 == Told::checksum(&told.counts) && told.counts.files == files;
+        let told: ProgressFile = serde_json::from_slice(&fs::read(folder.join(FILE)).ok()?).ok()?;
+        let fits = told.crc32 == ProgressFile::checksum(&told.counts) && told.counts.files == files;
         let counts = fits.then(|| since(told.counts, &journal)).flatten()?;
         let (jobs, done, failed) = (counts.jobs, counts.done, counts.failed);
         let standing = Self {
@@ -132,7 +132,7 @@ fn since(mut counts: Counts, journal: &Path) -> Option<Counts> {
                 counts.failed += usize::from(failed);
             }
             kind::ENDING => {
-                let ending: Ending = serde_json::from_slice(frame.payload).ok()?;
+                let ending: SessionEnd = serde_json::from_slice(frame.payload).ok()?;
                 counts.ended = Some(ending.how);
             }
             _ => {}
@@ -143,8 +143,8 @@ fn since(mut counts: Counts, journal: &Path) -> Option<Counts> {
 
 /// Replaces the file; where that fails the journal tells the same, more slowly.
 pub(super) fn replace(folder: &Path, counts: &Counts) {
-    let told = Told {
-        crc32: Told::checksum(counts),
+    let told = ProgressFile {
+        crc32: ProgressFile::checksum(counts),
         counts: counts.clone(),
     };
     let Ok(text) = serde_json::to_vec(&told) else { return };

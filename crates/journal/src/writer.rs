@@ -4,7 +4,7 @@
 //! nothing more is written. Does not know what is read back.
 
 use super::progress::{self, Counts};
-use super::{Binding, EXTENSION, Ending, FOLDER, JournalError, RecordKey, Session, fault, frame, kind};
+use super::{Binding, EXTENSION, FOLDER, JournalError, RecordKey, Session, SessionEnd, fault, frame, kind};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -18,23 +18,23 @@ const BETWEEN_SYNCS: Duration = Duration::from_millis(500);
 
 /// A file of the journal that this process writes.
 #[derive(Debug)]
-pub struct Writer {
-    shared: Arc<Shared>,
+pub struct JournalWriter {
+    shared: Arc<SharedFile>,
     syncing: Option<JoinHandle<()>>,
 }
 
 #[derive(Debug)]
-struct Shared {
+struct SharedFile {
     folder: PathBuf,
     path: PathBuf,
-    state: Mutex<State>,
+    state: Mutex<WriterState>,
     wake: Condvar,
     /// One sync at a time: the system tells of a failed one only once.
     syncs: Mutex<()>,
 }
 
 #[derive(Debug)]
-struct State {
+struct WriterState {
     file: File,
     counts: Counts,
     /// Bytes on the disk for sure.
@@ -57,7 +57,7 @@ pub struct NewRecord<'a> {
     pub left: &'a [u8],
 }
 
-impl Writer {
+impl JournalWriter {
     /// Begins a file in the journal of a folder of results: what it is bound to and who writes, both on the disk before
     /// this returns. Of `session.jobs` jobs `session.known` are recorded, `failed` of these failed.
     ///
@@ -69,10 +69,10 @@ impl Writer {
         if !session.apart {
             progress::replace(folder, &counts);
         }
-        let shared = Arc::new(Shared {
+        let shared = Arc::new(SharedFile {
             folder: folder.to_owned(),
             path: begun.path,
-            state: Mutex::new(State {
+            state: Mutex::new(WriterState {
                 file: begun.file,
                 synced: counts.bytes,
                 told: counts.clone(),
@@ -155,14 +155,14 @@ impl Writer {
     ///
     /// # Errors
     /// [`JournalError`].
-    pub fn end(&self, ending: &Ending) -> Result<(), JournalError> {
+    pub fn end(&self, ending: &SessionEnd) -> Result<(), JournalError> {
         self.one(kind::ENDING, &json(ending, "how the process ended")?)?;
         self.shared.lock().counts.ended = Some(ending.how.clone());
         self.sync()
     }
 
     /// The same of a process that is to end at once: nothing is waited for, and nothing is told.
-    pub fn end_at_once(&self, ending: &Ending) {
+    pub fn end_at_once(&self, ending: &SessionEnd) {
         if let Ok(mut state) = self.shared.state.try_lock() {
             let mut bytes = Vec::new();
             if let Ok(payload) = json(ending, "how the process ended") {
@@ -173,7 +173,7 @@ impl Writer {
     }
 }
 
-impl Drop for Writer {
+impl Drop for JournalWriter {
     fn drop(&mut self) {
         self.shared.lock().closing = true;
         self.shared.wake.notify_all();
@@ -238,12 +238,12 @@ impl Begun {
     }
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
+impl SharedFile {
+    fn lock(&self) -> MutexGuard<'_, WriterState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn whole(&self, state: &State) -> Result<(), JournalError> {
+    fn whole(&self, state: &WriterState) -> Result<(), JournalError> {
         match &state.broken {
             None => Ok(()),
             Some(cause) => Err(JournalError::Broken {
@@ -363,7 +363,7 @@ fn json(value: &impl Serialize, what: &str) -> Result<Vec<u8>, JournalError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Book, FORM};
+    use crate::{FORM, JournalIndex};
     use serde::Serializer;
     use serde::ser::Error as _;
     use serde_json::Value;
@@ -377,7 +377,7 @@ mod tests {
         }
     }
 
-    fn begun(folder: &Path) -> Writer {
+    fn begun(folder: &Path) -> JournalWriter {
         let binding = Binding {
             form: FORM,
             name: "s".to_owned(),
@@ -403,7 +403,7 @@ mod tests {
             study_blake3: String::new(),
             bridge: Value::Null,
         };
-        Writer::begin(folder, &binding, &session, 0).unwrap()
+        JournalWriter::begin(folder, &binding, &session, 0).unwrap()
     }
 
     #[test]
@@ -414,7 +414,7 @@ mod tests {
         assert!(matches!(refused, JournalError::NotEncoded { .. }), "{refused}");
         writer.prepared(&1).unwrap();
         writer.sync().unwrap();
-        let book = Book::read(dir.path()).unwrap();
+        let book = JournalIndex::read(dir.path()).unwrap();
         let prepared: Vec<&Value> = book.files.iter().flat_map(|file| &file.prepared).collect();
         assert_eq!(prepared, [&Value::from(1)]);
     }

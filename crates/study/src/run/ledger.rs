@@ -2,24 +2,24 @@
 //!
 //! Knows which jobs are recorded and how a record becomes bytes without loss. Does not know where the journal lies.
 
-use pontoon_journal::{Book, JournalError, NewRecord, Place, RecordKey, Writer};
+use pontoon_journal::{JournalError, JournalIndex, JournalWriter, NewRecord, RecordKey, RecordLocation};
 use pontoon_plan::job::Job;
 use pontoon_results::{JobRecord, Preparation};
 
 /// The journal as a run of some jobs sees it.
 #[derive(Debug)]
 pub struct Ledger<'a> {
-    book: &'a Book,
+    book: &'a JournalIndex,
     /// Of each job, by its place among those of the run, the record that it has; nothing where none has one.
-    known: Vec<Option<Place>>,
-    writer: Option<&'a Writer>,
+    known: Vec<Option<RecordLocation>>,
+    writer: Option<&'a JournalWriter>,
     /// Recorded jobs that failed.
     failed: usize,
 }
 
 impl<'a> Ledger<'a> {
     /// The records that `jobs` have in a book.
-    pub fn new(book: &'a Book, jobs: &[Job]) -> Self {
+    pub fn new(book: &'a JournalIndex, jobs: &[Job]) -> Self {
         let mut failed = 0;
         let known = jobs.iter().map(|job| {
             let entry = book.find(&record_key(job))?;
@@ -41,7 +41,7 @@ impl<'a> Ledger<'a> {
 
     /// The same, new records going to a writer.
     #[must_use]
-    pub fn written_by(mut self, writer: &'a Writer) -> Self {
+    pub fn written_by(mut self, writer: &'a JournalWriter) -> Self {
         self.writer = Some(writer);
         self
     }
@@ -56,7 +56,7 @@ impl<'a> Ledger<'a> {
         self.failed
     }
 
-    fn place(&self, at: usize) -> Option<Place> {
+    fn place(&self, at: usize) -> Option<RecordLocation> {
         self.known.get(at).copied().flatten()
     }
 

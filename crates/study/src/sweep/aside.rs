@@ -3,7 +3,7 @@
 //! Knows which files of a folder are results. Removes nothing: a later `mv` brings everything back.
 
 use super::SweepError;
-use pontoon_journal::{Book, FOLDER, JournalError};
+use pontoon_journal::{FOLDER, JournalError, JournalIndex};
 use pontoon_results::{OwnFiles, PAGE};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ const ASIDE: &str = "aside";
 
 /// Moves the results of a folder to `aside/HASH`, the journal last: until then the folder is what it was, and the next run
 /// with the same wish goes on moving. Tells where to; nothing where there is nothing to move.
-pub(super) fn set_aside(folder: &Path, book: Option<&Book>) -> Result<Option<PathBuf>, SweepError> {
+pub(super) fn set_aside(folder: &Path, book: Option<&JournalIndex>) -> Result<Option<PathBuf>, SweepError> {
     let mut list = OwnFiles::in_folder(folder);
     let journal = folder.join(FOLDER);
     if journal.exists() {
@@ -54,7 +54,7 @@ pub(super) fn set_aside(folder: &Path, book: Option<&Book>) -> Result<Option<Pat
 }
 
 /// A hash of what the records are bound to and of the study.
-fn name(book: Option<&Book>) -> String {
+fn name(book: Option<&JournalIndex>) -> String {
     let mut hasher = blake3::Hasher::new();
     for written in book.into_iter().flat_map(|book| &book.files) {
         let parts = (&written.binding, written.session.as_ref().map(|session| &session.study));

@@ -4,7 +4,7 @@
 
 use super::SweepSetting;
 use crate::run::instruction_path;
-use pontoon_journal::{Binding, Book, FORM, Session};
+use pontoon_journal::{Binding, FORM, JournalIndex, Session};
 use pontoon_plan::input::{Document, Refusal, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
@@ -37,7 +37,7 @@ fn numerics() -> String {
 ///
 /// # Errors
 /// [`Refusal`] of the file.
-pub(super) fn check_program(book: &Book) -> Result<(), Refusal> {
+pub(super) fn check_program(book: &JournalIndex) -> Result<(), Refusal> {
     let own = numerics();
     for written in &book.files {
         let bound = written.binding.as_ref();

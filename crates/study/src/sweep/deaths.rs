@@ -11,7 +11,7 @@ use super::opened::Opened;
 use super::{SweepError, SweepSetting, Watcher};
 use crate::run::{Ledger, RunError, Setting, Silent, Stop, record_key, run};
 use pontoon_journal::place::FolderError;
-use pontoon_journal::{Book, RecordKey, Writer};
+use pontoon_journal::{JournalIndex, JournalWriter, RecordKey};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
@@ -96,7 +96,7 @@ pub(super) fn hash_of(study: &Study) -> String {
 }
 
 /// Jobs that processes died with too often.
-fn suspects<'j>(book: &Book, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
+fn suspects<'j>(book: &JournalIndex, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
     let mut deaths: BTreeMap<RecordKey, usize> = book.deaths();
     deaths.retain(|_, times| *times >= SUSPECT);
     let jobs = if deaths.is_empty() { &[] } else { jobs };
@@ -123,10 +123,10 @@ pub fn run_apart(
         .filter(|job| numbers.contains(&job.number))
         .cloned()
         .collect();
-    let book = Book::read(&setting.out)?;
+    let book = JournalIndex::read(&setting.out)?;
     let ledger = Ledger::new(&book, &own);
     let asked = session(study, setting, 1, own.len(), ledger.known(), true);
-    let writer = Writer::begin(&setting.out, &binding(study, setting.shard), &asked, ledger.failed())?;
+    let writer = JournalWriter::begin(&setting.out, &binding(study, setting.shard), &asked, ledger.failed())?;
     let setting = Setting {
         threads: 1,
         batch: setting.batch,

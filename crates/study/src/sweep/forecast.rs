@@ -5,7 +5,7 @@
 use super::bound::binding;
 use super::{SweepError, opened};
 use crate::run::{Cache, Measured, measure, record_key};
-use pontoon_journal::Book;
+use pontoon_journal::JournalIndex;
 use pontoon_plan::job::{Plan, Share};
 use pontoon_plan::study_file::Study;
 use serde::Serialize;
@@ -45,7 +45,7 @@ pub struct Found {
 /// # Errors
 /// [`SweepError::Refused`] of the first job that is refused; [`SweepError::Journal`].
 pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cache>) -> Result<Forecast, SweepError> {
-    let book = Book::read(folder)?;
+    let book = JournalIndex::read(folder)?;
     let now = binding(study, None);
     let refused = opened::bindings(&book)
         .map(|then| then.differences(&now))

@@ -12,7 +12,7 @@ use super::status::study_of_book;
 use super::{SweepError, SweepSetting, Swept, Watcher};
 use crate::run::{Ledger, Setting, Stop, record_key, run};
 use pontoon_journal::place::{Folder, HiddenFile, hash_of};
-use pontoon_journal::{Book, EXTENSION, FOLDER, JournalError, Lock, Writer as JournalWriter, fault};
+use pontoon_journal::{EXTENSION, FOLDER, JournalError, JournalIndex, JournalWriter, Lock, fault};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
@@ -41,7 +41,7 @@ impl Merged {
         let mut study = None;
         for folder in folders {
             check_folder(folder)?;
-            let book = Book::read(folder)?;
+            let book = JournalIndex::read(folder)?;
             let (of_folder, ..) = study_of_book(&book, folder)?;
             let hash = hash_of_study(&of_folder);
             match &first {
@@ -92,7 +92,7 @@ pub fn merge<'a>(
     let folders: Vec<PathBuf> = old.into_iter().chain(folders.iter().cloned()).collect();
     let mut books = Vec::new();
     for folder in &folders {
-        let book = Book::read(folder)?;
+        let book = JournalIndex::read(folder)?;
         for written in &book.files {
             let differences = written.binding.as_ref().map(|then| then.differences(&now));
             let differences = differences.unwrap_or_default();
@@ -126,7 +126,7 @@ pub fn merge<'a>(
     for source in folders.iter().filter(|source| **source != setting.out) {
         copy_journal(source, &setting.out)?;
     }
-    let book = Book::read(&setting.out)?;
+    let book = JournalIndex::read(&setting.out)?;
     let ledger = Ledger::new(&book, jobs);
     if ledger.known() < jobs.len() {
         let found = format!("{} of {} jobs after the shards were copied", ledger.known(), jobs.len());
@@ -152,7 +152,7 @@ pub fn merge<'a>(
     manifest.sessions = sessions(&book);
     // the journal's last word is the whole study's
     let asked = session(study, setting, setting.threads, jobs.len(), jobs.len(), false);
-    let last = Book::newest(&book).filter(|(then, of)| then.shard.is_none() && of.study == asked.study);
+    let last = JournalIndex::newest(&book).filter(|(then, of)| then.shard.is_none() && of.study == asked.study);
     if last.is_none() {
         let writer = JournalWriter::begin(&setting.out, &now, &asked, outcome.failures.count)?;
         writer.end(&ending("complete".to_owned(), 0.0, 0.0))?;
@@ -191,7 +191,7 @@ fn check_distinct(folders: &[PathBuf], out: &Path) -> Result<(), Refusal> {
 }
 
 /// Refuses shards that leave jobs out.
-fn check_complete(jobs: &[Job], books: &[Book], folders: &[PathBuf]) -> Result<(), Refusal> {
+fn check_complete(jobs: &[Job], books: &[JournalIndex], folders: &[PathBuf]) -> Result<(), Refusal> {
     let mut missing = Vec::new();
     let mut count = 0;
     for job in jobs {
@@ -221,7 +221,7 @@ fn check_complete(jobs: &[Job], books: &[Book], folders: &[PathBuf]) -> Result<(
 }
 
 /// Refuses shards whose records of one job differ.
-fn check_consistent(books: &[Book], folders: &[PathBuf]) -> Result<(), SweepError> {
+fn check_consistent(books: &[JournalIndex], folders: &[PathBuf]) -> Result<(), SweepError> {
     for (i, book) in books.iter().enumerate() {
         for entry in book.entries() {
             for (earlier, other) in books[..i].iter().enumerate() {

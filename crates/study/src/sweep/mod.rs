@@ -38,7 +38,7 @@ use crate::run::canary::CanaryError;
 use crate::run::{Batch, Cache, Ledger, PoolError, Progress, RunError, Stop, Why};
 use opened::Opened;
 use pontoon_journal::place::FolderError;
-use pontoon_journal::{JournalError, Writer as JournalWriter};
+use pontoon_journal::{JournalError, JournalWriter};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Shard};
 use pontoon_plan::study_file::Study;

@@ -6,7 +6,7 @@ use super::aside::set_aside;
 use super::bound::binding;
 use super::{SweepError, SweepSetting, Watcher};
 use pontoon_journal::place::Folder;
-use pontoon_journal::{Binding, Book, Damage, Ending, FOLDER, Lock, Session};
+use pontoon_journal::{Binding, Damage, FOLDER, JournalIndex, Lock, Session, SessionEnd};
 use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{OwnFiles, Preparation, SessionNote};
@@ -17,7 +17,7 @@ use std::path::Path;
 #[derive(Debug)]
 pub(super) struct Opened {
     pub folder: Folder,
-    pub book: Book,
+    pub book: JournalIndex,
     pub binding: Binding,
     _lock: Lock,
 }
@@ -32,12 +32,12 @@ impl Opened {
         let folder = Folder::create(&setting.out)?;
         let lock = Lock::take(&setting.out)?;
         let binding = binding(study, setting.shard);
-        let mut book = Book::read(&setting.out);
+        let mut book = JournalIndex::read(&setting.out);
         if setting.fresh {
             if let Some(to) = set_aside(&setting.out, book.as_ref().ok())? {
                 watcher.note(&format!("older results are now in {}", to.display()));
             }
-            book = Book::read(&setting.out);
+            book = JournalIndex::read(&setting.out);
         }
         let book = book?;
         check(&book, &binding, setting)?;
@@ -63,7 +63,7 @@ impl Opened {
 
     /// Reads the journal again.
     pub(super) fn read_again(&mut self) -> Result<(), SweepError> {
-        self.book = Book::read(self.folder.path())?;
+        self.book = JournalIndex::read(self.folder.path())?;
         Ok(())
     }
 
@@ -90,35 +90,36 @@ impl Opened {
 }
 
 /// What the records of a book are bound to.
-pub(super) fn bindings(book: &Book) -> impl Iterator<Item = &Binding> {
+pub(super) fn bindings(book: &JournalIndex) -> impl Iterator<Item = &Binding> {
     book.files.iter().filter_map(|written| written.binding.as_ref())
 }
 
 /// Instruction paths that a book's records were computed on.
-pub(super) fn instruction_paths(book: &Book) -> impl Iterator<Item = &String> {
+pub(super) fn instruction_paths(book: &JournalIndex) -> impl Iterator<Item = &String> {
     let with_records = book.files.iter().filter(|written| written.records > 0);
     with_records
         .filter_map(|written| written.binding.as_ref())
         .map(|binding| &binding.instruction_path)
 }
 
-pub(super) fn preparations(book: &Book) -> impl Iterator<Item = Preparation> {
+pub(super) fn preparations(book: &JournalIndex) -> impl Iterator<Item = Preparation> {
     let prepared = book.files.iter().flat_map(|written| &written.prepared);
     prepared.filter_map(|value| serde_json::from_value(value.clone()).ok())
 }
 
-pub(super) fn sessions(book: &Book) -> Vec<SessionNote> {
-    let note = |(session, ending, shard, records): (&Session, Option<&Ending>, Option<&String>, usize)| SessionNote {
-        started: session.started.clone(),
-        finished: ending.map(|ending| ending.finished.clone()),
-        host: session.host.clone(),
-        threads: session.threads,
-        version: session.version.clone(),
-        commit: session.commit.clone(),
-        shard: shard.cloned(),
-        records,
-        ended: ending.map_or_else(|| "died".to_owned(), |ending| ending.how.clone()),
-    };
+pub(super) fn sessions(book: &JournalIndex) -> Vec<SessionNote> {
+    let note =
+        |(session, ending, shard, records): (&Session, Option<&SessionEnd>, Option<&String>, usize)| SessionNote {
+            started: session.started.clone(),
+            finished: ending.map(|ending| ending.finished.clone()),
+            host: session.host.clone(),
+            threads: session.threads,
+            version: session.version.clone(),
+            commit: session.commit.clone(),
+            shard: shard.cloned(),
+            records,
+            ended: ending.map_or_else(|| "died".to_owned(), |ending| ending.how.clone()),
+        };
     let known = book.files.iter().filter_map(|written| {
         let (binding, session) = (written.binding.as_ref()?, written.session.as_ref()?);
         Some((
@@ -140,7 +141,7 @@ pub(super) fn check_folder(path: &Path) -> Result<(), Refusal> {
 }
 
 /// Tells what was passed over in a journal.
-pub(super) fn tell_damage(book: &Book, tell: impl Fn(&str)) {
+pub(super) fn tell_damage(book: &JournalIndex, tell: impl Fn(&str)) {
     for (path, damage) in book.damages() {
         tell(&words(path, damage));
     }
@@ -151,7 +152,7 @@ pub(super) fn tell_damage(book: &Book, tell: impl Fn(&str)) {
 }
 
 /// Refuses a journal whose records are of no use to a study.
-fn check(book: &Book, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
+fn check(book: &JournalIndex, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
     for written in &book.files {
         let Some(then) = &written.binding else { continue };
         let refuse = |key: &str, found: String, allowed: &str| Err(Refusal::new(&written.path, key, found, allowed));

@@ -7,7 +7,7 @@ use super::bound::check_program;
 use super::opened::check_folder;
 use super::status::study_of_book;
 use crate::run::Ledger;
-use pontoon_journal::{Book, Session};
+use pontoon_journal::{JournalIndex, Session};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
@@ -38,7 +38,7 @@ pub struct SoFar {
 /// [`SweepError::Journal`].
 pub fn so_far(folder: &Path) -> Result<SoFar, SweepError> {
     check_folder(folder)?;
-    let book = Book::read(folder)?;
+    let book = JournalIndex::read(folder)?;
     check_program(&book)?;
     let (study, binding, session) = study_of_book(&book, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;

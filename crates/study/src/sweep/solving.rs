@@ -8,7 +8,7 @@ use super::ending::ending;
 use super::opened::Opened;
 use super::{SweepError, SweepSetting, Watcher};
 use crate::run::{Ledger, Setting, Sink, Stop, canary, run};
-use pontoon_journal::Writer;
+use pontoon_journal::JournalWriter;
 use pontoon_journal::place::FolderError;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
@@ -31,7 +31,7 @@ pub(super) struct Solving<'a> {
 pub(super) struct Solved {
     pub outcome: Outcome,
     /// The journal's file of this process; none where nothing was missing.
-    pub writer: Option<Arc<Writer>>,
+    pub writer: Option<Arc<JournalWriter>>,
 }
 
 impl Solving<'_> {
@@ -51,7 +51,7 @@ impl Solving<'_> {
             let threads = self.setting.threads;
             let session = session(self.study, self.setting, threads, self.jobs.len(), known, false);
             let folder = self.opened.folder.path();
-            let writer = Arc::new(Writer::begin(folder, &self.opened.binding, &session, failed)?);
+            let writer = Arc::new(JournalWriter::begin(folder, &self.opened.binding, &session, failed)?);
             self.watcher.writing(&writer);
             Some(writer)
         } else {

@@ -6,7 +6,7 @@ use super::SweepError;
 use super::bound::{check_program, study_of};
 use super::opened::check_folder;
 use crate::run::{Ledger, record_key};
-use pontoon_journal::{Binding, Book, Lock, Session, Standing};
+use pontoon_journal::{Binding, JournalIndex, Lock, Session, Standing};
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs, Shard};
 use pontoon_plan::study_file::Study;
@@ -72,7 +72,7 @@ pub fn standings(folders: &[PathBuf]) -> Result<Standings, SweepError> {
 /// How far a run has come by its journal and study alone.
 fn counted(folder: &Path) -> Result<Standing, SweepError> {
     check_folder(folder)?;
-    let book = Book::read(folder)?;
+    let book = JournalIndex::read(folder)?;
     let (study, binding, session) = study_of_book(&book, folder)?;
     let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
@@ -161,7 +161,7 @@ fn with_numbers_by_name<S: Serializer>(failure: &Option<Failure>, serializer: S)
 /// [`SweepError`].
 pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> {
     check_folder(folder)?;
-    let book = Book::read(folder)?;
+    let book = JournalIndex::read(folder)?;
     let (study, binding, _) = study_of_book(&book, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let Some(job) = jobs.get(number) else {
@@ -225,7 +225,7 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
 
 /// The study of a folder's journal as its last process had it, and that process.
 pub(super) fn study_of_book<'a>(
-    book: &'a Book,
+    book: &'a JournalIndex,
     folder: &Path,
 ) -> Result<(Study, &'a Binding, &'a Session), SweepError> {
     let (binding, session) = book.newest().ok_or_else(|| no_journal(folder))?;

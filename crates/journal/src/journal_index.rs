@@ -3,7 +3,7 @@
 //! Knows the kinds of frames and keeps of a record its key and place alone. Does not write.
 
 use super::frame::{Damage, Frame, Frames, read_at};
-use super::{Binding, EXTENSION, Ending, FOLDER, FORM, JournalError, RecordKey, Session, kind};
+use super::{Binding, EXTENSION, FOLDER, FORM, JournalError, RecordKey, Session, SessionEnd, kind};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -16,7 +16,7 @@ pub(super) const RECORD_HEAD: usize = 16 + 1 + 8;
 
 /// Where a record stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct RecordLocation {
     file: u32,
     length: u32,
     at: u64,
@@ -24,13 +24,13 @@ pub struct Place {
 
 /// A record by its key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Entry {
+pub struct RecordEntry {
     /// Key of the job.
     pub key: RecordKey,
     /// Whether it failed.
     pub failed: bool,
     /// Where the record stands.
-    pub place: Place,
+    pub place: RecordLocation,
 }
 
 /// A file of the journal.
@@ -43,7 +43,7 @@ pub struct Written {
     /// Who wrote it.
     pub session: Option<Session>,
     /// How that came to its own end; none where the process died or is still at work.
-    pub ending: Option<Ending>,
+    pub ending: Option<SessionEnd>,
     /// Records in it.
     pub records: usize,
     /// What was passed over.
@@ -70,14 +70,14 @@ impl Written {
     }
 
     /// Counts a record and gives its entry; `file` is the number of this file in the book.
-    fn take_record(&mut self, frame: &Frame<'_>, file: u32) -> Option<Entry> {
+    fn take_record(&mut self, frame: &Frame<'_>, file: u32) -> Option<RecordEntry> {
         let (key, failed) = record_head(frame.payload)?;
         self.records += 1;
         self.begun.remove(&key);
-        Some(Entry {
+        Some(RecordEntry {
             key,
             failed,
-            place: Place {
+            place: RecordLocation {
                 file,
                 length: u32::try_from(frame.payload.len()).unwrap_or(u32::MAX),
                 at: frame.at,
@@ -107,7 +107,7 @@ impl Written {
 
 /// What a record's frame says beside what the job left.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Record {
+pub struct JournalRecord {
     /// Milliseconds since 1970.
     pub unix_ms: u64,
     /// What the job left.
@@ -116,16 +116,16 @@ pub struct Record {
 
 /// What a journal holds.
 #[derive(Debug, Default)]
-pub struct Book {
+pub struct JournalIndex {
     /// Its files in the order they were begun.
     pub files: Vec<Written>,
     /// Its records by key, each key once.
-    entries: Vec<Entry>,
+    entries: Vec<RecordEntry>,
     /// The file that was read last: a system lets a process have few open.
     open: Mutex<Option<(u32, Arc<File>)>>,
 }
 
-impl Book {
+impl JournalIndex {
     /// Reads the journal of a folder of results; none is an empty one.
     ///
     /// # Errors
@@ -186,12 +186,12 @@ impl Book {
     }
 
     /// The records, by key.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[RecordEntry] {
         &self.entries
     }
 
     /// The record of a key.
-    pub fn find(&self, key: &RecordKey) -> Option<&Entry> {
+    pub fn find(&self, key: &RecordKey) -> Option<&RecordEntry> {
         let at = self.entries.binary_search_by(|entry| entry.key.cmp(key)).ok()?;
         Some(&self.entries[at])
     }
@@ -200,7 +200,7 @@ impl Book {
     ///
     /// # Errors
     /// [`JournalError::Damaged`], [`JournalError::Io`].
-    pub fn record(&self, place: Place) -> Result<Record, JournalError> {
+    pub fn record(&self, place: RecordLocation) -> Result<JournalRecord, JournalError> {
         let written = &self.files[place.file as usize];
         let read = self
             .opened(place.file)
@@ -214,7 +214,7 @@ impl Book {
         })?;
         let mut time = [0; 8];
         time.copy_from_slice(&payload[17..RECORD_HEAD]);
-        Ok(Record {
+        Ok(JournalRecord {
             unix_ms: u64::from_le_bytes(time),
             left: payload.split_off(RECORD_HEAD),
         })
@@ -243,7 +243,7 @@ impl Book {
     }
 
     /// The error of a record that cannot be understood.
-    pub fn damaged(&self, place: Place) -> JournalError {
+    pub fn damaged(&self, place: RecordLocation) -> JournalError {
         JournalError::Damaged {
             path: self.files[place.file as usize].path.clone(),
             at: place.at,
@@ -251,7 +251,7 @@ impl Book {
     }
 
     /// The file that a record stands in.
-    pub fn file_of(&self, place: Place) -> &Written {
+    pub fn file_of(&self, place: RecordLocation) -> &Written {
         &self.files[place.file as usize]
     }
 
