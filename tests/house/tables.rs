@@ -6,7 +6,8 @@ use pontoon_plan::input::Cell;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::{Kind, Study};
 use pontoon_results::{
-    Failure, FailureKind, JobRecord, Manifest, ModeRow, Moment, Outcome, Provenance, Results, Table, TableName, Writer,
+    Failure, FailureKind, JobRecord, Manifest, ModeRow, Moment, Outcome, Results, Table, TableName, TableProvenance,
+    TableWriter,
 };
 use pontoon_study::run::{Batch, Setting, Silent, Stop, run};
 use serde_json::{Value, json};
@@ -70,8 +71,8 @@ fn failure() -> Failure {
     Failure::new(FailureKind::NotFinite, "why")
 }
 
-fn begun<'a>(of: &'a (Study, Vec<Job>), folder: &'a Folder) -> Writer<'a> {
-    Writer::begin(&of.0, &of.1, folder, &Provenance::default()).unwrap()
+fn begun<'a>(of: &'a (Study, Vec<Job>), folder: &'a Folder) -> TableWriter<'a> {
+    TableWriter::begin(&of.0, &of.1, folder, &TableProvenance::default()).unwrap()
 }
 
 fn manifest((study, jobs): &(Study, Vec<Job>), outcome: &Outcome) -> Manifest {
@@ -81,7 +82,7 @@ fn manifest((study, jobs): &(Study, Vec<Job>), outcome: &Outcome) -> Manifest {
         outcome,
         Moment::now(),
         Moment::now(),
-        &Provenance::default(),
+        &TableProvenance::default(),
     )
 }
 

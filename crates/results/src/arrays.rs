@@ -3,7 +3,7 @@
 //!
 //! Knows the few types of columns. Does not know what a column means.
 
-use super::frame::Frame;
+use super::frame::ArrowFrame;
 use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
 use pontoon_plan::input::Cell;
 use serde::Serialize;
@@ -50,7 +50,7 @@ pub(super) fn type_of<'a>(values: impl Iterator<Item = Cell<'a>>) -> CellKind {
 
 /// The cells of a column under way.
 #[derive(Debug, Clone)]
-pub(super) enum Cells<'a> {
+pub(super) enum ColumnBuilder<'a> {
     Numbers(Vec<Option<f64>>),
     Counts(Vec<Option<i64>>),
     Words(Vec<Option<Cow<'a, str>>>),
@@ -58,7 +58,7 @@ pub(super) enum Cells<'a> {
     Flags(Vec<Option<bool>>),
 }
 
-impl<'a> Cells<'a> {
+impl<'a> ColumnBuilder<'a> {
     /// None yet.
     pub(super) fn of(kind: CellKind) -> Self {
         match kind {
@@ -110,20 +110,20 @@ impl<'a> Cells<'a> {
 
 /// The columns of a table under way.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Columns<'a>(pub(super) Vec<(String, Cells<'a>)>);
+pub(super) struct Columns<'a>(pub(super) Vec<(String, ColumnBuilder<'a>)>);
 
 impl<'a> Columns<'a> {
     /// Appends a column.
     pub(super) fn push(&mut self, name: &str, kind: CellKind, cells: impl Iterator<Item = Cell<'a>>) {
-        let mut column = Cells::of(kind);
+        let mut column = ColumnBuilder::of(kind);
         cells.for_each(|cell| column.push(cell));
         self.0.push((name.to_owned(), column));
     }
 
     /// The columns as arrays.
-    pub(super) fn frame(&self) -> io::Result<Frame> {
-        let array = |(name, cells): &(String, Cells<'_>)| (name.clone(), cells.array());
-        Frame::new(self.0.iter().map(array).collect())
+    pub(super) fn frame(&self) -> io::Result<ArrowFrame> {
+        let array = |(name, cells): &(String, ColumnBuilder<'_>)| (name.clone(), cells.array());
+        ArrowFrame::new(self.0.iter().map(array).collect())
     }
 }
 
@@ -155,19 +155,19 @@ mod tests {
 
     #[test]
     fn values_of_several_types_are_json_and_words_alone_are_not() {
-        fn column(values: &[Value]) -> Cells<'_> {
+        fn column(values: &[Value]) -> ColumnBuilder<'_> {
             let cells: Vec<Cell<'_>> = values.iter().map(Cell::of).collect();
             let mut columns = Columns::default();
             columns.push("a", type_of(cells.iter().cloned()), cells.into_iter());
             columns.0.remove(0).1
         }
         let texts = match column(&[json!("auto"), json!(0.02), json!(null)]) {
-            Cells::Values(texts) => texts,
+            ColumnBuilder::Values(texts) => texts,
             other => panic!("{other:?}"),
         };
         assert_eq!(texts, [Some("\"auto\"".to_owned()), Some("0.02".to_owned()), None]);
         assert!(
-            matches!(column(&[json!("auto"), json!("b")]), Cells::Words(words) if words[0].as_deref() == Some("auto"))
+            matches!(column(&[json!("auto"), json!("b")]), ColumnBuilder::Words(words) if words[0].as_deref() == Some("auto"))
         );
     }
 }

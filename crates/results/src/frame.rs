@@ -28,9 +28,9 @@ const OPTIONS: fn() -> WriteOptions = || WriteOptions {
 
 /// Rows of a table: columns of equal length, each with its name.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Frame(Vec<(String, Box<dyn Array>)>);
+pub(super) struct ArrowFrame(Vec<(String, Box<dyn Array>)>);
 
-impl Frame {
+impl ArrowFrame {
     /// A frame of columns.
     ///
     /// # Errors
@@ -78,13 +78,13 @@ pub(super) struct FrameWriter<W: Write>(FileWriter<W>);
 
 impl<W: Write> FrameWriter<W> {
     /// Begins a file of the columns of `empty`.
-    pub(super) fn begin(to: W, empty: &Frame) -> io::Result<Self> {
+    pub(super) fn begin(to: W, empty: &ArrowFrame) -> io::Result<Self> {
         let writer = FileWriter::try_new(to, empty.schema(), OPTIONS());
         writer.map(Self).map_err(io::Error::other)
     }
 
     /// Writes some rows as a row group.
-    pub(super) fn append(&mut self, frame: &Frame, rows: &Range<usize>) -> io::Result<()> {
+    pub(super) fn append(&mut self, frame: &ArrowFrame, rows: &Range<usize>) -> io::Result<()> {
         let schema = self.0.schema();
         let encodings = schema.iter_values().map(|field| get_dtype_encoding(&field.dtype));
         let (encodings, schema) = (encodings.collect(), Arc::new(schema.clone()));
@@ -108,7 +108,7 @@ impl<W: Write> FrameWriter<W> {
 
 /// Reads rows of a file, as a frame for each row group that has any of them, or one without rows: of `columns` those that
 /// the file has, or all.
-pub(super) fn read(file: &mut File, columns: Option<&[&str]>, rows: &Range<usize>) -> io::Result<Vec<Frame>> {
+pub(super) fn read(file: &mut File, columns: Option<&[&str]>, rows: &Range<usize>) -> io::Result<Vec<ArrowFrame>> {
     let metadata = read_metadata(file).map_err(io::Error::other)?;
     let schema = infer_schema(&metadata).map_err(io::Error::other)?;
     let fields: Vec<&Field> = match columns {
@@ -125,12 +125,17 @@ pub(super) fn read(file: &mut File, columns: Option<&[&str]>, rows: &Range<usize
     }
     if frames.is_empty() {
         let empty = |field: &&Field| (field.name.to_string(), new_empty_array(field.dtype.clone()));
-        frames.push(Frame(fields.iter().map(empty).collect()));
+        frames.push(ArrowFrame(fields.iter().map(empty).collect()));
     }
     Ok(frames)
 }
 
-fn read_group(file: &mut File, group: &RowGroupMetadata, fields: &[&Field], rows: &Range<usize>) -> io::Result<Frame> {
+fn read_group(
+    file: &mut File,
+    group: &RowGroupMetadata,
+    fields: &[&Field],
+    rows: &Range<usize>,
+) -> io::Result<ArrowFrame> {
     let mut chunks = Vec::new();
     for field in fields {
         let mut of = group.columns_under_root_iter(&field.name).into_iter().flatten();
@@ -154,7 +159,7 @@ fn read_group(file: &mut File, group: &RowGroupMetadata, fields: &[&Field], rows
             Err(_) => Err(io::Error::other(format!("column {} in pieces", field.name))),
         }
     });
-    Frame::new(columns.collect::<io::Result<_>>()?)
+    ArrowFrame::new(columns.collect::<io::Result<_>>()?)
 }
 
 #[cfg(test)]
@@ -165,7 +170,7 @@ mod tests {
     const ROWS: usize = 15;
 
     /// Fifteen rows of each type that tables have, some cells missing.
-    fn whole() -> Frame {
+    fn whole() -> ArrowFrame {
         let there = |row: usize| row % 4 != 1;
         let numbers = (0..ROWS).map(|row| there(row).then_some(0.1 * row as f64));
         let counts = (0..ROWS).map(|row| there(row + 1).then_some(row as i64));
@@ -175,7 +180,7 @@ mod tests {
             .enumerate()
             .map(|(row, word)| there(row + 2).then_some(word.as_str()));
         let flags = (0..ROWS).map(|row| there(row + 3).then_some(row % 2 == 0));
-        Frame::new(vec![
+        ArrowFrame::new(vec![
             (
                 "number".to_owned(),
                 PrimitiveArray::<f64>::from(numbers.collect::<Vec<_>>()).boxed(),
@@ -234,7 +239,7 @@ mod tests {
     #[test]
     fn columns_of_different_lengths_are_no_frame() {
         let column = |length: usize| PrimitiveArray::<f64>::from(vec![Some(0.0); length]).boxed();
-        assert!(Frame::new(vec![("a".to_owned(), column(1)), ("b".to_owned(), column(2))]).is_err());
+        assert!(ArrowFrame::new(vec![("a".to_owned(), column(1)), ("b".to_owned(), column(2))]).is_err());
     }
 
     /// The system's own answer, through the library's words.

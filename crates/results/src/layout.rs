@@ -3,8 +3,8 @@
 //! Knows which columns of the registry a study has, and the types of its axes. Does not know files.
 
 use super::arrays::{CellKind, Columns, type_of};
-use super::frame::Frame;
-use super::registry::{Column, RowOf, Sample, Source, When};
+use super::frame::ArrowFrame;
+use super::registry::{Column, ColumnSource, HistorySample, RowOf, When};
 use super::table::{Table, TableName};
 use crate::JobRecord;
 use pontoon_plan::design::{AxisValues, NamedAxis, Varies};
@@ -85,7 +85,7 @@ impl Layout {
     }
 
     /// The rows of some jobs in a table, in the order of jobs, as arrays; no job makes the table without rows.
-    pub(super) fn frame(&self, name: TableName, of: &[Job], records: &[JobRecord]) -> io::Result<Frame> {
+    pub(super) fn frame(&self, name: TableName, of: &[Job], records: &[JobRecord]) -> io::Result<ArrowFrame> {
         self.columns(name, of, records).frame()
     }
 
@@ -98,20 +98,20 @@ impl Layout {
         let mut columns = Columns::default();
         for column in Column::of_table(table).filter(|column| self.has(column)) {
             match column.source {
-                Source::Job(of) => columns.push(column.name, column.cells, records.iter().map(of)),
-                Source::Position(of) => {
+                ColumnSource::Job(of) => columns.push(column.name, column.cells, records.iter().map(of)),
+                ColumnSource::Position(of) => {
                     let rows = rows(records, |record| &record.positions);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
-                Source::Connector(of) => {
+                ColumnSource::Connector(of) => {
                     let rows = rows(records, |record| &record.connectors);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
-                Source::Mode(of) => {
+                ColumnSource::Mode(of) => {
                     let rows = rows(records, |record| &record.modes);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
-                Source::Sample(of) => {
+                ColumnSource::Sample(of) => {
                     let samples = records.iter().flat_map(samples);
                     columns.push(column.name, column.cells, samples.map(|sample| of(&sample)));
                 }
@@ -152,15 +152,19 @@ fn rows<'a, R: 'a>(
 }
 
 /// The samples of a record's histories, one history after the other.
-fn samples(record: &JobRecord) -> impl Iterator<Item = Sample<'_>> {
+fn samples(record: &JobRecord) -> impl Iterator<Item = HistorySample<'_>> {
     let histories = &record.histories;
     histories.series.iter().flat_map(|(quantity, position, values)| {
-        histories.time_s.iter().zip(values).map(|(&time_s, &value)| Sample {
-            job: record.job,
-            time_s,
-            quantity,
-            position: *position,
-            value,
-        })
+        histories
+            .time_s
+            .iter()
+            .zip(values)
+            .map(|(&time_s, &value)| HistorySample {
+                job: record.job,
+                time_s,
+                quantity,
+                position: *position,
+                value,
+            })
     })
 }

@@ -44,16 +44,16 @@ pub use files::{OwnFiles, PAGE};
 pub use manifest::{Manifest, SessionNote, check_own};
 pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};
-pub use parquet::Provenance;
+pub use parquet::TableProvenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
 pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PositionRow, Summary};
-pub use registry::{COLUMNS, Card, Column, Curve, Digits, QUANTITIES, Role, SpeedFigure, When, registered};
+pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, QUANTITIES, SpeedFigure, When, registered};
 pub use results::{Results, ResultsError};
 pub use summary::SummaryTable;
-pub use table::{Kind, Table, TableName};
+pub use table::{ColumnKind, Table, TableName};
 pub use varying::Seen;
 pub use verification::Verification;
-pub use writer::Writer;
+pub use writer::TableWriter;
 
 /// Version of this program, as tables and manifests carry it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -4,7 +4,7 @@
 
 use super::files::MANIFEST;
 use super::moment::Moment;
-use super::parquet::Provenance;
+use super::parquet::TableProvenance;
 use crate::{BridgeReport, OperatorCounts, Outcome, Verification};
 use pontoon_journal::place::hash_of;
 use pontoon_plan::input::Refusal;
@@ -105,7 +105,7 @@ impl Manifest {
         outcome: &Outcome,
         started: Moment,
         finished: Moment,
-        provenance: &Provenance,
+        provenance: &TableProvenance,
     ) -> Self {
         let preparation = &outcome.preparation;
         let condensed = jobs.iter().filter(|job| job.model() == ModelSpec::SuperElement);
@@ -151,7 +151,13 @@ impl Manifest {
 }
 
 /// Whether a folder holds the whole results of a study's jobs, as this program would write them.
-pub(super) fn is_whole(folder: &Path, study: &Study, jobs: usize, tables: &[String], provenance: &Provenance) -> bool {
+pub(super) fn is_whole(
+    folder: &Path,
+    study: &Study,
+    jobs: usize,
+    tables: &[String],
+    provenance: &TableProvenance,
+) -> bool {
     let told = std::fs::read(folder.join(MANIFEST)).ok();
     let Some(told) = told.and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok()) else {
         return false;

@@ -2,7 +2,7 @@
 //!
 //! Knows what a file says of where it comes from and how it grows. Does not know its columns.
 
-use super::frame::{Frame, FrameWriter};
+use super::frame::{ArrowFrame, FrameWriter};
 use pontoon_journal::fault::Watched;
 use pontoon_journal::place::{Folder, FolderError, Partial};
 use pontoon_plan::job::Job;
@@ -14,7 +14,7 @@ const ROW_GROUP: usize = 1 << 18;
 
 /// What a program's tables carry of it and of where their numbers were computed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Provenance {
+pub struct TableProvenance {
     /// Commit of the program's sources, where it was built from one.
     pub commit: Option<String>,
     /// Instructions that crossings by the operator ran on; more than one where shards of such were merged.
@@ -22,7 +22,7 @@ pub struct Provenance {
 }
 
 /// What every table of a study carries: nothing of it changes from run to run.
-pub(super) fn metadata(study: &Study, jobs: &[Job], of: &Provenance) -> Vec<(String, String)> {
+pub(super) fn metadata(study: &Study, jobs: &[Job], of: &TableProvenance) -> Vec<(String, String)> {
     let (study_text, study_hash) = (study.document.text().to_owned(), study.document.hash());
     let bridge = &study.bridge.document;
     let (bridge_text, bridge_hash) = (bridge.text().to_owned(), bridge.hash());
@@ -61,7 +61,7 @@ impl TableFile {
     pub(super) fn begin(
         folder: &Folder,
         name: &str,
-        empty: io::Result<Frame>,
+        empty: io::Result<ArrowFrame>,
         metadata: &[(String, String)],
     ) -> Result<Self, FolderError> {
         let partial = folder.begin(name)?;
@@ -77,7 +77,7 @@ impl TableFile {
     }
 
     /// Appends rows as row groups of their own; no rows make none.
-    pub(super) fn append(&mut self, rows: io::Result<Frame>) -> Result<(), FolderError> {
+    pub(super) fn append(&mut self, rows: io::Result<ArrowFrame>) -> Result<(), FolderError> {
         let appended = rows.and_then(|rows| {
             let mut starts = (0..rows.rows()).step_by(ROW_GROUP);
             starts.try_for_each(|start| {

@@ -34,13 +34,13 @@ pub struct Column {
     pub when: When,
     /// Where its cells come from.
     #[serde(skip)]
-    pub(crate) source: Source,
+    pub(crate) source: ColumnSource,
     /// How many digits people read.
     #[serde(skip)]
     pub digits: Digits,
     /// Which part it has in what people look at.
     #[serde(skip)]
-    pub role: Role,
+    pub role: ColumnRole,
     /// Whether points of an experiment may be drawn in its chart.
     #[serde(skip)]
     pub drawn: bool,
@@ -57,7 +57,7 @@ pub struct Column {
 
 /// Where the cells of a column come from.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Source {
+pub(crate) enum ColumnSource {
     /// A job's record.
     Job(fn(&JobRecord) -> Cell<'_>),
     /// A row of positions.
@@ -65,7 +65,7 @@ pub(crate) enum Source {
     /// A row of connectors.
     Connector(fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>),
     /// A sample of a history.
-    Sample(for<'a> fn(&Sample<'a>) -> Cell<'a>),
+    Sample(for<'a> fn(&HistorySample<'a>) -> Cell<'a>),
     /// A mode.
     Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>),
 }
@@ -81,7 +81,7 @@ pub(crate) struct RowOf<'a, R> {
 
 /// A sample of a history.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sample<'a> {
+pub(crate) struct HistorySample<'a> {
     /// The job's number.
     pub(crate) job: usize,
     /// Its time `[s]`.
@@ -125,7 +125,7 @@ pub enum Digits {
 
 /// Which part a column has in what people look at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum ColumnRole {
     /// It says which row it is.
     Key,
     /// It says what became of the job.
@@ -180,7 +180,7 @@ const fn column(
     table: TableName,
     (name, cells): (&'static str, CellKind),
     (label, text): (&'static str, &'static str),
-    source: Source,
+    source: ColumnSource,
 ) -> Column {
     Column {
         table,
@@ -192,7 +192,7 @@ const fn column(
         when: When::Always,
         source,
         digits: Digits::Significant(6),
-        role: Role::Kept,
+        role: ColumnRole::Kept,
         drawn: false,
         in_summary: false,
         card: None,
@@ -209,7 +209,7 @@ impl Column {
         Self { when, ..self }
     }
 
-    const fn role(self, role: Role) -> Self {
+    const fn role(self, role: ColumnRole) -> Self {
         Self { role, ..self }
     }
 
@@ -256,15 +256,15 @@ impl Column {
     }
 }
 
-type Names = (&'static str, &'static str);
+type NameAndLabel = (&'static str, &'static str);
 
 /// A column of every table of jobs.
-const fn of_record(name: &'static str, cells: CellKind, names: Names, of: fn(&JobRecord) -> Cell<'_>) -> Column {
-    column(TableName::Jobs, (name, cells), names, Source::Job(of))
+const fn of_record(name: &'static str, cells: CellKind, names: NameAndLabel, of: fn(&JobRecord) -> Cell<'_>) -> Column {
+    column(TableName::Jobs, (name, cells), names, ColumnSource::Job(of))
 }
 
 /// A column of the table of jobs of crossings and static cases.
-const fn of_job(name: &'static str, cells: CellKind, names: Names, of: fn(&JobRecord) -> Cell<'_>) -> Column {
+const fn of_job(name: &'static str, cells: CellKind, names: NameAndLabel, of: fn(&JobRecord) -> Cell<'_>) -> Column {
     of_record(name, cells, names, of).when(When::Loaded)
 }
 
@@ -275,43 +275,43 @@ const fn measure(
     text: &'static str,
     of: fn(&JobRecord) -> Cell<'_>,
 ) -> Column {
-    of_job(name, CellKind::Numbers, (label, text), of).role(Role::Measure)
+    of_job(name, CellKind::Numbers, (label, text), of).role(ColumnRole::Measure)
 }
 
 const fn of_position(
     name: &'static str,
     cells: CellKind,
-    names: Names,
+    names: NameAndLabel,
     of: fn(&RowOf<'_, PositionRow>) -> Cell<'static>,
 ) -> Column {
-    column(TableName::Positions, (name, cells), names, Source::Position(of))
+    column(TableName::Positions, (name, cells), names, ColumnSource::Position(of))
 }
 
 const fn of_connector(
     name: &'static str,
     cells: CellKind,
-    names: Names,
+    names: NameAndLabel,
     of: fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>,
 ) -> Column {
-    column(TableName::Connectors, (name, cells), names, Source::Connector(of))
+    column(TableName::Connectors, (name, cells), names, ColumnSource::Connector(of))
 }
 
 const fn of_sample(
     name: &'static str,
     cells: CellKind,
-    names: Names,
-    of: for<'a> fn(&Sample<'a>) -> Cell<'a>,
+    names: NameAndLabel,
+    of: for<'a> fn(&HistorySample<'a>) -> Cell<'a>,
 ) -> Column {
-    column(TableName::Histories, (name, cells), names, Source::Sample(of))
+    column(TableName::Histories, (name, cells), names, ColumnSource::Sample(of))
 }
 
 const fn of_mode(
     name: &'static str,
     cells: CellKind,
-    names: Names,
+    names: NameAndLabel,
     of: for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>,
 ) -> Column {
-    column(TableName::Modes, (name, cells), names, Source::Mode(of))
+    column(TableName::Modes, (name, cells), names, ColumnSource::Mode(of))
 }
 
 const fn peak_card(label: &'static str, place: (&'static str, &'static str), time: Option<&'static str>) -> Card {
@@ -369,28 +369,28 @@ pub const QUANTITIES: [&str; 2] = ["deflection_m", "force_n"];
 /// The columns of all tables in their order; those of the axes stand behind the state of the jobs.
 #[rustfmt::skip]
 pub const COLUMNS: &[Column] = &[
-    of_record("job", Counts, ("job", "number of the job, from 0"), |r| r.job.into()).role(Role::Key),
-    of_record("status", Words(&["ok", "failed"]), ("status", "what became of the job"), status).role(Role::State),
-    of_record("reason", Texts, ("reason", "why it failed, or what else is to be said"), reason).role(Role::State),
-    of_record("failure", Words(&FailureKind::WORDS), ("failure", "the kind of the failure"), |r| r.failure.as_ref().map(|failure| failure.kind.word()).into()).role(Role::State),
+    of_record("job", Counts, ("job", "number of the job, from 0"), |r| r.job.into()).role(ColumnRole::Key),
+    of_record("status", Words(&["ok", "failed"]), ("status", "what became of the job"), status).role(ColumnRole::State),
+    of_record("reason", Texts, ("reason", "why it failed, or what else is to be said"), reason).role(ColumnRole::State),
+    of_record("failure", Words(&FailureKind::WORDS), ("failure", "the kind of the failure"), |r| r.failure.as_ref().map(|failure| failure.kind.word()).into()).role(ColumnRole::State),
     measure("peak_deflection_m", "peak deflection", "largest deflection of any position", |r| r.summary.peak_deflection_m.into()).metres().drawn().in_summary()
         .card(peak_card("largest deflection", ("position", "peak_deflection_position"), Some("peak_deflection_time_s")))
         .curve(centimetres("Peak deflection")),
-    of_job("peak_deflection_position", Counts, ("peak deflection position", "its position"), |r| r.summary.peak_deflection_position.into()).role(Role::Listed),
-    of_job("peak_deflection_time_s", Numbers, ("peak deflection time", "its time"), |r| r.summary.peak_deflection_time_s.into()).unit("s").role(Role::Listed),
+    of_job("peak_deflection_position", Counts, ("peak deflection position", "its position"), |r| r.summary.peak_deflection_position.into()).role(ColumnRole::Listed),
+    of_job("peak_deflection_time_s", Numbers, ("peak deflection time", "its time"), |r| r.summary.peak_deflection_time_s.into()).unit("s").role(ColumnRole::Listed),
     measure("peak_uplift_m", "peak uplift", "largest uplift of any position", |r| r.summary.peak_uplift_m.into()).metres().drawn().in_summary()
         .card(peak_card("largest uplift", ("position", "peak_uplift_position"), Some("peak_uplift_time_s")))
         .curve(centimetres("Peak uplift")),
-    of_job("peak_uplift_position", Counts, ("peak uplift position", "its position"), |r| r.summary.peak_uplift_position.into()).role(Role::Listed),
+    of_job("peak_uplift_position", Counts, ("peak uplift position", "its position"), |r| r.summary.peak_uplift_position.into()).role(ColumnRole::Listed),
     of_job("peak_uplift_time_s", Numbers, ("peak uplift time", "its time"), |r| r.summary.peak_uplift_time_s.into()).unit("s"),
     measure("peak_compression_n", "peak compression", "largest compression of any joint, its connectors added", |r| r.summary.peak_compression_n.into()).newtons().drawn().in_summary()
         .card(peak_card("largest compression", ("joint", "peak_compression_joint"), None))
         .curve(kilonewtons("Peak compression of a joint")),
-    of_job("peak_compression_joint", Counts, ("peak compression joint", "its joint"), |r| r.summary.peak_compression_joint.into()).role(Role::Listed),
+    of_job("peak_compression_joint", Counts, ("peak compression joint", "its joint"), |r| r.summary.peak_compression_joint.into()).role(ColumnRole::Listed),
     measure("peak_tension_n", "peak tension", "largest tension of any joint, its connectors added", |r| r.summary.peak_tension_n.into()).newtons().drawn().in_summary()
         .card(peak_card("largest tension", ("joint", "peak_tension_joint"), None))
         .curve(kilonewtons("Peak tension of a joint")),
-    of_job("peak_tension_joint", Counts, ("peak tension joint", "its joint"), |r| r.summary.peak_tension_joint.into()).role(Role::Listed),
+    of_job("peak_tension_joint", Counts, ("peak tension joint", "its joint"), |r| r.summary.peak_tension_joint.into()).role(ColumnRole::Listed),
     measure("peak_edge_deflection_m", "peak edge deflection", "largest deflection of the deck's edges", |r| r.summary.peak_edge_deflection_m.into()).metres().drawn(),
     measure("peak_roll_rad", "peak roll", "largest roll of a module end", |r| r.summary.peak_roll_rad.into()).unit("rad"),
     measure("static_peak_deflection_m", "static peak deflection", "largest deflection of the same load creeping over the bridge", |r| r.summary.static_peak_deflection_m.into()).metres().drawn(),
@@ -400,21 +400,21 @@ pub const COLUMNS: &[Column] = &[
         .card(plain_card("longest influential length")),
     of_job("bottom_emerged", Flags, ("bottom emerged", "whether a module's bottom rose above the water; null unless the bridge has `draft_m`"), |r| r.summary.bottom_emerged.into()),
     of_job("deck_submerged", Flags, ("deck submerged", "whether a module's deck went below the water; null unless the bridge has `freeboard_m`"), |r| r.summary.deck_submerged.into()),
-    of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle; below zero it would have lifted off"), |r| r.summary.min_contact_force_n.into()).unit("N").role(Role::Listed),
-    of_job("time_step_s", Numbers, ("time step", "time step found for the job"), |r| r.summary.time_step_s.into()).unit("s").when(When::AutoTimeStep).role(Role::Listed),
-    of_job("steps", Counts, ("steps", "time steps"), |r| r.summary.steps.into()).role(Role::Listed),
+    of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle; below zero it would have lifted off"), |r| r.summary.min_contact_force_n.into()).unit("N").role(ColumnRole::Listed),
+    of_job("time_step_s", Numbers, ("time step", "time step found for the job"), |r| r.summary.time_step_s.into()).unit("s").when(When::AutoTimeStep).role(ColumnRole::Listed),
+    of_job("steps", Counts, ("steps", "time steps"), |r| r.summary.steps.into()).role(ColumnRole::Listed),
     of_job("newton_iterations", Counts, ("newton iterations", "Newton solutions"), |r| r.summary.newton_iterations.into()),
-    of_job("contact_switches", Counts, ("contact switches", "trusses that opened or closed"), |r| r.summary.contact_switches.into()).role(Role::Listed),
-    of_job("energy_residual", Numbers, ("energy residual", "largest gap of the energy balance, a share of the load's work"), |r| r.summary.energy_residual.into()).role(Role::Listed),
-    of_job("numerical_dissipation", Numbers, ("numerical dissipation", "largest numerical dissipation, a share of the load's work"), |r| r.summary.numerical_dissipation.into()).role(Role::Listed),
-    of_job("verify_deflection", Numbers, ("verify deflection", "how far the operator's largest deflection is off, a share of the reference solver's"), |r| r.summary.verify_deflection.into()).when(When::Verify).role(Role::Listed),
+    of_job("contact_switches", Counts, ("contact switches", "trusses that opened or closed"), |r| r.summary.contact_switches.into()).role(ColumnRole::Listed),
+    of_job("energy_residual", Numbers, ("energy residual", "largest gap of the energy balance, a share of the load's work"), |r| r.summary.energy_residual.into()).role(ColumnRole::Listed),
+    of_job("numerical_dissipation", Numbers, ("numerical dissipation", "largest numerical dissipation, a share of the load's work"), |r| r.summary.numerical_dissipation.into()).role(ColumnRole::Listed),
+    of_job("verify_deflection", Numbers, ("verify deflection", "how far the operator's largest deflection is off, a share of the reference solver's"), |r| r.summary.verify_deflection.into()).when(When::Verify).role(ColumnRole::Listed),
     of_job("verify_compression", Numbers, ("verify compression", "the same of the largest compression, a share of the job's largest joint force"), |r| r.summary.verify_compression.into()).when(When::Verify),
     of_job("verify_tension", Numbers, ("verify tension", "the same of the largest tension, on that scale"), |r| r.summary.verify_tension.into()).when(When::Verify),
     of_job("verify_held", Flags, ("verify held", "whether all are within their tolerances"), |r| r.summary.verify_held.into()).when(When::Verify),
     measure("structural_mass_kg", "structural mass", "structural mass of a module", |r| r.summary.structural_mass_kg.into()).unit("kg").when(When::Modes),
 
-    of_position("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
-    of_position("position", Counts, ("position", "number of the module end, from 1"), |r| r.row.position.into()).role(Role::Key),
+    of_position("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_position("position", Counts, ("position", "number of the module end, from 1"), |r| r.row.position.into()).role(ColumnRole::Key),
     of_position("x_m", Numbers, ("x", "its place along the bridge"), |r| r.row.x_m.into()).unit("m"),
     of_position("peak_deflection_m", Numbers, ("peak deflection", "largest deflection"), |r| r.row.deflection.value.into()).metres().drawn(),
     of_position("peak_deflection_time_s", Numbers, ("peak deflection time", "its time"), |r| r.row.deflection.time_s.into()).unit("s"),
@@ -423,22 +423,22 @@ pub const COLUMNS: &[Column] = &[
     of_position("deflection_m", Numbers, ("deflection", "deflection of a static case, positive downward"), |r| r.row.static_deflection_m.into()).metres().when(When::Static).drawn(),
     of_position("static_peak_deflection_m", Numbers, ("static peak deflection", "largest deflection under the same load creeping over the bridge"), |r| r.row.static_peak_deflection_m.into()).metres().when(When::Crossing),
 
-    of_connector("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
-    of_connector("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.row.joint.into()).role(Role::Key),
-    of_connector("y_m", Numbers, ("y", "place of the connector across; null of the joint's connectors added"), |r| r.row.y_m.into()).unit("m").role(Role::Key),
+    of_connector("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_connector("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.row.joint.into()).role(ColumnRole::Key),
+    of_connector("y_m", Numbers, ("y", "place of the connector across; null of the joint's connectors added"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
     of_connector("peak_compression_n", Numbers, ("peak compression", "largest compression"), |r| r.row.compression.value.into()).newtons().drawn(),
     of_connector("peak_compression_time_s", Numbers, ("peak compression time", "its time"), |r| r.row.compression.time_s.into()).unit("s"),
     of_connector("peak_tension_n", Numbers, ("peak tension", "largest tension"), |r| r.row.tension.value.into()).newtons().drawn(),
     of_connector("peak_tension_time_s", Numbers, ("peak tension time", "its time"), |r| r.row.tension.time_s.into()).unit("s"),
 
-    of_sample("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
-    of_sample("time_s", Numbers, ("time", "time since the vehicle's front is at the bridge"), |r| r.time_s.into()).unit("s").role(Role::Key),
-    of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.quantity.into()).role(Role::Key),
-    of_sample("position", Counts, ("position", "position of a deflection, joint of a force"), |r| r.position.into()).role(Role::Key),
+    of_sample("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_sample("time_s", Numbers, ("time", "time since the vehicle's front is at the bridge"), |r| r.time_s.into()).unit("s").role(ColumnRole::Key),
+    of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.quantity.into()).role(ColumnRole::Key),
+    of_sample("position", Counts, ("position", "position of a deflection, joint of a force"), |r| r.position.into()).role(ColumnRole::Key),
     of_sample("value", Numbers, ("value", "the quantity, in its unit"), |r| r.value.into()),
 
-    of_mode("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(Role::Key),
-    of_mode("number", Counts, ("number", "number of the mode, from 1"), |r| r.row.number.into()).role(Role::Key),
+    of_mode("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_mode("number", Counts, ("number", "number of the mode, from 1"), |r| r.row.number.into()).role(ColumnRole::Key),
     of_mode("frequency_hz", Numbers, ("frequency", "natural frequency"), |r| r.row.frequency_hz.into()).unit("Hz").decimals(5),
     of_mode("shape", Texts, ("shape", "name of the shape"), |r| r.row.shape.as_str().into()),
     of_mode("vertical_share", Numbers, ("vertical share", "vertical share of the kinetic energy"), |r| r.row.vertical_share.into()).decimals(4),
@@ -466,14 +466,14 @@ impl Column {
     /// The cell of a mode that stands alone; nothing in a column of another table.
     pub fn of_mode<'a>(&self, mode: &'a ModeRow) -> Cell<'a> {
         match self.source {
-            Source::Mode(of) => of(&RowOf { job: 0, row: mode }),
+            ColumnSource::Mode(of) => of(&RowOf { job: 0, row: mode }),
             _ => Cell::Nothing,
         }
     }
 
     /// The numbers of a job whose largest values matter.
     pub fn measures() -> impl Iterator<Item = &'static Self> {
-        Self::of_table(TableName::Jobs).filter(|column| column.role == Role::Measure)
+        Self::of_table(TableName::Jobs).filter(|column| column.role == ColumnRole::Measure)
     }
 
     /// The peaks that a summary of crossings or static cases has.

@@ -4,7 +4,7 @@
 //! Does not know terminals.
 
 use crate::JobRecord;
-use crate::registry::{Column, Source};
+use crate::registry::{Column, ColumnSource};
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
@@ -38,14 +38,14 @@ const AGAINST: &str = "speed_m_s";
 
 /// The summary under way.
 #[derive(Debug)]
-pub(super) struct Lines<'a> {
+pub(super) struct SummaryLines<'a> {
     axes: Vec<String>,
     jobs: &'a [Job],
     outcomes: Outcomes,
     taken: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> SummaryLines<'a> {
     /// Nothing yet of a study with all its jobs.
     pub(super) fn new(study: &Study, jobs: &'a [Job]) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl<'a> Lines<'a> {
         match &mut self.outcomes {
             Outcomes::Peaks(peaks) => {
                 let of = |record, column: &Column| match column.source {
-                    Source::Job(of) => of(record).number().unwrap_or(f64::NAN),
+                    ColumnSource::Job(of) => of(record).number().unwrap_or(f64::NAN),
                     _ => f64::NAN,
                 };
                 for record in records {

@@ -3,7 +3,7 @@
 //! Knows cells by column and row. Does not know files or what a column means.
 
 use super::arrays::{self, Columns};
-use super::frame::Frame;
+use super::frame::ArrowFrame;
 use polars_arrow::array::{Array, BooleanArray, PrimitiveArray, Utf8ViewArray};
 use polars_arrow::datatypes::ArrowDataType;
 use pontoon_plan::input::Cell;
@@ -60,17 +60,17 @@ impl TableName {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Table {
     rows: usize,
-    columns: Vec<(String, Cells)>,
+    columns: Vec<(String, ColumnCells)>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Cells {
+enum ColumnCells {
     Numbers(Vec<Option<f64>>),
     Words(Vec<Option<String>>),
     Flags(Vec<Option<bool>>),
 }
 
-impl Cells {
+impl ColumnCells {
     /// The cells of an array.
     fn of(name: &str, array: &dyn Array) -> io::Result<Self> {
         let mut cells = match array.dtype() {
@@ -107,7 +107,7 @@ impl Cells {
 
 /// What the cells of a column are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Numbers.
     Numbers,
     /// Words.
@@ -116,7 +116,7 @@ pub enum Kind {
     Flags,
 }
 
-impl Kind {
+impl ColumnKind {
     /// What a file writes in such a column's place.
     pub fn word(self) -> &'static str {
         match self {
@@ -132,37 +132,39 @@ impl Table {
     ///
     /// # Errors
     /// Where a column is of none of the types that tables have, or a number is not finite.
-    pub(super) fn from_frames(frames: &[Frame]) -> io::Result<Self> {
-        let mut columns: Vec<(String, Cells)> = Vec::new();
+    pub(super) fn from_frames(frames: &[ArrowFrame]) -> io::Result<Self> {
+        let mut columns: Vec<(String, ColumnCells)> = Vec::new();
         for (column, (name, array)) in frames.iter().flat_map(|frame| frame.columns().enumerate()) {
             match columns.get_mut(column) {
                 Some((_, cells)) => cells.append(name, array)?,
-                None => columns.push((name.to_owned(), Cells::of(name, array)?)),
+                None => columns.push((name.to_owned(), ColumnCells::of(name, array)?)),
             }
         }
         Ok(Self {
-            rows: frames.iter().map(Frame::rows).sum(),
+            rows: frames.iter().map(ArrowFrame::rows).sum(),
             columns,
         })
     }
 
     /// The table of columns.
     pub(super) fn from_columns(columns: Columns<'_>) -> Self {
-        let cells = |cells: arrays::Cells<'_>| match cells {
-            arrays::Cells::Numbers(numbers) => Cells::Numbers(numbers),
-            arrays::Cells::Counts(counts) => Cells::Numbers(counts.iter().map(|x| x.map(|x| x as f64)).collect()),
-            arrays::Cells::Flags(flags) => Cells::Flags(flags),
-            arrays::Cells::Values(values) => Cells::Words(values),
-            arrays::Cells::Words(words) => {
+        let cells = |cells: arrays::ColumnBuilder<'_>| match cells {
+            arrays::ColumnBuilder::Numbers(numbers) => ColumnCells::Numbers(numbers),
+            arrays::ColumnBuilder::Counts(counts) => {
+                ColumnCells::Numbers(counts.iter().map(|x| x.map(|x| x as f64)).collect())
+            }
+            arrays::ColumnBuilder::Flags(flags) => ColumnCells::Flags(flags),
+            arrays::ColumnBuilder::Values(values) => ColumnCells::Words(values),
+            arrays::ColumnBuilder::Words(words) => {
                 let words = words.into_iter();
-                Cells::Words(words.map(|word| word.map(|word| word.into_owned())).collect())
+                ColumnCells::Words(words.map(|word| word.map(|word| word.into_owned())).collect())
             }
         };
-        let columns: Vec<(String, Cells)> = columns.0.into_iter().map(|(name, own)| (name, cells(own))).collect();
+        let columns: Vec<(String, ColumnCells)> = columns.0.into_iter().map(|(name, own)| (name, cells(own))).collect();
         let rows = columns.first().map_or(0, |(_, cells)| match cells {
-            Cells::Numbers(list) => list.len(),
-            Cells::Words(list) => list.len(),
-            Cells::Flags(list) => list.len(),
+            ColumnCells::Numbers(list) => list.len(),
+            ColumnCells::Words(list) => list.len(),
+            ColumnCells::Flags(list) => list.len(),
         });
         Self { rows, columns }
     }
@@ -183,21 +185,24 @@ impl Table {
     }
 
     /// What a column holds; none where it is empty in all rows, as its type then says nothing, or not there.
-    pub fn kind(&self, column: &str) -> Option<Kind> {
+    pub fn kind(&self, column: &str) -> Option<ColumnKind> {
         let (any, kind) = match self.cells(column)? {
-            Cells::Numbers(list) => (list.iter().any(Option::is_some), Kind::Numbers),
-            Cells::Words(list) => (list.iter().any(Option::is_some), Kind::Words),
-            Cells::Flags(list) => (list.iter().any(Option::is_some), Kind::Flags),
+            ColumnCells::Numbers(list) => (list.iter().any(Option::is_some), ColumnKind::Numbers),
+            ColumnCells::Words(list) => (list.iter().any(Option::is_some), ColumnKind::Words),
+            ColumnCells::Flags(list) => (list.iter().any(Option::is_some), ColumnKind::Flags),
         };
         any.then_some(kind)
     }
 
     /// Whether a column's cells can be had as numbers.
     pub fn is_number(&self, column: &str) -> bool {
-        matches!(self.cells(column), Some(Cells::Numbers(_) | Cells::Flags(_)))
+        matches!(
+            self.cells(column),
+            Some(ColumnCells::Numbers(_) | ColumnCells::Flags(_))
+        )
     }
 
-    fn cells(&self, column: &str) -> Option<&Cells> {
+    fn cells(&self, column: &str) -> Option<&ColumnCells> {
         self.columns
             .iter()
             .find(|(name, _)| name == column)
@@ -207,16 +212,16 @@ impl Table {
     /// A cell as a number; none where it is empty or no number. Yes is 1, no is 0.
     pub fn number(&self, column: &str, row: usize) -> Option<f64> {
         match self.cells(column)? {
-            Cells::Numbers(list) => *list.get(row)?,
-            Cells::Flags(list) => (*list.get(row)?).map(|yes| if yes { 1.0 } else { 0.0 }),
-            Cells::Words(_) => None,
+            ColumnCells::Numbers(list) => *list.get(row)?,
+            ColumnCells::Flags(list) => (*list.get(row)?).map(|yes| if yes { 1.0 } else { 0.0 }),
+            ColumnCells::Words(_) => None,
         }
     }
 
     /// The numbers of a column; none where it holds others or is not there.
     pub fn numbers(&self, column: &str) -> Option<&[Option<f64>]> {
         match self.cells(column)? {
-            Cells::Numbers(list) => Some(list),
+            ColumnCells::Numbers(list) => Some(list),
             _ => None,
         }
     }
@@ -224,7 +229,7 @@ impl Table {
     /// The words of a column; none where it holds others or is not there.
     pub fn word_cells(&self, column: &str) -> Option<&[Option<String>]> {
         match self.cells(column)? {
-            Cells::Words(list) => Some(list),
+            ColumnCells::Words(list) => Some(list),
             _ => None,
         }
     }
@@ -232,9 +237,9 @@ impl Table {
     /// A cell; nothing where it is empty or not there.
     pub fn cell(&self, column: &str, row: usize) -> Cell<'_> {
         let cell = self.cells(column).and_then(|cells| match cells {
-            Cells::Numbers(list) => list.get(row)?.map(Cell::Number),
-            Cells::Words(list) => list.get(row)?.as_deref().map(Cell::from),
-            Cells::Flags(list) => list.get(row)?.map(Cell::Flag),
+            ColumnCells::Numbers(list) => list.get(row)?.map(Cell::Number),
+            ColumnCells::Words(list) => list.get(row)?.as_deref().map(Cell::from),
+            ColumnCells::Flags(list) => list.get(row)?.map(Cell::Flag),
         });
         cell.unwrap_or_default()
     }
@@ -244,9 +249,9 @@ impl Table {
     pub fn codes(&self, column: &str) -> Vec<Option<u32>> {
         match self.cells(column) {
             // 0 and -0 are one number
-            Some(Cells::Numbers(list)) => numbered(list.iter().map(|cell| cell.map(|x| (x + 0.0).to_bits()))),
-            Some(Cells::Words(list)) => numbered(list.iter().map(Option::as_deref)),
-            Some(Cells::Flags(list)) => numbered(list.iter().copied()),
+            Some(ColumnCells::Numbers(list)) => numbered(list.iter().map(|cell| cell.map(|x| (x + 0.0).to_bits()))),
+            Some(ColumnCells::Words(list)) => numbered(list.iter().map(Option::as_deref)),
+            Some(ColumnCells::Flags(list)) => numbered(list.iter().copied()),
             None => vec![None; self.rows],
         }
     }
@@ -254,7 +259,7 @@ impl Table {
     /// The distinct words of a column in the order of their first row; none where it holds no words.
     pub fn words(&self, column: &str) -> Vec<&str> {
         let mut words: Vec<&str> = Vec::new();
-        if let Some(Cells::Words(list)) = self.cells(column) {
+        if let Some(ColumnCells::Words(list)) = self.cells(column) {
             for word in list.iter().flatten() {
                 if !words.contains(&word.as_str()) {
                     words.push(word);

@@ -5,8 +5,8 @@
 use super::files::{MANIFEST, SUMMARY};
 use super::layout::Layout;
 use super::manifest::{self, Manifest};
-use super::parquet::{Provenance, TableFile, metadata};
-use super::summary::{Lines, SummaryTable};
+use super::parquet::{TableFile, TableProvenance, metadata};
+use super::summary::{SummaryLines, SummaryTable};
 use super::table::TableName;
 use crate::JobRecord;
 use pontoon_journal::place::{Folder, FolderError};
@@ -14,18 +14,18 @@ use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
 
 /// The tables of a run under way. Until they are finished the folder keeps what it held before.
-pub struct Writer<'a> {
+pub struct TableWriter<'a> {
     folder: Folder,
     jobs: &'a [Job],
     layout: Layout,
     files: Vec<(TableName, TableFile)>,
-    lines: Lines<'a>,
+    lines: SummaryLines<'a>,
     taken: usize,
     /// Whether the tables are there already.
     whole: bool,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> TableWriter<'a> {
     /// Begins the tables of a study with all its jobs.
     ///
     /// # Errors
@@ -34,7 +34,7 @@ impl<'a> Writer<'a> {
         study: &Study,
         jobs: &'a [Job],
         folder: &Folder,
-        provenance: &Provenance,
+        provenance: &TableProvenance,
     ) -> Result<Self, FolderError> {
         let layout = Layout::new(study, jobs);
         let metadata = metadata(study, jobs, provenance);
@@ -47,7 +47,7 @@ impl<'a> Writer<'a> {
             jobs,
             files: layout.tables().map(file).collect::<Result<_, FolderError>>()?,
             layout,
-            lines: Lines::new(study, jobs),
+            lines: SummaryLines::new(study, jobs),
             taken: 0,
             whole: false,
         })
@@ -55,7 +55,7 @@ impl<'a> Writer<'a> {
 
     /// The same of a study whose tables the folder holds already: nothing but the summary is written. None where they are not
     /// what this program would write.
-    pub fn of_whole(study: &Study, jobs: &'a [Job], folder: &Folder, provenance: &Provenance) -> Option<Self> {
+    pub fn of_whole(study: &Study, jobs: &'a [Job], folder: &Folder, provenance: &TableProvenance) -> Option<Self> {
         let layout = Layout::new(study, jobs);
         let names: Vec<String> = layout.tables().map(TableName::file).collect();
         TableName::ALL
@@ -66,7 +66,7 @@ impl<'a> Writer<'a> {
             jobs,
             layout,
             files: Vec::new(),
-            lines: Lines::new(study, jobs),
+            lines: SummaryLines::new(study, jobs),
             taken: 0,
             whole: true,
         })

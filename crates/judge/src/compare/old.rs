@@ -8,7 +8,7 @@ use crate::checks::Role;
 use crate::quantity::Tolerance;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_results::labels::all_digits;
-use pontoon_results::{Column, Kind, Results, Role as ColumnRole, Table, TableName};
+use pontoon_results::{Column, ColumnKind, ColumnRole, Results, Table, TableName};
 use std::collections::HashMap;
 
 /// Holds every number of new results against that of old ones: a line a column, and one for the jobs themselves. An old
@@ -208,7 +208,9 @@ fn columns(
         let Some(tolerance) = tolerances.of(name.word(), column, largest) else {
             continue;
         };
-        let of_words = [now, then].iter().any(|table| table.kind(column) == Some(Kind::Words));
+        let of_words = [now, then]
+            .iter()
+            .any(|table| table.kind(column) == Some(ColumnKind::Words));
         if of_words {
             lines.push(words(id, column, (now, then), &matched, place));
             continue;

@@ -6,7 +6,7 @@ use super::spec::{HistoryQuantity, Quantity, SelectQuantity};
 use pontoon_plan::design::{AxisValues, NamedAxis};
 use pontoon_plan::input::filter::{Allowed, Filter};
 use pontoon_plan::input::{Cell, Found, Refusal, RefusalKind};
-use pontoon_results::{CellKind, Column, Kind, Results, Table, TableName};
+use pontoon_results::{CellKind, Column, ColumnKind, Results, Table, TableName};
 use std::path::Path;
 
 /// A check with the results that it is made on.
@@ -83,7 +83,7 @@ impl<'a> Asked<'a> {
     /// Refuses a column that a table does not have, or that holds words.
     pub(crate) fn number_column(&self, key: &str, table: &Table, column: &str) -> Result<(), Refusal> {
         self.column(key, table, column)?;
-        if table.kind(column) == Some(Kind::Words) {
+        if table.kind(column) == Some(ColumnKind::Words) {
             let found = Found::value(column).which("a column of words");
             return Err(Refusal::new(self.file, key, found, "a column of numbers"));
         }
@@ -153,18 +153,18 @@ fn vocabulary(column: &str) -> Option<&'static [&'static str]> {
 }
 
 /// What a filter names that a column of a kind cannot hold.
-fn stranger(allowed: &Allowed, kind: Kind) -> Option<Found> {
+fn stranger(allowed: &Allowed, kind: ColumnKind) -> Option<Found> {
     match allowed {
         Allowed::OneOf(values) => {
             let fits = |cell: &&Cell<'static>| match kind {
-                Kind::Numbers => cell.number().is_some(),
-                Kind::Words => cell.word().is_some(),
-                Kind::Flags => matches!(cell, Cell::Flag(_)),
+                ColumnKind::Numbers => cell.number().is_some(),
+                ColumnKind::Words => cell.word().is_some(),
+                ColumnKind::Flags => matches!(cell, Cell::Flag(_)),
             };
             let mut strange = values.iter().filter(|cell| !cell.is_nothing() && !fits(cell));
             strange.next().map(|cell| Found::value(cell.value()))
         }
-        Allowed::Range(..) if kind != Kind::Numbers => Some("a range".into()),
+        Allowed::Range(..) if kind != ColumnKind::Numbers => Some("a range".into()),
         Allowed::Range(..) => None,
     }
 }
@@ -176,18 +176,18 @@ mod tests {
 
     #[test]
     fn strangers_are_values_of_another_kind_and_nothing_is_none() {
-        let of = |written: Value, kind: Kind| stranger(&serde_json::from_value(written).unwrap(), kind);
+        let of = |written: Value, kind: ColumnKind| stranger(&serde_json::from_value(written).unwrap(), kind);
         for (written, kind, found) in [
-            (json!([1, null, 2.5]), Kind::Numbers, None),
-            (json!([1, "x"]), Kind::Numbers, Some(Found::value("x"))),
-            (json!(true), Kind::Numbers, Some(Found::value(true))),
-            (json!({ "from": 1 }), Kind::Numbers, None),
-            (json!({ "from": 1 }), Kind::Words, Some("a range".into())),
-            (json!(["x", null]), Kind::Words, None),
-            (json!(1), Kind::Words, Some(Found::value(1))),
-            (json!([true, null]), Kind::Flags, None),
-            (json!(1), Kind::Flags, Some(Found::value(1))),
-            (json!({ "to": 1 }), Kind::Flags, Some("a range".into())),
+            (json!([1, null, 2.5]), ColumnKind::Numbers, None),
+            (json!([1, "x"]), ColumnKind::Numbers, Some(Found::value("x"))),
+            (json!(true), ColumnKind::Numbers, Some(Found::value(true))),
+            (json!({ "from": 1 }), ColumnKind::Numbers, None),
+            (json!({ "from": 1 }), ColumnKind::Words, Some("a range".into())),
+            (json!(["x", null]), ColumnKind::Words, None),
+            (json!(1), ColumnKind::Words, Some(Found::value(1))),
+            (json!([true, null]), ColumnKind::Flags, None),
+            (json!(1), ColumnKind::Flags, Some(Found::value(1))),
+            (json!({ "to": 1 }), ColumnKind::Flags, Some("a range".into())),
         ] {
             assert_eq!(of(written.clone(), kind), found, "{written} {kind:?}");
         }

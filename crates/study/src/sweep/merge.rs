@@ -16,7 +16,7 @@ use pontoon_journal::{EXTENSION, FOLDER, JournalError, JournalIndex, JournalWrit
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
-use pontoon_results::{JobRecord, Manifest, Moment, Provenance, Writer};
+use pontoon_results::{JobRecord, Manifest, Moment, TableProvenance, TableWriter};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;
@@ -132,11 +132,11 @@ pub fn merge<'a>(
         let found = format!("{} of {} jobs after the shards were copied", ledger.known(), jobs.len());
         return Err(Refusal::new(&setting.out, "", found, "all jobs").into());
     }
-    let provenance = Provenance {
+    let provenance = TableProvenance {
         commit: setting.commit.clone(),
         instruction_paths: paths,
     };
-    let mut tables = Writer::begin(study, jobs, &folder, &provenance)?;
+    let mut tables = TableWriter::begin(study, jobs, &folder, &provenance)?;
     let mut sink = |records: Vec<JobRecord>| tables.append(&records);
     let run_setting = Setting {
         threads: setting.threads,

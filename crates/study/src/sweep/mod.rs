@@ -42,7 +42,7 @@ use pontoon_journal::{JournalError, JournalWriter};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Shard};
 use pontoon_plan::study_file::Study;
-use pontoon_results::{JobRecord, Manifest, Moment, Outcome, Provenance, SummaryTable, Writer};
+use pontoon_results::{JobRecord, Manifest, Moment, Outcome, SummaryTable, TableProvenance, TableWriter};
 use solving::{Solved, Solving};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -198,17 +198,17 @@ pub fn sweep<'a>(
             jobs: jobs.len(),
         });
     }
-    let provenance = Provenance {
+    let provenance = TableProvenance {
         commit: setting.commit.clone(),
         instruction_paths: paths,
     };
     let done = ledger.known() == asked.len();
     let whole = done
-        .then(|| Writer::of_whole(study, jobs, &opened.folder, &provenance))
+        .then(|| TableWriter::of_whole(study, jobs, &opened.folder, &provenance))
         .flatten();
     let mut tables = match whole {
         Some(whole) => whole,
-        None => Writer::begin(study, jobs, &opened.folder, &provenance)?,
+        None => TableWriter::begin(study, jobs, &opened.folder, &provenance)?,
     };
     let mut sink = |records: Vec<JobRecord>| tables.append(&records);
     let mut solved = solving.solve(ledger, Some(&mut sink))?;

@@ -8,7 +8,7 @@ use pontoon_judge::quantity::SelectQuantity;
 use pontoon_judge::reference::{Against, MeasuredSpec, Reference};
 use pontoon_plan::input::filter::{Allowed, Filter};
 use pontoon_plan::input::{Cell, Refusal};
-use pontoon_results::{Column, Results, Role, Table, TableName};
+use pontoon_results::{Column, ColumnRole, Results, Table, TableName};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -227,7 +227,7 @@ fn place_and_axes(filter: &Filter) -> Option<(Option<u32>, BTreeMap<String, Cell
                 position = Some(number as u32);
             }
             "y_m" if value.is_nothing() => {}
-            _ if matches!(role, Some(Role::Key | Role::State)) => return None,
+            _ if matches!(role, Some(ColumnRole::Key | ColumnRole::State)) => return None,
             _ => {
                 axes.insert(name.clone(), value.clone());
             }

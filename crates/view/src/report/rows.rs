@@ -6,7 +6,7 @@ use super::cells::Measure;
 use super::packed::Packed;
 use crate::thinning::spread;
 use pontoon_plan::input::Cell;
-use pontoon_results::{Column, Kind, Results, ResultsError, Role, Table, TableName, labels};
+use pontoon_results::{Column, ColumnKind, ColumnRole, Results, ResultsError, Table, TableName, labels};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
 
@@ -177,7 +177,7 @@ impl Rows {
         notes: &mut Vec<String>,
     ) -> Result<(Self, Option<Envelope>), ResultsError> {
         let jobs = results.jobs();
-        let further = Column::of_table(TableName::Jobs).filter(|column| column.role == Role::Listed);
+        let further = Column::of_table(TableName::Jobs).filter(|column| column.role == ColumnRole::Listed);
         let further = further.map(|column| column.name);
         let outcomes = measures.iter().map(|measure| measure.name).chain(further);
         let there = |name: &String| jobs.kind(name).is_some();
@@ -209,7 +209,7 @@ impl Rows {
 }
 
 fn column(jobs: &Table, name: String, rows: &[usize]) -> RowColumn {
-    let numeric = matches!(jobs.kind(&name), Some(Kind::Numbers | Kind::Flags));
+    let numeric = matches!(jobs.kind(&name), Some(ColumnKind::Numbers | ColumnKind::Flags));
     let text = |row: &usize| match jobs.cell(&name, *row) {
         Cell::Nothing => None,
         other => Some(other.text()),
