@@ -5,7 +5,7 @@
 
 use pontoon_judge::calibrate::Parameters;
 use pontoon_judge::reference::Reference;
-use pontoon_plan::input::{Found, Refusal, RefusalKind, mark};
+use pontoon_plan::input::{FoundValue, Refusal, RefusalKind, mark};
 use pontoon_plan::job::Jobs;
 use pontoon_plan::study_file::Study;
 use std::collections::BTreeSet;
@@ -174,7 +174,7 @@ fn nothing_but_the_message_hangs_on_words() {
             }
         };
         let translated = Refusal {
-            found: Box::new(Found {
+            found: Box::new(FoundValue {
                 words: other(&refused.found.words),
                 value: refused.found.value.clone(),
             }),

@@ -7,7 +7,7 @@ use crate::terminal::{BAD, FAINT, GOOD, HEAD, Look, NOTABLE};
 use crate::words;
 use anstyle::Style;
 use anyhow::Result;
-use pontoon_judge::compare::{Comparison, Line, Verdict};
+use pontoon_judge::compare::{CheckResult, Comparison, Verdict};
 use pontoon_plan::input::Cell;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use unicode_width::UnicodeWidthStr;
 
 const COLUMNS: [&str; 7] = ["check", "expected", "got", "deviation", "margin", "verdict", "remark"];
 
-fn cells(line: &Line) -> [String; 7] {
+fn cells(line: &CheckResult) -> [String; 7] {
     [
         line.id.clone(),
         line.expected.clone(),
@@ -49,7 +49,7 @@ const ORDER: [Verdict; 5] = [
 /// An aligned line a check with its verdict first, those of one verdict together, and the counts. Where lines are too long
 /// for a terminal, a check has several.
 pub(crate) fn text(compared: &Comparison, look: Look) -> String {
-    let lines: Vec<&Line> = ORDER
+    let lines: Vec<&CheckResult> = ORDER
         .iter()
         .flat_map(|&verdict| compared.lines.iter().filter(move |line| line.verdict == verdict))
         .collect();
@@ -83,7 +83,7 @@ pub(crate) fn text(compared: &Comparison, look: Look) -> String {
     format!("{checks}\n{held}")
 }
 
-fn verdict_first(line: &Line) -> Vec<String> {
+fn verdict_first(line: &CheckResult) -> Vec<String> {
     let [check, expected, got, deviation, margin, verdict, remark] = cells(line);
     vec![verdict, check, expected, got, deviation, margin, remark]
 }
@@ -108,7 +108,7 @@ fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec
 }
 
 /// A check over several lines, behind a verdict of at most `longest` characters.
-fn several(line: &Line, longest: usize, look: Look) -> String {
+fn several(line: &CheckResult, longest: usize, look: Look) -> String {
     let [check, expected, got, deviation, margin, verdict, remark] = cells(line);
     let width = look.width.unwrap_or(usize::MAX);
     let told = [

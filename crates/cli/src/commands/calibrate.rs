@@ -5,7 +5,7 @@ use crate::ending::Ending;
 use crate::words;
 use anyhow::{Context, Result};
 use pontoon_journal::place::Folder;
-use pontoon_judge::calibrate::{Calibration, FittedCheck, Identified, Parameters, Task};
+use pontoon_judge::calibrate::{Calibration, CalibrationTask, FittedCheck, Identified, Parameters};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::{Cell, Refusal, pretty};
 use pontoon_plan::study_file::read_bridge;
@@ -28,7 +28,7 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
             words::note(&format!("{candidates} candidates, least sum of squares {least:.4}"));
         }
     };
-    let task = Task::new(&bridge, &references, &parameters, &told)?;
+    let task = CalibrationTask::new(&bridge, &references, &parameters, &told)?;
     let (folder, name) = place(&arguments.out)?;
     let found = task.fit(arguments.threads.map_or(0, usize::from))?;
     let written = pretty(&found.bridge);

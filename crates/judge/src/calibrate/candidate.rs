@@ -6,7 +6,7 @@ use super::parameters::Parameters;
 use super::quantities::QUANTITIES;
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::input::InvalidInput;
-use pontoon_plan::input::{Document, DocumentPath, Found, Refusal, RefusalKind, to_value, typed_value};
+use pontoon_plan::input::{Document, DocumentPath, FoundValue, Refusal, RefusalKind, to_value, typed_value};
 use pontoon_plan::study_file::BridgeFile;
 use serde_json::json;
 use std::path::Path;
@@ -20,7 +20,7 @@ pub(super) struct Candidate {
 
 /// The refusal of what parameters make of a number of the bridge.
 fn of_numbers(file: &Path, wrong: InvalidInput) -> Refusal {
-    let found = Found::from(wrong.found).which(format!("which they make of {} of the bridge", wrong.key));
+    let found = FoundValue::from(wrong.found).which(format!("which they make of {} of the bridge", wrong.key));
     Refusal::new(file, "parameters", found, wrong.allowed)
 }
 
@@ -30,7 +30,8 @@ impl Candidate {
         let file = &parameters.file;
         let mut document = to_value(&bridge.design);
         let mut set = |at: &str, path: &str, value: f64| {
-            let path = DocumentPath::parse(path).ok_or_else(|| Refusal::new(file, at, Found::value(path), "a path"))?;
+            let path =
+                DocumentPath::parse(path).ok_or_else(|| Refusal::new(file, at, FoundValue::value(path), "a path"))?;
             path.set(&mut document, json!(value)).map_err(|obstacle| {
                 let refused = Refusal::new(file, at, obstacle.to_string(), "the path of a number");
                 refused.because(RefusalKind::Misplaced)

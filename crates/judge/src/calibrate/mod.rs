@@ -23,7 +23,7 @@ pub use parameters::{Parameters, ParametersSpec};
 use crate::reference::Reference;
 use candidate::Candidate;
 use fit::{FitError, Parameter};
-use model::Model;
+use model::CalibrationModel;
 use pontoon_plan::input::Refusal;
 use pontoon_plan::study_file::BridgeFile;
 use pontoon_study::run::{PoolError, on_threads};
@@ -52,14 +52,14 @@ pub enum CalibrateError {
 }
 
 /// A calibration whose input has been checked as far as can be without computing anything.
-pub struct Task<'a> {
+pub struct CalibrationTask<'a> {
     bridge: &'a BridgeFile,
     parameters: &'a Parameters,
     starts: Vec<Parameter>,
-    model: Model<'a>,
+    model: CalibrationModel<'a>,
 }
 
-impl<'a> Task<'a> {
+impl<'a> CalibrationTask<'a> {
     /// The fit of the parameters of a bridge to the checks of references. `told` is told of each batch: candidates so
     /// far, the least sum of squares among them.
     ///
@@ -75,7 +75,7 @@ impl<'a> Task<'a> {
             bridge,
             parameters,
             starts: parameters.starts(bridge)?,
-            model: Model::new(bridge, references, parameters, told)?,
+            model: CalibrationModel::new(bridge, references, parameters, told)?,
         })
     }
 

@@ -6,11 +6,11 @@ use super::candidate::Candidate;
 use super::fit::ModelError;
 use super::parameters::Parameters;
 use crate::checks::{Check, Role};
-use crate::compare::Judge;
+use crate::compare::ReferenceJudge;
 use crate::reference::Reference;
 use pontoon_plan::design::Varies;
 use pontoon_plan::input::filter::Filter;
-use pontoon_plan::input::{Found, Refusal, RefusalKind};
+use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::{BridgeFile, Study};
 use pontoon_results::{JobRecord, Results};
@@ -20,19 +20,19 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 /// What a calibration computes.
-pub(super) struct Model<'a> {
+pub(super) struct CalibrationModel<'a> {
     pub(super) bridge: &'a BridgeFile,
     pub(super) parameters: &'a Parameters,
-    pub(super) sources: Vec<Source<'a>>,
+    pub(super) sources: Vec<ReferencedStudy<'a>>,
     told: &'a (dyn Fn(usize, f64) + Sync),
-    state: Mutex<State>,
+    state: Mutex<ModelState>,
 }
 
 /// What a candidate is computed for: each study with its jobs.
-type Work = Vec<(Study, Vec<Job>)>;
+type CandidateWork = Vec<(Study, Vec<Job>)>;
 
 /// A reference with its study.
-pub(super) struct Source<'a> {
+pub(super) struct ReferencedStudy<'a> {
     pub(super) reference: &'a Reference,
     pub(super) study: Study,
     /// Numbers of the checks that are fitted.
@@ -42,7 +42,7 @@ pub(super) struct Source<'a> {
 }
 
 /// What batches leave to those behind them.
-struct State {
+struct ModelState {
     modules: PreparedModules,
     candidates: usize,
     condensations: usize,
@@ -51,7 +51,7 @@ struct State {
     refused: Option<Refusal>,
 }
 
-impl<'a> Model<'a> {
+impl<'a> CalibrationModel<'a> {
     pub(super) fn new(
         bridge: &'a BridgeFile,
         references: &'a [Reference],
@@ -62,7 +62,7 @@ impl<'a> Model<'a> {
         check_ids(references, parameters)?;
         let sources = references
             .iter()
-            .map(|r| Source::new(r, parameters))
+            .map(|r| ReferencedStudy::new(r, parameters))
             .collect::<Result<Vec<_>, Refusal>>()?;
         if sources.iter().all(|source| source.checks.is_empty()) {
             let allowed = "ids of checks of one value with a tolerance";
@@ -74,7 +74,7 @@ impl<'a> Model<'a> {
             parameters,
             sources,
             told,
-            state: Mutex::new(State {
+            state: Mutex::new(ModelState {
                 modules: PreparedModules::default(),
                 candidates: 0,
                 condensations: 0,
@@ -86,7 +86,7 @@ impl<'a> Model<'a> {
 
     /// `weight (found - expected) / tolerance` of each fitted check, for each of several candidates, all solved together.
     pub(super) fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<f64>, ModelError>> {
-        let prepared: Vec<Result<Work, ModelError>> = points
+        let prepared: Vec<Result<CandidateWork, ModelError>> = points
             .iter()
             .map(|point| self.jobs(point).map_err(|refusal| self.told_of(refusal)))
             .collect();
@@ -147,14 +147,14 @@ impl<'a> Model<'a> {
         self.lock().condensations
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, State> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, ModelState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// For each reference its study with the candidate's bridge, and the jobs that the checks need.
-    fn jobs(&self, point: &[f64]) -> Result<Work, Refusal> {
+    fn jobs(&self, point: &[f64]) -> Result<CandidateWork, Refusal> {
         let candidate = Candidate::new(self.parameters, self.bridge, point)?;
-        let of_source = |source: &Source<'_>| {
+        let of_source = |source: &ReferencedStudy<'_>| {
             let mut study = source.study.clone();
             study.bridge = BridgeFile {
                 file: self.bridge.file.clone(),
@@ -169,11 +169,11 @@ impl<'a> Model<'a> {
     }
 }
 
-impl<'a> Source<'a> {
+impl<'a> ReferencedStudy<'a> {
     fn new(reference: &'a Reference, parameters: &Parameters) -> Result<Self, Refusal> {
         let Some(path) = reference.study() else {
             let allowed = "the path of the study that gives what its checks look at";
-            return Err(Refusal::new(&reference.file, "study", Found::NOTHING, allowed));
+            return Err(Refusal::new(&reference.file, "study", FoundValue::NOTHING, allowed));
         };
         let is_fitted = |check: &Check| match &parameters.spec.fit {
             Some(ids) => ids.contains(&check.id),
@@ -223,7 +223,7 @@ impl<'a> Source<'a> {
             return Ok(Err(ModelError(reason)));
         }
         let results = Results::of_records(study, jobs, records, Path::new("candidate"));
-        let judge = Judge::new(&results, self.reference);
+        let judge = ReferenceJudge::new(&results, self.reference);
         let mut residuals = Vec::new();
         for &i in &self.checks {
             let check = &self.reference.checks[i];
@@ -269,7 +269,7 @@ fn check_ids(references: &[Reference], parameters: &Parameters) -> Result<(), Re
             return Err(Refusal::unknown(&parameters.file, path, id, &known));
         }
         let mut meant = checks().filter(|check| check.id == *id);
-        let found = Found::value(id.as_str());
+        let found = FoundValue::value(id.as_str());
         if meant.clone().count() > 1 {
             let found = found.which("which several references have");
             let allowed = "an id that one reference has";

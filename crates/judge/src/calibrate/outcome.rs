@@ -4,7 +4,7 @@
 
 use super::candidate::Candidate;
 use super::fit::{Bound, Fit, Purpose};
-use super::model::Model;
+use super::model::CalibrationModel;
 use pontoon_core::bridge::{BridgeDesign, Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 use pontoon_plan::input::{Document, to_value};
 use serde::Serialize;
@@ -81,7 +81,7 @@ pub struct Calibration {
 }
 
 /// Puts together what a fit found.
-pub(super) fn calibration(model: &Model<'_>, fit: Fit, best: Candidate) -> Calibration {
+pub(super) fn calibration(model: &CalibrationModel<'_>, fit: Fit, best: Candidate) -> Calibration {
     let specs = &model.parameters.spec.parameters;
     let parameters: Vec<Identified> = fit
         .parameters
@@ -142,7 +142,7 @@ pub(super) fn calibration(model: &Model<'_>, fit: Fit, best: Candidate) -> Calib
     }
 }
 
-fn checks(model: &Model<'_>, fit: &Fit) -> Vec<FittedCheck> {
+fn checks(model: &CalibrationModel<'_>, fit: &Fit) -> Vec<FittedCheck> {
     let fitted = model
         .sources
         .iter()
@@ -168,7 +168,7 @@ fn checks(model: &Model<'_>, fit: &Fit) -> Vec<FittedCheck> {
         .collect()
 }
 
-fn provenance(model: &Model<'_>, fit: &Fit, parameters: &[Identified]) -> Provenance {
+fn provenance(model: &CalibrationModel<'_>, fit: &Fit, parameters: &[Identified]) -> Provenance {
     let document = |role: &str, name: &str, document: &Document| ProvenanceDocument {
         role: role.to_owned(),
         name: name.to_owned(),

@@ -4,7 +4,7 @@
 
 use super::fit::{Parameter, Settings};
 use super::quantities::{FOLLOWS, QUANTITIES, quantity};
-use pontoon_plan::input::{Cell, Document, DocumentPath, Found, Refusal, RefusalKind, leaves, to_value, typed};
+use pontoon_plan::input::{Cell, Document, DocumentPath, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_plan::study_file::BridgeFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -89,7 +89,7 @@ impl ParametersSpec {
                         Some(_) => format!("parameters[{i}].name"),
                         None => format!("parameters[{i}].sets.{path}"),
                     };
-                    let found = Found::value(path.as_str()).which(format!("which follows '{other}'"));
+                    let found = FoundValue::value(path.as_str()).which(format!("which follows '{other}'"));
                     let refused = Refusal::new(file, key, found, "numbers that nothing else moves");
                     return Err(refused.because(RefusalKind::Conflict));
                 }
@@ -152,7 +152,8 @@ impl ParameterSpec {
     fn check(&self, file: &Path, key: &str) -> Result<(), Refusal> {
         let upper = format!("{key}.upper");
         if !(self.upper - self.lower).is_finite() {
-            let found = Found::from(self.upper).which(format!("too far from lower, {}", Cell::written(self.lower)));
+            let found =
+                FoundValue::from(self.upper).which(format!("too far from lower, {}", Cell::written(self.lower)));
             return Err(Refusal::new(file, upper, found, "bounds whose distance is a number"));
         }
         if self.lower >= self.upper {
@@ -188,7 +189,7 @@ impl Parameters {
         for (i, parameter) in spec.parameters.iter().enumerate() {
             parameter.check(file, &format!("parameters[{i}]"))?;
             if spec.parameters[..i].iter().any(|other| other.name == parameter.name) {
-                let found = Found::value(parameter.name.as_str());
+                let found = FoundValue::value(parameter.name.as_str());
                 let refused = Refusal::new(file, format!("parameters[{i}].name"), found, "each name once");
                 return Err(refused.because(RefusalKind::Repeated));
             }
@@ -225,7 +226,7 @@ impl Parameters {
             let key = format!("parameters[{i}]");
             let start = self.start(&key, parameter, bridge, &document)?;
             if !(parameter.lower..=parameter.upper).contains(&start) {
-                let found = Found::from(start).which(format!("where {} starts", parameter.name));
+                let found = FoundValue::from(start).which(format!("where {} starts", parameter.name));
                 let allowed = format!(
                     "bounds that hold the start: {} to {} do not",
                     parameter.lower, parameter.upper
@@ -263,13 +264,13 @@ impl Parameters {
             let value = DocumentPath::parse(path).and_then(|p| p.get(document).cloned());
             match value.as_ref().map(Value::as_f64) {
                 Some(_) if value.as_ref().is_some_and(Value::is_u64) => {
-                    let found = Found::value(path).which("a whole number, which cannot move a little");
+                    let found = FoundValue::value(path).which("a whole number, which cannot move a little");
                     let allowed = "the path of a number that need not be whole";
                     Err(Refusal::new(&self.file, at, found, allowed))
                 }
                 Some(Some(number)) => Ok(number),
                 Some(None) => {
-                    let found = Found::value(path).which("which is no number");
+                    let found = FoundValue::value(path).which("which is no number");
                     Err(Refusal::new(&self.file, at, found, "the path of a number"))
                 }
                 None => Err(Refusal {

@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, scale};
 use super::kind::CheckKind;
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Quantity};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Quantity};
 use pontoon_plan::input::filter::Filter;
 use pontoon_plan::input::{Refusal, RefusalKind};
 use pontoon_results::labels::as_written;
@@ -77,7 +77,7 @@ impl CheckKind for BoundCheck {
         place.quantity("bound.of", &self.of, None)
     }
 
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         asked.quantity("bound.of", &self.of)
     }
 

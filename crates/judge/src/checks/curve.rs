@@ -1,8 +1,8 @@
 //! A check of a curve: a column runs along points, with linear interpolation between its rows.
 
 use super::finding::{Finding, scale, tolerance_text};
-use super::kind::{CheckKind, Curve, Expectation};
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Tolerance};
+use super::kind::{CheckCurve, CheckKind, Expectation};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Tolerance};
 use pontoon_plan::input::filter::Filter;
 use pontoon_plan::input::{Refusal, RefusalKind};
 use pontoon_results::TableName;
@@ -73,7 +73,7 @@ impl CheckKind for CurveCheck {
         }
     }
 
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         let table = asked.table(&asked.at("curve.table"), self.table)?;
         asked.number_column(&asked.at("curve.column"), table, &self.column)?;
         asked.number_column(&asked.at("curve.against"), table, &self.against)?;
@@ -115,7 +115,7 @@ impl CheckKind for CurveCheck {
     }
 
     fn expectation(&self) -> Expectation<'_> {
-        Expectation::Curve(Curve {
+        Expectation::Curve(CheckCurve {
             table: self.table,
             column: &self.column,
             against: &self.against,

@@ -3,7 +3,7 @@
 //! Knows what is asked of a kind. Does not know the kinds.
 
 use super::finding::Finding;
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Quantity, SelectQuantity};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Quantity, SelectQuantity};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::input::filter::Filter;
 use pontoon_results::TableName;
@@ -14,7 +14,7 @@ pub(crate) trait CheckKind {
     fn refuse(&self, place: &Place<'_>) -> Result<(), Refusal>;
 
     /// Refuses what the results cannot have.
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal>;
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal>;
 
     /// What it finds on the rows that a filter means.
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue>;
@@ -59,7 +59,7 @@ pub enum Expectation<'a> {
         measured: bool,
     },
     /// Points of a curve.
-    Curve(Curve<'a>),
+    Curve(CheckCurve<'a>),
     /// A natural frequency.
     Mode {
         /// Name of the shape.
@@ -71,7 +71,7 @@ pub enum Expectation<'a> {
 
 /// Points along which a column runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Curve<'a> {
+pub struct CheckCurve<'a> {
     /// The table.
     pub table: TableName,
     /// The column that runs along them.

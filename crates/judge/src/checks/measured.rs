@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, with_tolerance};
 use super::kind::{CheckKind, Expectation, OneValue};
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Quantity, Tolerance};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Quantity, Tolerance};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::input::filter::Filter;
 use schemars::JsonSchema;
@@ -37,7 +37,7 @@ impl CheckKind for MeasuredCheck {
         place.quantity("measured.of", &self.of, None)
     }
 
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         asked.quantity("measured.of", &self.of)
     }
 

@@ -17,13 +17,13 @@ mod value;
 pub use bound::BoundCheck;
 pub use curve::CurveCheck;
 pub(crate) use kind::CheckKind;
-pub use kind::{Curve, Expectation, OneValue};
+pub use kind::{CheckCurve, Expectation, OneValue};
 pub use measured::MeasuredCheck;
 pub use mode::ModeCheck;
 pub use trend::{Trend, TrendCheck};
 pub use value::ValueCheck;
 
-use crate::quantity::{Asked, Place};
+use crate::quantity::{CheckInput, Place};
 use pontoon_plan::input::filter::Filter;
 use pontoon_plan::input::{Refusal, RefusalKind};
 use schemars::JsonSchema;
@@ -110,7 +110,7 @@ kinds! {
     /// A mode, by the name of its shape, has a frequency.
     mode: Mode(ModeCheck),
     /// A column runs along a curve.
-    curve: Curve(CurveCheck),
+    curve: CheckCurve(CurveCheck),
     /// A quantity lies within the uncertainty of a measurement.
     measured: Measured(MeasuredCheck),
 }
@@ -169,7 +169,7 @@ impl Check {
     }
 
     /// Refuses what results cannot have: tables, columns, words, jobs.
-    pub(crate) fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    pub(crate) fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         asked.check_each()?;
         self.kind.of().select(asked)
     }

@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, with_tolerance};
 use super::kind::{CheckKind, Expectation, OneValue};
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Quantity, Reduction, SelectQuantity, Tolerance};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Quantity, Reduction, SelectQuantity, Tolerance};
 use pontoon_plan::input::filter::{Allowed, Filter};
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_results::TableName;
@@ -53,7 +53,7 @@ impl CheckKind for ModeCheck {
         place.tolerance("mode", self.tolerance())
     }
 
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         let modes = asked.table(&asked.at("mode"), TableName::Modes)?;
         asked.allowed(&asked.at("mode.shape"), Some(modes), "shape", &self.of_shape())?;
         asked.filters(&asked.at("mode"), &Filter::default(), Some(modes))

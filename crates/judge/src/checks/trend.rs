@@ -2,9 +2,9 @@
 
 use super::finding::{Finding, scale};
 use super::kind::CheckKind;
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Quantity};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Quantity};
 use pontoon_plan::input::filter::Filter;
-use pontoon_plan::input::{Cell, Found, Refusal, RefusalKind};
+use pontoon_plan::input::{Cell, FoundValue, Refusal, RefusalKind};
 use pontoon_results::labels::as_written;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -88,7 +88,7 @@ impl CheckKind for TrendCheck {
         match (self.trend, self.within) {
             (Trend::Flat, None) => {
                 let allowed = "a share: the trend is flat within it";
-                return Err(place.refuse("trend.within", Found::NOTHING, allowed));
+                return Err(place.refuse("trend.within", FoundValue::NOTHING, allowed));
             }
             (Trend::Flat, Some(within)) if within < 0.0 => {
                 return Err(place.refuse("trend.within", within, "a number of at least 0"));
@@ -102,7 +102,7 @@ impl CheckKind for TrendCheck {
         place.quantity("trend.of", &self.of, Some(&self.along))
     }
 
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         asked.number_column(&asked.at("trend.along"), asked.results.jobs(), &self.along)?;
         asked.quantity("trend.of", &self.of)
     }

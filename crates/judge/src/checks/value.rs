@@ -2,9 +2,9 @@
 
 use super::finding::{Finding, with_tolerance};
 use super::kind::{CheckKind, Expectation, OneValue};
-use crate::quantity::{Asked, Evaluator, NoValue, Place, Quantity, Tolerance};
+use crate::quantity::{CheckInput, Evaluator, NoValue, Place, Quantity, Tolerance};
 use pontoon_plan::input::filter::Filter;
-use pontoon_plan::input::{Found, Refusal};
+use pontoon_plan::input::{FoundValue, Refusal};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -39,13 +39,17 @@ impl ValueCheck {
 impl CheckKind for ValueCheck {
     fn refuse(&self, place: &Place<'_>) -> Result<(), Refusal> {
         if place.decides && self.expected.is_none() {
-            return Err(place.refuse("value.expected", Found::NOTHING, "a number; only a record needs none"));
+            return Err(place.refuse(
+                "value.expected",
+                FoundValue::NOTHING,
+                "a number; only a record needs none",
+            ));
         }
         place.tolerance("value", self.tolerance())?;
         place.quantity("value.of", &self.of, None)
     }
 
-    fn select(&self, asked: &Asked<'_>) -> Result<(), Refusal> {
+    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
         asked.quantity("value.of", &self.of)
     }
 

@@ -2,21 +2,21 @@
 //!
 //! Knows cases and roles. Does not know what any kind of check asks, nor how a quantity is found.
 
-use super::line::{Case, CaseColumns, Line, Verdict};
+use super::line::{Case, CaseColumns, CheckResult, Verdict};
 use crate::checks::{Check, Role};
-use crate::quantity::{Asked, Evaluator, NoValue};
+use crate::quantity::{CheckInput, Evaluator, NoValue};
 use crate::reference::Reference;
 use pontoon_plan::input::Refusal;
 use pontoon_results::Results;
 use std::collections::HashSet;
 
 /// Makes the checks of one reference on results.
-pub(crate) struct Judge<'a> {
+pub(crate) struct ReferenceJudge<'a> {
     reference: &'a Reference,
     evaluator: Evaluator<'a>,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> ReferenceJudge<'a> {
     pub(crate) fn new(results: &'a Results, reference: &'a Reference) -> Self {
         Self {
             reference,
@@ -25,7 +25,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Makes check number `i`.
-    pub(super) fn line(&self, i: usize) -> Result<Line, Refusal> {
+    pub(super) fn line(&self, i: usize) -> Result<CheckResult, Refusal> {
         let check = self.selected(i)?;
         let combinations = self.combinations(check);
         let cases: Vec<Case> = if combinations.is_empty() {
@@ -40,7 +40,7 @@ impl<'a> Judge<'a> {
             }
         }
         let (expected, expected_value) = check.kind.of().expected();
-        Ok(Line {
+        Ok(CheckResult {
             id: check.id.clone(),
             statement: check.statement.clone(),
             role: check.role,
@@ -55,7 +55,7 @@ impl<'a> Judge<'a> {
     /// Check number `i`, refused where it names what the results cannot have.
     fn selected(&self, i: usize) -> Result<&'a Check, Refusal> {
         let check = &self.reference.checks[i];
-        check.select(&Asked {
+        check.select(&CheckInput {
             results: self.evaluator.results,
             file: &self.reference.file,
             key: format!("checks[{i}]"),

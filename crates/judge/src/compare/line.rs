@@ -96,7 +96,7 @@ impl Case {
 
 /// One check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Line {
+pub struct CheckResult {
     /// Its id.
     pub id: String,
     /// The statement behind it.
@@ -115,7 +115,7 @@ pub struct Line {
     pub cases: Vec<Case>,
 }
 
-impl Line {
+impl CheckResult {
     /// The value of the worst case for people: one, or the steps of a trend.
     pub fn got(&self) -> String {
         match self.worst.values.as_slice() {
@@ -184,7 +184,7 @@ pub struct Comparison {
     /// What else is to be said of the results as a whole.
     pub notes: Vec<String>,
     /// The checks in the order of the reference.
-    pub lines: Vec<Line>,
+    pub lines: Vec<CheckResult>,
 }
 
 impl Comparison {

@@ -7,8 +7,8 @@ mod line;
 mod old;
 mod tolerances;
 
-pub(crate) use judge::Judge;
-pub use line::{Case, CaseColumns, Comparison, Line, Verdict};
+pub(crate) use judge::ReferenceJudge;
+pub use line::{Case, CaseColumns, CheckResult, Comparison, Verdict};
 pub use old::against_old;
 pub use tolerances::Tolerances;
 
@@ -23,7 +23,7 @@ use pontoon_results::Results;
 /// [`Refusal`] where the reference belongs to another study, or names a column, word or job that the results do not have.
 pub fn against_reference(results: &Results, reference: &Reference) -> Result<Comparison, Refusal> {
     let study = reference.study_of(&results.name, &results.place)?;
-    let judge = Judge::new(results, reference);
+    let judge = ReferenceJudge::new(results, reference);
     let lines = (0..reference.checks.len())
         .map(|i| judge.line(i))
         .collect::<Result<_, _>>()?;

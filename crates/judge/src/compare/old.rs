@@ -2,7 +2,7 @@
 //!
 //! Knows which rows of two runs are the same. Does not know why they may differ.
 
-use super::line::{Case, CaseColumns, Comparison, DIGITS, Line, Verdict};
+use super::line::{Case, CaseColumns, CheckResult, Comparison, DIGITS, Verdict};
 use super::tolerances::Tolerances;
 use crate::checks::Role;
 use crate::quantity::Tolerance;
@@ -59,7 +59,7 @@ pub fn against_old(new: &Results, old: &Results, tolerances: &Tolerances) -> Res
 /// For each old job the new one of the same axes.
 type Pairs = HashMap<u64, u64>;
 
-fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, Line) {
+fn match_jobs(new: &Results, old: &Results, axes: &[String]) -> (Pairs, CheckResult) {
     let text = |r: &Results, row: usize| {
         let cells = axes.iter().map(|axis| r.jobs().cell(axis, row));
         cells.map(|cell| place_text(&cell)).collect::<String>()
@@ -128,8 +128,8 @@ fn place_text(cell: &Cell<'_>) -> String {
     }
 }
 
-fn line(id: String, expected: String, worst: Case) -> Line {
-    Line {
+fn line(id: String, expected: String, worst: Case) -> CheckResult {
+    CheckResult {
         id,
         statement: None,
         role: Role::Hold,
@@ -145,7 +145,7 @@ fn line(id: String, expected: String, worst: Case) -> Line {
     }
 }
 
-fn missing(name: TableName) -> Line {
+fn missing(name: TableName) -> CheckResult {
     let worst = Case {
         case: CaseColumns::default(),
         values: Vec::new(),
@@ -175,7 +175,7 @@ fn columns(
     axes: &[String],
     tolerances: &Tolerances,
     old: &Results,
-) -> Vec<Line> {
+) -> Vec<CheckResult> {
     let is_key = |column: &&Column| column.role == ColumnRole::Key && column.name != "job" && now.has(column.name);
     let keys: Vec<&str> = Column::of_table(name)
         .filter(is_key)
@@ -234,7 +234,7 @@ fn words(
     (now, then): (&Table, &Table),
     matched: &[(usize, Option<usize>)],
     place: impl Fn(usize) -> CaseColumns,
-) -> Line {
+) -> CheckResult {
     let cells = |&(old, new): &(usize, Option<usize>)| {
         let found = new.map(|row| now.cell(column, row)).unwrap_or_default();
         (old, then.cell(column, old), found)
@@ -285,7 +285,7 @@ impl Worst {
         }
     }
 
-    fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> CaseColumns) -> Line {
+    fn line(self, id: String, tolerance: Tolerance, place: impl Fn(usize) -> CaseColumns) -> CheckResult {
         let (row, old, new) = self
             .at
             .map_or((None, None, None), |(row, old, new)| (Some(row), old, new));
@@ -313,7 +313,7 @@ impl Worst {
             holds,
             reason,
         };
-        Line {
+        CheckResult {
             expected_value: old,
             ..line(id, expected, worst)
         }

@@ -5,12 +5,12 @@
 use super::spec::{HistoryQuantity, Quantity, SelectQuantity};
 use pontoon_plan::design::{AxisValues, NamedAxis};
 use pontoon_plan::input::filter::{Allowed, Filter};
-use pontoon_plan::input::{Cell, Found, Refusal, RefusalKind};
+use pontoon_plan::input::{Cell, FoundValue, Refusal, RefusalKind};
 use pontoon_results::{CellKind, Column, ColumnKind, Results, Table, TableName};
 use std::path::Path;
 
 /// A check with the results that it is made on.
-pub(crate) struct Asked<'a> {
+pub(crate) struct CheckInput<'a> {
     pub(crate) results: &'a Results,
     /// The reference's file.
     pub(crate) file: &'a Path,
@@ -22,7 +22,7 @@ pub(crate) struct Asked<'a> {
     pub(crate) each: &'a [String],
 }
 
-impl<'a> Asked<'a> {
+impl<'a> CheckInput<'a> {
     /// Refuses columns that the check is made for each of and the table of jobs does not have.
     pub(crate) fn check_each(&self) -> Result<(), Refusal> {
         for (j, column) in self.each.iter().enumerate() {
@@ -67,7 +67,7 @@ impl<'a> Asked<'a> {
                 .filter(|name| self.results.table(**name).is_some())
                 .map(|name| name.word())
                 .collect();
-            let found = Found::value(name.word()).which("which the results do not hold");
+            let found = FoundValue::value(name.word()).which("which the results do not hold");
             Refusal::new(self.file, key, found, left.join(", "))
         })
     }
@@ -84,7 +84,7 @@ impl<'a> Asked<'a> {
     pub(crate) fn number_column(&self, key: &str, table: &Table, column: &str) -> Result<(), Refusal> {
         self.column(key, table, column)?;
         if table.kind(column) == Some(ColumnKind::Words) {
-            let found = Found::value(column).which("a column of words");
+            let found = FoundValue::value(column).which("a column of words");
             return Err(Refusal::new(self.file, key, found, "a column of numbers"));
         }
         Ok(())
@@ -134,7 +134,7 @@ impl<'a> Asked<'a> {
         if column == "job" && !(0..jobs.rows()).any(|row| allowed.allows(&jobs.cell("job", row))) {
             let last = jobs.rows().saturating_sub(1);
             let found = match allowed.single() {
-                Some(job) => Found::value(job.value()).which("which is no job"),
+                Some(job) => FoundValue::value(job.value()).which("which is no job"),
                 None => format!("no job {}", allowed.written()).into(),
             };
             return Err(Refusal::new(self.file, key, found, format!("0 to {last}")));
@@ -153,7 +153,7 @@ fn vocabulary(column: &str) -> Option<&'static [&'static str]> {
 }
 
 /// What a filter names that a column of a kind cannot hold.
-fn stranger(allowed: &Allowed, kind: ColumnKind) -> Option<Found> {
+fn stranger(allowed: &Allowed, kind: ColumnKind) -> Option<FoundValue> {
     match allowed {
         Allowed::OneOf(values) => {
             let fits = |cell: &&Cell<'static>| match kind {
@@ -162,7 +162,7 @@ fn stranger(allowed: &Allowed, kind: ColumnKind) -> Option<Found> {
                 ColumnKind::Flags => matches!(cell, Cell::Flag(_)),
             };
             let mut strange = values.iter().filter(|cell| !cell.is_nothing() && !fits(cell));
-            strange.next().map(|cell| Found::value(cell.value()))
+            strange.next().map(|cell| FoundValue::value(cell.value()))
         }
         Allowed::Range(..) if kind != ColumnKind::Numbers => Some("a range".into()),
         Allowed::Range(..) => None,
@@ -179,14 +179,14 @@ mod tests {
         let of = |written: Value, kind: ColumnKind| stranger(&serde_json::from_value(written).unwrap(), kind);
         for (written, kind, found) in [
             (json!([1, null, 2.5]), ColumnKind::Numbers, None),
-            (json!([1, "x"]), ColumnKind::Numbers, Some(Found::value("x"))),
-            (json!(true), ColumnKind::Numbers, Some(Found::value(true))),
+            (json!([1, "x"]), ColumnKind::Numbers, Some(FoundValue::value("x"))),
+            (json!(true), ColumnKind::Numbers, Some(FoundValue::value(true))),
             (json!({ "from": 1 }), ColumnKind::Numbers, None),
             (json!({ "from": 1 }), ColumnKind::Words, Some("a range".into())),
             (json!(["x", null]), ColumnKind::Words, None),
-            (json!(1), ColumnKind::Words, Some(Found::value(1))),
+            (json!(1), ColumnKind::Words, Some(FoundValue::value(1))),
             (json!([true, null]), ColumnKind::Flags, None),
-            (json!(1), ColumnKind::Flags, Some(Found::value(1))),
+            (json!(1), ColumnKind::Flags, Some(FoundValue::value(1))),
             (json!({ "to": 1 }), ColumnKind::Flags, Some("a range".into())),
         ] {
             assert_eq!(of(written.clone(), kind), found, "{written} {kind:?}");

@@ -3,7 +3,7 @@
 //! Knows rows, filters and what is made of them. Does not know what a quantity should be, nor whether the results can
 //! have what it names.
 
-use super::history::{History, Moments, moments_of};
+use super::history::{Moments, ValueHistory, moments_of};
 use super::no_value::{NoValue, failed_jobs};
 use super::spec::{HistoryQuantity, Quantity, Reduction, SelectQuantity};
 use pontoon_plan::input::filter::Filter;
@@ -205,7 +205,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// A recorded history.
-    fn recorded(&self, job: u64, quantity: &str, position: u64) -> Result<History, NoValue> {
+    fn recorded(&self, job: u64, quantity: &str, position: u64) -> Result<ValueHistory, NoValue> {
         let table = self.table(TableName::Histories)?;
         let index = self.histories.get_or_init(|| {
             let mut index: HashMap<(u64, String, u64), Vec<usize>> = HashMap::new();
@@ -227,7 +227,7 @@ impl<'a> Evaluator<'a> {
         match rows.iter().map(point).collect::<Option<Vec<(f64, f64)>>>() {
             Some(points) => {
                 let (time_s, values) = points.into_iter().unzip();
-                Ok(History { time_s, values })
+                Ok(ValueHistory { time_s, values })
             }
             None => Err(NoValue::BrokenHistory),
         }

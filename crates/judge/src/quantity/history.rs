@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Values at times.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct History {
+pub(super) struct ValueHistory {
     pub time_s: Vec<f64>,
     pub values: Vec<f64>,
 }
@@ -88,7 +88,7 @@ impl Moments {
 /// Times closer than this are one time `[s]`.
 const SAME_TIME_S: f64 = 1e-9;
 
-impl History {
+impl ValueHistory {
     /// The part between two moments, both included; at least two times.
     pub(super) fn part(&self, moments: &Moments, from: Option<Edge>, to: Option<Edge>) -> Result<Self, NoValue> {
         let from_s = from.map_or(f64::NEG_INFINITY, |edge| moments.at(edge));
@@ -203,15 +203,15 @@ mod tests {
         leaving_s: 8.0,
     };
 
-    fn sampled(f: impl Fn(f64) -> f64) -> History {
+    fn sampled(f: impl Fn(f64) -> f64) -> ValueHistory {
         let time_s: Vec<f64> = (0..=1000).map(|i| 0.01 * f64::from(i)).collect();
-        History {
+        ValueHistory {
             values: time_s.iter().map(|&t| f(t)).collect(),
             time_s,
         }
     }
 
-    fn reduced(history: &History, reduction: HistoryReduction) -> f64 {
+    fn reduced(history: &ValueHistory, reduction: HistoryReduction) -> f64 {
         history.reduced(&MOMENTS, reduction).unwrap()
     }
 

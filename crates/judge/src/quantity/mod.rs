@@ -18,7 +18,7 @@ mod no_value;
 mod place;
 mod spec;
 
-pub(crate) use asked::Asked;
+pub(crate) use asked::CheckInput;
 pub(crate) use evaluator::Evaluator;
 pub use history::{Moments, moments_of};
 pub use no_value::NoValue;

@@ -3,7 +3,7 @@
 //! Knows where in the reference a check stands. Does not know results.
 
 use super::spec::{Quantity, Tolerance};
-use pontoon_plan::input::{Found, Refusal, RefusalKind};
+use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
 use pontoon_results::QUANTITIES;
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub(crate) struct Place<'a> {
 
 impl Place<'_> {
     /// A refusal of a key of the check.
-    pub(crate) fn refuse(&self, key: &str, found: impl Into<Found>, allowed: &str) -> Refusal {
+    pub(crate) fn refuse(&self, key: &str, found: impl Into<FoundValue>, allowed: &str) -> Refusal {
         Refusal::new(self.file, format!("{}.{key}", self.key), found, allowed)
     }
 

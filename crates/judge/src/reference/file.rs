@@ -5,7 +5,7 @@
 
 use super::measured::MeasuredSpec;
 use crate::checks::{Check, CheckSpec};
-use pontoon_plan::input::{Document, Found, Refusal, RefusalKind, to_value, typed};
+use pontoon_plan::input::{Document, FoundValue, Refusal, RefusalKind, to_value, typed};
 use pontoon_plan::study_file::Study;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -132,7 +132,7 @@ fn check_id(file: &Path, key: &str, ids: &[&str], place: usize, allowed: &str) -
         return Err(Refusal::new(file, path, "an empty id", allowed));
     }
     if ids[..place].contains(&id) {
-        let refused = Refusal::new(file, path, Found::value(id), "each id once");
+        let refused = Refusal::new(file, path, FoundValue::value(id), "each id once");
         return Err(refused.because(RefusalKind::Repeated));
     }
     Ok(())

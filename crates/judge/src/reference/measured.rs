@@ -4,7 +4,7 @@
 //! judges nothing: a measurement that decides is a check.
 
 use pontoon_plan::input::filter::Filter;
-use pontoon_plan::input::{Cell, Found, Refusal, RefusalKind};
+use pontoon_plan::input::{Cell, FoundValue, Refusal, RefusalKind};
 use pontoon_results::{Column, QUANTITIES, TableName};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -107,7 +107,7 @@ impl MeasuredSpec {
         let known = drawn(self.of.table);
         if known.is_empty() {
             let allowed = "jobs, positions, connectors, histories; a frequency is a check of kind mode";
-            let found = Found::value(self.of.table.word());
+            let found = FoundValue::value(self.of.table.word());
             return Err(Refusal::new(file, at("of.table"), found, allowed));
         }
         if !known.contains(&self.of.column) {
@@ -117,7 +117,7 @@ impl MeasuredSpec {
         if !axes.contains(&self.against) {
             let words: Vec<&str> = axes.iter().map(|axis| axis.word()).collect();
             let allowed = format!("{} of the table of {}", words.join(" or "), self.of.table.word());
-            let found = Found::value(self.against.word());
+            let found = FoundValue::value(self.against.word());
             return Err(Refusal::new(file, at("against"), found, allowed).because(RefusalKind::Conflict));
         }
         self.check_where(file, key)?;
@@ -162,7 +162,7 @@ impl MeasuredSpec {
         let key = format!("{key}.where.{place}");
         let allowed = "a whole number from 1";
         match self.filter.of(place).map(|allowed| (allowed, allowed.single())) {
-            None => Err(Refusal::new(file, key, Found::NOTHING, allowed)),
+            None => Err(Refusal::new(file, key, FoundValue::NOTHING, allowed)),
             Some((_, Some(cell))) if is_place(cell) => Ok(()),
             Some((_, Some(cell))) => Err(Refusal::new(file, key, &cell.value(), allowed)),
             Some((several, None)) => Err(Refusal::new(file, key, several.written().to_string(), allowed)),

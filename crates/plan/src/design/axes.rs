@@ -3,7 +3,7 @@
 //! Knows the axes that have a name of their own, one entry each, and when two axes contradict each other. Does not know values
 //! or points.
 
-use crate::input::{DocumentPath, Found, Refusal, RefusalKind};
+use crate::input::{DocumentPath, FoundValue, Refusal, RefusalKind};
 use serde::Serialize;
 use std::path::Path;
 
@@ -231,7 +231,7 @@ impl Axis {
     /// The axis of a name that stands at `key`; `known` are the names to suggest for a name that is not known.
     pub(super) fn read(file: &Path, key: &str, name: &str, known: &[String]) -> Result<Self, Refusal> {
         if name == "analysis.kind" {
-            let found = Found::from("the kind of the study as an axis");
+            let found = FoundValue::from("the kind of the study as an axis");
             return Err(Refusal::new(file, key, found, "one kind a study").because(RefusalKind::Misplaced));
         }
         match Varies::of(name) {

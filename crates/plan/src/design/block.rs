@@ -6,10 +6,10 @@ use super::axes::{Axis, JobAxis, Root, Varies, check_apart};
 use super::cases::{CaseRun, Cases};
 use super::condition::{Conditions, Test};
 use super::forms::{AxisMap, Design, Form, SampleSpec};
-use super::points::{Drawn, Making, Sample, values};
+use super::points::{PointSource, RandomSample, SampledAxis, values};
 use super::sampling::SobolPoints;
 use super::values::{MOST_POINTS, Values};
-use crate::input::{Cell, DocumentPath, Found, Refusal, RefusalKind};
+use crate::input::{Cell, DocumentPath, FoundValue, Refusal, RefusalKind};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub struct Block {
     first_case: Option<usize>,
     /// Its axes in the order of the file.
     pub axes: Vec<Axis>,
-    making: Making,
+    source: PointSource,
     tests: Vec<Test>,
     /// Number of its points that meet the conditions.
     count: usize,
@@ -35,7 +35,7 @@ pub struct Block {
 
 /// One point: a value for each axis of its block.
 #[derive(Debug, Clone)]
-pub struct Point<'a> {
+pub struct DesignPoint<'a> {
     /// The block it is of.
     pub block: &'a Block,
     /// Its number among the points of the block, those included that conditions leave out.
@@ -43,7 +43,7 @@ pub struct Point<'a> {
     values: Vec<Cell<'a>>,
 }
 
-impl<'a> Point<'a> {
+impl<'a> DesignPoint<'a> {
     /// Where its axes stand in the study file.
     pub fn key(&self) -> Cow<'a, str> {
         match self.block.first_case {
@@ -85,7 +85,7 @@ impl Block {
             let allowed = format!("at least one design: {}", Form::NAMES.join(", "));
             return Err(Refusal::new(file, "design", "an empty list", allowed));
         }
-        let reader = Reader { file, known };
+        let reader = DesignReader { file, known };
         let read = |(d, design)| reader.design(&format!("design[{d}]"), design);
         let read = (0..).zip(designs).map(read).collect::<Result<Vec<Vec<Self>>, _>>()?;
         // before conditions, which are tried on every point
@@ -97,14 +97,14 @@ impl Block {
         Ok(blocks)
     }
 
-    fn new(file: &Path, key: String, axes: Vec<Axis>, making: Making) -> Result<Self, Refusal> {
+    fn new(file: &Path, key: String, axes: Vec<Axis>, source: PointSource) -> Result<Self, Refusal> {
         check_apart(file, &key, &axes)?;
-        let count = making.count().unwrap_or(usize::MAX);
+        let count = source.count().unwrap_or(usize::MAX);
         Ok(Self {
             key,
             first_case: None,
             axes,
-            making,
+            source,
             tests: Vec::new(),
             count,
         })
@@ -122,9 +122,9 @@ impl Block {
 
     /// The points in order: of a grid the first axis changes slowest. They are made one by one, so a long block costs
     /// nothing but, of a Latin hypercube, four bytes a point and range while it lasts.
-    pub fn points(&self) -> impl Iterator<Item = Point<'_>> {
-        let values = values(&self.axes, &self.making, &self.tests);
-        values.map(move |(number, values)| Point {
+    pub fn points(&self) -> impl Iterator<Item = DesignPoint<'_>> {
+        let values = values(&self.axes, &self.source, &self.tests);
+        values.map(move |(number, values)| DesignPoint {
             block: self,
             number,
             values,
@@ -136,11 +136,11 @@ impl Block {
 fn check_size<'a>(file: &Path, blocks: impl Iterator<Item = &'a Block> + Clone) -> Result<(), Refusal> {
     let points = blocks
         .clone()
-        .try_fold(0_usize, |sum, block| sum.checked_add(block.making.count()?));
+        .try_fold(0_usize, |sum, block| sum.checked_add(block.source.count()?));
     if points.is_some_and(|points| points <= MOST_POINTS) {
         return Ok(());
     }
-    let size: f64 = blocks.map(|block| block.making.size()).sum();
+    let size: f64 = blocks.map(|block| block.source.size()).sum();
     let found = if size < 1e15 {
         format!("{size} points")
     } else {
@@ -155,17 +155,17 @@ fn check_size<'a>(file: &Path, blocks: impl Iterator<Item = &'a Block> + Clone) 
 }
 
 /// Reads designs of one file.
-struct Reader<'a> {
+struct DesignReader<'a> {
     file: &'a Path,
     /// Names to suggest.
     known: &'a [String],
 }
 
-impl Reader<'_> {
+impl DesignReader<'_> {
     fn refuse<T>(
         &self,
         key: impl Into<String>,
-        found: impl Into<Found>,
+        found: impl Into<FoundValue>,
         allowed: impl Into<String>,
     ) -> Result<T, Refusal> {
         Err(Refusal::new(self.file, key, found, allowed))
@@ -185,9 +185,9 @@ impl Reader<'_> {
             }
         };
         match form {
-            Form::Grid(map) => Ok(vec![self.listed(format!("{key}.grid"), map, Making::Grid)?]),
+            Form::Grid(map) => Ok(vec![self.listed(format!("{key}.grid"), map, PointSource::Grid)?]),
             Form::Zip(map) => {
-                let block = self.listed(format!("{key}.zip"), map, Making::Zip)?;
+                let block = self.listed(format!("{key}.zip"), map, PointSource::Zip)?;
                 self.check_even(&block)?;
                 Ok(vec![block])
             }
@@ -202,7 +202,12 @@ impl Reader<'_> {
                     return self.refuse(format!("{key}.count"), found, allowed);
                 }
                 let key = format!("{key}.ranges");
-                Ok(vec![Block::new(self.file, key, axes, Making::LatinHypercube(sample))?])
+                Ok(vec![Block::new(
+                    self.file,
+                    key,
+                    axes,
+                    PointSource::LatinHypercube(sample),
+                )?])
             }
             Form::Sobol(spec) => {
                 let (axes, sample) = self.sample(&format!("{key}.sobol"), spec)?;
@@ -212,13 +217,13 @@ impl Reader<'_> {
                     let allowed = format!("at most {} ranges", SobolPoints::MOST_DIMENSIONS);
                     return self.refuse(key, format!("{dimensions} ranges"), allowed);
                 }
-                Ok(vec![Block::new(self.file, key, axes, Making::Sobol(sample))?])
+                Ok(vec![Block::new(self.file, key, axes, PointSource::Sobol(sample))?])
             }
         }
     }
 
     /// A block of axes with their values.
-    fn listed(&self, key: String, map: &AxisMap, making: fn(Vec<Values>) -> Making) -> Result<Block, Refusal> {
+    fn listed(&self, key: String, map: &AxisMap, source: fn(Vec<Values>) -> PointSource) -> Result<Block, Refusal> {
         let axis = |(name, written): (&String, &Value)| {
             let at = format!("{key}.{name}");
             let axis = Axis::read(self.file, &at, name, self.known)?;
@@ -226,12 +231,12 @@ impl Reader<'_> {
         };
         let read = map.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
         let (axes, values) = read.into_iter().unzip();
-        Block::new(self.file, key, axes, making(values))
+        Block::new(self.file, key, axes, source(values))
     }
 
     /// Refuses axes of a zip that have unequal numbers of values.
     fn check_even(&self, block: &Block) -> Result<(), Refusal> {
-        let Making::Zip(values) = &block.making else {
+        let PointSource::Zip(values) = &block.source else {
             return Ok(());
         };
         let mut several = block.axes.iter().zip(values).filter(|(_, values)| values.len() > 1);
@@ -259,8 +264,8 @@ impl Reader<'_> {
         let first = format!("{key}[{}]", run.first);
         let axis = |name: &String| Axis::read(self.file, &format!("{first}.{name}"), name, self.known);
         let axes = run.names.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
-        let making = Making::Cases(Arc::clone(&run.columns), run.count);
-        let block = Block::new(self.file, first, axes, making)?;
+        let source = PointSource::Cases(Arc::clone(&run.columns), run.count);
+        let block = Block::new(self.file, first, axes, source)?;
         Ok(Block {
             key: key.to_owned(),
             first_case: Some(run.first),
@@ -269,7 +274,7 @@ impl Reader<'_> {
     }
 
     /// The axes of a sample and what they are drawn from; `key` is where its count stands.
-    fn sample(&self, key: &str, spec: &SampleSpec) -> Result<(Vec<Axis>, Sample), Refusal> {
+    fn sample(&self, key: &str, spec: &SampleSpec) -> Result<(Vec<Axis>, RandomSample), Refusal> {
         if !(1..=MOST_POINTS).contains(&spec.count) {
             let allowed = format!("a whole number from 1 to {MOST_POINTS}");
             return self.refuse(format!("{key}.count"), spec.count, allowed);
@@ -281,12 +286,12 @@ impl Reader<'_> {
             Ok((axis, self.drawn(&at, name, written)?))
         };
         let read = spec.ranges.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
-        let (axes, drawn): (_, Vec<Drawn>) = read.into_iter().unzip();
-        if !drawn.iter().any(Drawn::is_range) {
+        let (axes, drawn): (_, Vec<SampledAxis>) = read.into_iter().unzip();
+        if !drawn.iter().any(SampledAxis::is_range) {
             let refused = Refusal::new(self.file, key, "no range", "at least one axis with a range [from, to]");
             return Err(refused.because(RefusalKind::Missing));
         }
-        let sample = Sample {
+        let sample = RandomSample {
             count: spec.count,
             seed: spec.seed,
             drawn,
@@ -294,18 +299,20 @@ impl Reader<'_> {
         Ok((axes, sample))
     }
 
-    fn drawn(&self, key: &str, name: &str, written: &Value) -> Result<Drawn, Refusal> {
+    fn drawn(&self, key: &str, name: &str, written: &Value) -> Result<SampledAxis, Refusal> {
         let allowed = "[from, to], two numbers with from below to, or one number or word";
         match written {
             Value::Number(_) | Value::String(_) | Value::Bool(_) => {
-                Ok(Drawn::Constant(Cell::from(written).canonical()))
+                Ok(SampledAxis::Constant(Cell::from(written).canonical()))
             }
             _ if name == "connection" => self.refuse(key, written, "linear or nonlinear, the same for all points"),
             Value::Array(ends) => match (
                 ends.as_slice(),
                 ends.iter().map(Value::as_f64).collect::<Vec<_>>().as_slice(),
             ) {
-                ([_, _], &[Some(from), Some(to)]) if from < to && (to - from).is_finite() => Ok(Drawn::Range(from, to)),
+                ([_, _], &[Some(from), Some(to)]) if from < to && (to - from).is_finite() => {
+                    Ok(SampledAxis::Range(from, to))
+                }
                 ([_, _], &[Some(from), Some(to)]) if from < to => self.refuse(
                     key,
                     format!("from {from:e} to {to:e}"),

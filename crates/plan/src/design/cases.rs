@@ -3,7 +3,7 @@
 //! Knows that cases of a study mostly name the same axes in the same order: those are kept as columns, eight bytes a number,
 //! so that a file of a hundred megabytes is read in little more than its text takes. Does not know what an axis may be called.
 
-use super::column::Column;
+use super::column::ValueColumn;
 use crate::input::Cell;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -28,7 +28,7 @@ pub(super) struct CaseRun {
     /// Names of the axes.
     pub(super) names: Vec<String>,
     /// The values of each axis.
-    pub(super) columns: Arc<Vec<Column>>,
+    pub(super) columns: Arc<Vec<ValueColumn>>,
 }
 
 impl Cases {
@@ -40,7 +40,7 @@ impl Cases {
             self.runs.push(CaseRun {
                 first,
                 count: 0,
-                columns: Arc::new(vec![Column::default(); names.len()]),
+                columns: Arc::new(vec![ValueColumn::default(); names.len()]),
                 names,
             });
         }

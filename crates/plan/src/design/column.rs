@@ -9,20 +9,20 @@ const LARGEST_WHOLE: u64 = 9_000_000_000_000_000;
 
 /// Values one after the other.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Column {
+pub(super) enum ValueColumn {
     /// Numbers alone; whole ones are written whole.
     Numbers(Vec<f64>),
     /// Whatever they are.
     Cells(Vec<Cell<'static>>),
 }
 
-impl Default for Column {
+impl Default for ValueColumn {
     fn default() -> Self {
         Self::Numbers(Vec::new())
     }
 }
 
-impl Column {
+impl ValueColumn {
     /// Number of values.
     pub(super) fn len(&self) -> usize {
         match self {
@@ -60,7 +60,7 @@ impl Column {
     }
 }
 
-impl FromIterator<Cell<'static>> for Column {
+impl FromIterator<Cell<'static>> for ValueColumn {
     fn from_iter<I: IntoIterator<Item = Cell<'static>>>(cells: I) -> Self {
         let mut column = Self::default();
         cells.into_iter().for_each(|cell| column.push(cell));
@@ -83,12 +83,12 @@ mod tests {
             Cell::Whole(i64::MAX),
         ];
         for cells in [&numbers[..], &mixed[..]] {
-            let column: Column = cells.iter().cloned().collect();
+            let column: ValueColumn = cells.iter().cloned().collect();
             assert_eq!(column.len(), cells.len());
             for (place, cell) in cells.iter().enumerate() {
                 assert_eq!(column.at(place).to_string(), cell.to_string());
             }
         }
-        assert!(matches!(numbers.into_iter().collect(), Column::Numbers(_)));
+        assert!(matches!(numbers.into_iter().collect(), ValueColumn::Numbers(_)));
     }
 }

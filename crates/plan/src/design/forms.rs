@@ -26,7 +26,7 @@ pub struct Design {
     pub zip: Option<AxisMap>,
     /// Single points, each axis with one value.
     #[serde(default)]
-    #[schemars(with = "Vec<Case>")]
+    #[schemars(with = "Vec<CaseForm>")]
     pub cases: Option<Cases>,
     /// Points drawn at random, one in each of `count` equal parts of each range.
     #[serde(default)]
@@ -189,9 +189,9 @@ impl JsonSchema for RangeMap {
 }
 
 /// One point, written axis by axis.
-struct Case;
+struct CaseForm;
 
-impl JsonSchema for Case {
+impl JsonSchema for CaseForm {
     fn schema_name() -> Cow<'static, str> {
         "Case".into()
     }

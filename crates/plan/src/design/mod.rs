@@ -15,7 +15,7 @@ mod tests;
 mod values;
 
 pub use axes::{Axis, AxisValues, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
-pub use block::{Block, Point};
+pub use block::{Block, DesignPoint};
 pub use cases::Cases;
 pub use condition::{Condition, Conditions, Relation};
 pub use forms::{AxisMap, Design, Form, RangeMap, SampleSpec};

@@ -3,49 +3,49 @@
 //! Knows their order. Stores none: a point is made when it is asked for. Does not know what a point means.
 
 use super::axes::Axis;
-use super::column::Column;
+use super::column::ValueColumn;
 use super::condition::Test;
-use super::sampling::{SobolPoints, Strata};
+use super::sampling::{LatinHypercubeAxis, SobolPoints};
 use super::values::Values;
 use crate::input::Cell;
 use std::sync::Arc;
 
 /// How the points of a block are made.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Making {
+pub(super) enum PointSource {
     /// Every combination of the axes' values.
     Grid(Vec<Values>),
     /// The axes' values one by one; one value stands for all.
     Zip(Vec<Values>),
     /// Drawn at random, one in each part of each range.
-    LatinHypercube(Sample),
+    LatinHypercube(RandomSample),
     /// Points of the Sobol' sequence.
-    Sobol(Sample),
+    Sobol(RandomSample),
     /// Point by point: the values of each axis, and how many points there are.
-    Cases(Arc<Vec<Column>>, usize),
+    Cases(Arc<Vec<ValueColumn>>, usize),
 }
 
 /// Points drawn from ranges.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sample {
+pub(super) struct RandomSample {
     /// Number of points.
     pub(super) count: usize,
     /// Seed.
     pub(super) seed: u64,
     /// What each axis is drawn from.
-    pub(super) drawn: Vec<Drawn>,
+    pub(super) drawn: Vec<SampledAxis>,
 }
 
 /// What an axis of a sample is drawn from.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Drawn {
+pub(super) enum SampledAxis {
     /// The same for all points.
     Constant(Cell<'static>),
     /// From the first to the second number.
     Range(f64, f64),
 }
 
-impl Making {
+impl PointSource {
     /// Number of points, whatever conditions leave of them; `None` beyond what can be counted.
     pub(super) fn count(&self) -> Option<usize> {
         match self {
@@ -71,40 +71,40 @@ impl Making {
 /// slowest.
 pub(super) fn values<'a>(
     axes: &'a [Axis],
-    making: &'a Making,
+    point_source: &'a PointSource,
     tests: &'a [Test],
 ) -> impl Iterator<Item = (usize, Vec<Cell<'a>>)> {
-    let mut source = Source::of(axes, making);
-    (0..making.count().unwrap_or(0))
+    let mut source = ValueSource::of(axes, point_source);
+    (0..point_source.count().unwrap_or(0))
         .map_while(move |number| Some((number, source.values(number)?)))
         .filter(|(_, values)| tests.iter().all(|test| test.met(values)))
 }
 
 /// What the values of the next point come from.
-enum Source<'a> {
+enum ValueSource<'a> {
     Grid(&'a [Values]),
     Zip(&'a [Values]),
     /// With the coordinates of the ranges.
-    LatinHypercube(&'a [Drawn], Vec<Strata>),
-    Sobol(&'a [Drawn], SobolPoints),
-    Cases(&'a [Column]),
+    LatinHypercube(&'a [SampledAxis], Vec<LatinHypercubeAxis>),
+    Sobol(&'a [SampledAxis], SobolPoints),
+    Cases(&'a [ValueColumn]),
 }
 
-impl<'a> Source<'a> {
-    fn of(axes: &[Axis], making: &'a Making) -> Self {
-        match making {
-            Making::Grid(values) => Self::Grid(values),
-            Making::Zip(values) => Self::Zip(values),
-            Making::LatinHypercube(Sample { count, seed, drawn }) => {
+impl<'a> ValueSource<'a> {
+    fn of(axes: &[Axis], point_source: &'a PointSource) -> Self {
+        match point_source {
+            PointSource::Grid(values) => Self::Grid(values),
+            PointSource::Zip(values) => Self::Zip(values),
+            PointSource::LatinHypercube(RandomSample { count, seed, drawn }) => {
                 let ranges = axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
-                let strata = ranges.map(|(axis, _)| Strata::new(*count, *seed, &axis.name));
+                let strata = ranges.map(|(axis, _)| LatinHypercubeAxis::new(*count, *seed, &axis.name));
                 Self::LatinHypercube(drawn, strata.collect())
             }
-            Making::Sobol(Sample { seed, drawn, .. }) => {
+            PointSource::Sobol(RandomSample { seed, drawn, .. }) => {
                 let dimensions = drawn.iter().filter(|drawn| drawn.is_range()).count();
                 Self::Sobol(drawn, SobolPoints::new(dimensions, *seed))
             }
-            Making::Cases(columns, _) => Self::Cases(columns),
+            PointSource::Cases(columns, _) => Self::Cases(columns),
         }
     }
 
@@ -132,24 +132,24 @@ impl<'a> Source<'a> {
             }
             Self::Sobol(drawn, points) => drawn_values(drawn, points.next()?.into_iter()),
             Self::Cases(columns) => {
-                let columns: &'a [Column] = columns;
+                let columns: &'a [ValueColumn] = columns;
                 Some(columns.iter().map(|column| column.at(number)).collect())
             }
         }
     }
 }
 
-impl Drawn {
+impl SampledAxis {
     pub(super) fn is_range(&self) -> bool {
         matches!(self, Self::Range(..))
     }
 }
 
 /// The values of a point whose ranges have these coordinates.
-fn drawn_values<'a>(drawn: &'a [Drawn], mut shares: impl Iterator<Item = f64>) -> Option<Vec<Cell<'a>>> {
-    let value = |drawn: &'a Drawn| match drawn {
-        Drawn::Constant(value) => Some(value.borrowed()),
-        Drawn::Range(from, to) => {
+fn drawn_values<'a>(drawn: &'a [SampledAxis], mut shares: impl Iterator<Item = f64>) -> Option<Vec<Cell<'a>>> {
+    let value = |drawn: &'a SampledAxis| match drawn {
+        SampledAxis::Constant(value) => Some(value.borrowed()),
+        SampledAxis::Range(from, to) => {
             let x = from + (to - from) * shares.next()?;
             Some(Cell::written(x.clamp(*from, *to)))
         }

@@ -21,13 +21,13 @@ fn key(design: &str, seed: u64, of: &str) -> [u8; 32] {
 /// One coordinate of a Latin hypercube of `count` points: each of as many equal parts of 0 to 1 is hit once, in an order
 /// drawn at random and at a place drawn at random.
 #[derive(Debug, Clone)]
-pub(super) struct Strata {
+pub(super) struct LatinHypercubeAxis {
     /// The part of each point.
     parts: Vec<u32>,
     random: Pcg64,
 }
 
-impl Strata {
+impl LatinHypercubeAxis {
     /// The coordinate of a name, which another coordinate beside it does not change.
     pub(super) fn new(count: usize, seed: u64, name: &str) -> Self {
         let mut random = Pcg64::from_seed(key("latin_hypercube", seed, name));
@@ -111,7 +111,7 @@ mod tests {
     }
 
     fn strata(count: usize, seed: u64, name: &str) -> Vec<f64> {
-        let mut strata = Strata::new(count, seed, name);
+        let mut strata = LatinHypercubeAxis::new(count, seed, name);
         (0..count).map(|i| strata.share(i)).collect()
     }
 
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn the_largest_design_hits_each_part_once() {
         let count = super::super::values::MOST_POINTS;
-        let mut strata = Strata::new(count, 7, "x");
+        let mut strata = LatinHypercubeAxis::new(count, 7, "x");
         let mut hit = vec![false; count];
         for i in 0..count {
             let part = (strata.share(i) * count as f64) as usize;

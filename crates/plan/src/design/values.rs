@@ -2,8 +2,8 @@
 //!
 //! Knows the forms and that ranges hold both ends exactly. Does not know what an axis may be called.
 
-use super::column::Column;
-use crate::input::{Cell, Found, Refusal};
+use super::column::ValueColumn;
+use crate::input::{Cell, FoundValue, Refusal};
 use serde_json::Value;
 use std::path::Path;
 
@@ -18,7 +18,7 @@ const FORMS: &str = "a list of values, one number or word, {\"linspace\": [from,
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Values {
     /// As listed.
-    Listed(Column),
+    Listed(ValueColumn),
     /// From one end to the other.
     Spaced {
         /// The first value.
@@ -94,7 +94,7 @@ impl Values {
 
 /// The range of `[from, to, count]`.
 fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Values, Refusal> {
-    let refuse = |found: Found, allowed: &str| Err(Refusal::new(file, key, found, allowed));
+    let refuse = |found: FoundValue, allowed: &str| Err(Refusal::new(file, key, found, allowed));
     let numbers: Vec<f64> = ends
         .as_array()
         .into_iter()
@@ -106,7 +106,7 @@ fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Value
     };
     if count.fract() != 0.0 || !(2.0..=MOST_POINTS as f64).contains(&count) {
         return refuse(
-            Found::from(count).which("as the count"),
+            FoundValue::from(count).which("as the count"),
             "a whole count from 2 to 10000000",
         );
     }

@@ -3,8 +3,8 @@
 //! Knows files, and what a refused text is told as. Does not know what any key means.
 
 use super::path::join_steps;
-use super::refusal::{Found, Refusal, RefusalKind};
-use super::strict::{self, Fault, FaultKind, MARK, MOST_LEVELS, canonical};
+use super::refusal::{FoundValue, Refusal, RefusalKind};
+use super::strict::{self, FaultKind, MARK, MOST_LEVELS, SyntaxFault, canonical};
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ pub fn canonical_text(value: &Value) -> String {
     canonical(value).to_string()
 }
 
-fn refusal(file: &Path, text: &str, fault: Fault) -> Refusal {
+fn refusal(file: &Path, text: &str, fault: SyntaxFault) -> Refusal {
     let before = text.get(..fault.bytes.start).unwrap_or_default();
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
@@ -85,7 +85,7 @@ fn refusal(file: &Path, text: &str, fault: Fault) -> Refusal {
             )
         }
         FaultKind::RepeatedKey(name) => {
-            let found = Found::value(name).which(place);
+            let found = FoundValue::value(name).which(place);
             Refusal::new(file, path, found, "each key once").because(RefusalKind::RepeatedKey)
         }
         FaultKind::TooDeep => {

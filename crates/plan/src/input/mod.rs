@@ -33,7 +33,7 @@ pub use document::{Document, canonical_text};
 pub(crate) use path::join;
 pub use path::{DocumentPath, Obstacle, leaves};
 pub use pretty::pretty;
-pub use refusal::{Found, Refusal, RefusalKind, nearest};
+pub use refusal::{FoundValue, Refusal, RefusalKind, nearest};
 pub use span::{Mark, MarkKind, mark};
 pub(crate) use strict::canonical;
 pub use typed::{to_value, typed, typed_value};

@@ -11,7 +11,7 @@ const MOST_STEPS: usize = 100;
 
 /// A step of a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum PathStep {
     /// A key of an object.
     Key(String),
     /// A place in a list, from 0.
@@ -38,13 +38,13 @@ pub enum Obstacle {
 }
 
 /// Steps as a path is written: `module.y_m[0]`.
-pub(super) fn join_steps(steps: &[Step]) -> String {
+pub(super) fn join_steps(steps: &[PathStep]) -> String {
     let mut text = String::new();
     for step in steps {
         match step {
-            Step::Key(key) if text.is_empty() => text.push_str(key),
-            Step::Key(key) => text.extend([".", key]),
-            Step::Place(place) => text.push_str(&format!("[{place}]")),
+            PathStep::Key(key) if text.is_empty() => text.push_str(key),
+            PathStep::Key(key) => text.extend([".", key]),
+            PathStep::Place(place) => text.push_str(&format!("[{place}]")),
         }
     }
     text
@@ -62,7 +62,7 @@ pub(crate) fn join(prefix: &str, path: &str) -> String {
 
 /// A path into a document.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct DocumentPath(Vec<Step>);
+pub struct DocumentPath(Vec<PathStep>);
 
 impl DocumentPath {
     /// Reads a path; `None` where it is not well formed or has more than a hundred steps.
@@ -76,11 +76,11 @@ impl DocumentPath {
             if key.is_empty() {
                 return None;
             }
-            steps.push(Step::Key(key.to_owned()));
+            steps.push(PathStep::Key(key.to_owned()));
             while !places.is_empty() {
                 let (place, rest) = places.strip_prefix('[')?.split_once(']')?;
                 let number: usize = place.parse().ok().filter(|n: &usize| n.to_string() == place)?;
-                steps.push(Step::Place(number));
+                steps.push(PathStep::Place(number));
                 places = rest;
             }
         }
@@ -97,14 +97,14 @@ impl DocumentPath {
 
     /// Whether the first key is this one.
     pub fn begins_with(&self, key: &str) -> bool {
-        matches!(self.0.first(), Some(Step::Key(first)) if first == key)
+        matches!(self.0.first(), Some(PathStep::Key(first)) if first == key)
     }
 
     /// The value at the path, if there is one.
     pub fn get<'a>(&self, document: &'a Value) -> Option<&'a Value> {
         self.0.iter().try_fold(document, |at, step| match step {
-            Step::Key(key) => at.get(key),
-            Step::Place(place) => at.get(place),
+            PathStep::Key(key) => at.get(key),
+            PathStep::Place(place) => at.get(place),
         })
     }
 
@@ -116,17 +116,17 @@ impl DocumentPath {
         let mut at = document;
         for step in &self.0 {
             at = match (step, at) {
-                (Step::Key(key), Value::Object(map)) => map.entry(key.clone()).or_insert(Value::Null),
-                (Step::Key(key), at @ Value::Null) => {
+                (PathStep::Key(key), Value::Object(map)) => map.entry(key.clone()).or_insert(Value::Null),
+                (PathStep::Key(key), at @ Value::Null) => {
                     *at = Value::Object(Map::from_iter([(key.clone(), Value::Null)]));
                     &mut at[key]
                 }
-                (Step::Key(key), _) => return Err(Obstacle::NoObject(key.clone())),
-                (Step::Place(place), Value::Array(list)) => {
+                (PathStep::Key(key), _) => return Err(Obstacle::NoObject(key.clone())),
+                (PathStep::Place(place), Value::Array(list)) => {
                     let (place, length) = (*place, list.len());
                     list.get_mut(place).ok_or(Obstacle::NoPlace { place, length })?
                 }
-                (Step::Place(place), _) => return Err(Obstacle::NoList(*place)),
+                (PathStep::Place(place), _) => return Err(Obstacle::NoList(*place)),
             };
         }
         *at = value;

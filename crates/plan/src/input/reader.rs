@@ -2,8 +2,8 @@
 //!
 //! Knows JSON's types and those that a place may ask for. Does not know the types of files.
 
-use super::path::Step;
-use super::refusal::{Found, RefusalKind};
+use super::path::PathStep;
+use super::refusal::{FoundValue, RefusalKind};
 use super::trouble::{Expected, Trouble};
 use serde::de::{
     DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, VariantAccess, Visitor,
@@ -14,19 +14,19 @@ use serde_json::Value;
 use std::borrow::Cow;
 
 /// A canonical text under way.
-pub(super) struct Reader<'de> {
+pub(super) struct CanonicalReader<'de> {
     text: &'de str,
     at: usize,
 }
 
 /// A number as a canonical text has it.
-enum Digits {
+enum CanonicalNumber {
     Whole(i64),
     Large(u64),
     Broken(f64),
 }
 
-impl<'de> Reader<'de> {
+impl<'de> CanonicalReader<'de> {
     /// At the beginning of a text.
     pub(super) fn new(text: &'de str) -> Self {
         Self { text, at: 0 }
@@ -77,16 +77,16 @@ impl<'de> Reader<'de> {
         self.at + length.unwrap_or(rest.len())
     }
 
-    fn digits(&mut self) -> Digits {
+    fn digits(&mut self) -> CanonicalNumber {
         let end = self.end_of_token();
         let written = &self.text[self.at..end];
         self.at = end;
         if let Ok(whole) = written.parse() {
-            Digits::Whole(whole)
+            CanonicalNumber::Whole(whole)
         } else if let Ok(large) = written.parse() {
-            Digits::Large(large)
+            CanonicalNumber::Large(large)
         } else {
-            Digits::Broken(written.parse().unwrap_or(f64::NAN))
+            CanonicalNumber::Broken(written.parse().unwrap_or(f64::NAN))
         }
     }
 
@@ -115,7 +115,7 @@ impl<'de> Reader<'de> {
 
     /// Number of values of the list or keys of the object that begins here.
     fn length(&self) -> usize {
-        let mut ahead = Reader {
+        let mut ahead = CanonicalReader {
             text: self.text,
             at: self.at + 1,
         };
@@ -135,15 +135,15 @@ impl<'de> Reader<'de> {
     }
 
     /// What stands here.
-    fn here(&self) -> Found {
+    fn here(&self) -> FoundValue {
         match self.peek() {
             b'[' => "a list".into(),
             b'{' => "an object".into(),
             _ => {
-                let mut ahead = Reader { ..*self };
+                let mut ahead = CanonicalReader { ..*self };
                 ahead.skip();
                 let value: Value = serde_json::from_str(&self.text[self.at..ahead.at]).unwrap_or_default();
-                Found::value(value)
+                FoundValue::value(value)
             }
         }
     }
@@ -160,10 +160,10 @@ impl<'de> Reader<'de> {
         let begin = self.at;
         if self.is_number() {
             match self.digits() {
-                Digits::Whole(whole) if whole >= 0 => return visitor.visit_u64(whole.unsigned_abs()),
-                Digits::Whole(whole) if expected == Expected::Whole => return visitor.visit_i64(whole),
-                Digits::Large(large) => return visitor.visit_u64(large),
-                Digits::Whole(_) | Digits::Broken(_) => {}
+                CanonicalNumber::Whole(whole) if whole >= 0 => return visitor.visit_u64(whole.unsigned_abs()),
+                CanonicalNumber::Whole(whole) if expected == Expected::Whole => return visitor.visit_i64(whole),
+                CanonicalNumber::Large(large) => return visitor.visit_u64(large),
+                CanonicalNumber::Whole(_) | CanonicalNumber::Broken(_) => {}
             }
         }
         self.at = begin;
@@ -198,7 +198,7 @@ macro_rules! whole {
     };
 }
 
-impl<'de> Deserializer<'de> for &mut Reader<'de> {
+impl<'de> Deserializer<'de> for &mut CanonicalReader<'de> {
     type Error = Trouble;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Trouble> {
@@ -212,10 +212,10 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
             b'n' => self.deserialize_unit(visitor),
             b't' | b'f' => self.deserialize_bool(visitor),
             _ => match self.digits() {
-                Digits::Whole(whole) if whole >= 0 => visitor.visit_u64(whole.unsigned_abs()),
-                Digits::Whole(whole) => visitor.visit_i64(whole),
-                Digits::Large(large) => visitor.visit_u64(large),
-                Digits::Broken(number) => visitor.visit_f64(number),
+                CanonicalNumber::Whole(whole) if whole >= 0 => visitor.visit_u64(whole.unsigned_abs()),
+                CanonicalNumber::Whole(whole) => visitor.visit_i64(whole),
+                CanonicalNumber::Large(large) => visitor.visit_u64(large),
+                CanonicalNumber::Broken(number) => visitor.visit_f64(number),
             },
         }
     }
@@ -242,9 +242,9 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
             return Err(self.wrong(Expected::Number));
         }
         match self.digits() {
-            Digits::Whole(whole) => visitor.visit_f64(whole as f64),
-            Digits::Large(large) => visitor.visit_f64(large as f64),
-            Digits::Broken(number) => visitor.visit_f64(number),
+            CanonicalNumber::Whole(whole) => visitor.visit_f64(whole as f64),
+            CanonicalNumber::Large(large) => visitor.visit_f64(large as f64),
+            CanonicalNumber::Broken(number) => visitor.visit_f64(number),
         }
     }
 
@@ -356,7 +356,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
 
 /// The values of a list.
 struct Items<'a, 'de> {
-    reader: &'a mut Reader<'de>,
+    reader: &'a mut CanonicalReader<'de>,
     place: usize,
 }
 
@@ -372,13 +372,13 @@ impl<'de> SeqAccess<'de> for Items<'_, 'de> {
         let place = self.place;
         self.place += 1;
         let read = seed.deserialize(&mut *self.reader);
-        read.map(Some).map_err(|trouble| trouble.under(Step::Place(place)))
+        read.map(Some).map_err(|trouble| trouble.under(PathStep::Place(place)))
     }
 }
 
 /// The keys of an object with their values.
 struct Entries<'a, 'de> {
-    reader: &'a mut Reader<'de>,
+    reader: &'a mut CanonicalReader<'de>,
     key: Cow<'de, str>,
 }
 
@@ -399,7 +399,7 @@ impl<'de> MapAccess<'de> for Entries<'_, 'de> {
     fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Trouble> {
         self.reader.pass();
         let read = seed.deserialize(&mut *self.reader);
-        read.map_err(|trouble| trouble.under(Step::Key(self.key.to_string())))
+        read.map_err(|trouble| trouble.under(PathStep::Key(self.key.to_string())))
     }
 }
 
@@ -419,7 +419,11 @@ impl<'de> EnumAccess<'de> for WordVariant<'de> {
 impl WordVariant<'_> {
     fn needs_value<T>(&self) -> Result<T, Trouble> {
         let allowed = format!("an object {{ \"{}\": .. }}", self.0);
-        Err(Trouble::new(RefusalKind::WrongType, Found::value(&*self.0), allowed))
+        Err(Trouble::new(
+            RefusalKind::WrongType,
+            FoundValue::value(&*self.0),
+            allowed,
+        ))
     }
 }
 
@@ -444,11 +448,11 @@ impl<'de> VariantAccess<'de> for WordVariant<'de> {
 }
 
 /// One of several as the only key of an object.
-struct KeyVariant<'a, 'de>(&'a mut Reader<'de>);
+struct KeyVariant<'a, 'de>(&'a mut CanonicalReader<'de>);
 
 /// The value of such a key.
 struct KeyedValue<'a, 'de> {
-    reader: &'a mut Reader<'de>,
+    reader: &'a mut CanonicalReader<'de>,
     key: Cow<'de, str>,
 }
 
@@ -477,24 +481,24 @@ impl<'de> VariantAccess<'de> for KeyedValue<'_, 'de> {
         let found = reader.here();
         reader.skip();
         let allowed = format!("the word \"{key}\"");
-        Err(Trouble::new(RefusalKind::WrongType, found, allowed).under(Step::Key(key.to_string())))
+        Err(Trouble::new(RefusalKind::WrongType, found, allowed).under(PathStep::Key(key.to_string())))
     }
 
     fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, Trouble> {
         let Self { reader, key } = self;
         let read = seed.deserialize(&mut *reader);
-        read.map_err(|trouble| trouble.under(Step::Key(key.to_string())))
+        read.map_err(|trouble| trouble.under(PathStep::Key(key.to_string())))
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Trouble> {
         let Self { reader, key } = self;
         let read = reader.deserialize_tuple(length, visitor);
-        read.map_err(|trouble| trouble.under(Step::Key(key.to_string())))
+        read.map_err(|trouble| trouble.under(PathStep::Key(key.to_string())))
     }
 
     fn struct_variant<V: Visitor<'de>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Trouble> {
         let Self { reader, key } = self;
         let read = reader.deserialize_map(visitor);
-        read.map_err(|trouble| trouble.under(Step::Key(key.to_string())))
+        read.map_err(|trouble| trouble.under(PathStep::Key(key.to_string())))
     }
 }

@@ -19,7 +19,7 @@ pub struct Refusal {
     /// What is wrong there.
     pub kind: RefusalKind,
     /// What was found.
-    pub found: Box<Found>,
+    pub found: Box<FoundValue>,
     /// What is allowed, in words; empty where the kind says all.
     pub allowed: String,
     /// The nearest known name, where a name is unknown.
@@ -71,14 +71,14 @@ impl From<Problem> for RefusalKind {
 
 /// What stands in the place of an allowed value: a value of the file, words, both, or nothing.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Found {
+pub struct FoundValue {
     /// The value, where it is a single one of the file.
     pub value: Option<Value>,
     /// What else is to be said; what was found in words where there is no value.
     pub words: String,
 }
 
-impl Found {
+impl FoundValue {
     /// Nothing.
     pub const NOTHING: Self = Self {
         value: None,
@@ -108,19 +108,19 @@ impl Found {
     }
 }
 
-impl From<&str> for Found {
+impl From<&str> for FoundValue {
     fn from(words: &str) -> Self {
         Self::NOTHING.which(words)
     }
 }
 
-impl From<String> for Found {
+impl From<String> for FoundValue {
     fn from(words: String) -> Self {
         Self::NOTHING.which(words)
     }
 }
 
-impl From<f64> for Found {
+impl From<f64> for FoundValue {
     fn from(number: f64) -> Self {
         if number.is_finite() {
             Self::value(number)
@@ -130,19 +130,19 @@ impl From<f64> for Found {
     }
 }
 
-impl From<usize> for Found {
+impl From<usize> for FoundValue {
     fn from(count: usize) -> Self {
         Self::value(count)
     }
 }
 
-impl From<&Value> for Found {
+impl From<&Value> for FoundValue {
     fn from(value: &Value) -> Self {
         Self::value(value.clone())
     }
 }
 
-impl From<input::Found> for Found {
+impl From<input::Found> for FoundValue {
     fn from(found: input::Found) -> Self {
         match found {
             input::Found::Nothing => Self::NOTHING,
@@ -158,7 +158,7 @@ const MOST_LISTED: usize = 30;
 impl Refusal {
     /// A refusal of the value at `path` in `file`; of the file as a whole where the path is empty, of a missing key where
     /// nothing was found.
-    pub fn new(file: &Path, path: impl Into<String>, found: impl Into<Found>, allowed: impl Into<String>) -> Self {
+    pub fn new(file: &Path, path: impl Into<String>, found: impl Into<FoundValue>, allowed: impl Into<String>) -> Self {
         let (path, found) = (path.into(), found.into());
         let kind = match (path.is_empty(), found.is_nothing()) {
             (true, _) => RefusalKind::Whole,
@@ -178,7 +178,7 @@ impl Refusal {
 
     /// A refusal of a key that is required and missing; `path` is the one that it would have.
     pub fn missing(file: &Path, path: impl Into<String>) -> Self {
-        Self::new(file, path, Found::NOTHING, "")
+        Self::new(file, path, FoundValue::NOTHING, "")
     }
 
     /// The same refusal of another kind.
@@ -202,7 +202,7 @@ impl Refusal {
         Self {
             kind: RefusalKind::UnknownWord,
             nearest: nearest(word, known).map(String::into_boxed_str),
-            ..Self::new(file, path, Found::value(word), allowed)
+            ..Self::new(file, path, FoundValue::value(word), allowed)
         }
     }
 
@@ -269,7 +269,7 @@ impl Refusal {
     }
 }
 
-impl Found {
+impl FoundValue {
     /// What was found, in words.
     pub fn text(&self) -> String {
         match &self.value {
@@ -281,7 +281,7 @@ impl Found {
 }
 
 /// What is said of a value behind it.
-fn behind(found: &Found) -> String {
+fn behind(found: &FoundValue) -> String {
     match found.words.as_str() {
         "" => String::new(),
         words => format!(", {words}"),
@@ -289,7 +289,7 @@ fn behind(found: &Found) -> String {
 }
 
 /// A name that was found, without the quotes of JSON.
-fn name_of(found: &Found) -> String {
+fn name_of(found: &FoundValue) -> String {
     match &found.value {
         Some(Value::String(name)) => name.clone(),
         _ => found.text(),
@@ -329,16 +329,16 @@ mod tests {
 
     #[test]
     fn a_refusal_without_a_path_is_of_the_whole_file_and_one_of_nothing_of_a_missing_key() {
-        let kind = |path: &str, found: Found| Refusal::new(Path::new("s.json"), path, found, "").kind;
+        let kind = |path: &str, found: FoundValue| Refusal::new(Path::new("s.json"), path, found, "").kind;
         assert_eq!(kind("", "no file".into()), RefusalKind::Whole);
-        assert_eq!(kind("name", Found::NOTHING), RefusalKind::Missing);
+        assert_eq!(kind("name", FoundValue::NOTHING), RefusalKind::Missing);
         assert_eq!(kind("name", "x".into()), RefusalKind::NotAllowed);
     }
 
     #[test]
     fn numbers_are_values_as_a_file_would_write_them() {
-        assert_eq!(Found::from(3.0).value, Some(Value::from(3)));
-        assert_eq!(Found::from(f64::NAN).words, "NaN");
+        assert_eq!(FoundValue::from(3.0).value, Some(Value::from(3)));
+        assert_eq!(FoundValue::from(f64::NAN).words, "NaN");
     }
 
     fn told(refusal: &Refusal) -> String {
@@ -358,7 +358,7 @@ mod tests {
                 Refusal::new(
                     file,
                     "value.expected",
-                    Found::NOTHING,
+                    FoundValue::NOTHING,
                     "a number; only a record needs none",
                 ),
                 "b.json: value.expected: missing key `expected`, allowed: a number; only a record needs none",
@@ -372,11 +372,16 @@ mod tests {
                 "b.json: a: found unknown \"moddule\" (nearest known: module), allowed: modules, module, name",
             ),
             (
-                Refusal::new(file, "a", Found::value(1e-3).which("which makes 2e7 steps"), "fewer"),
+                Refusal::new(
+                    file,
+                    "a",
+                    FoundValue::value(1e-3).which("which makes 2e7 steps"),
+                    "fewer",
+                ),
                 "b.json: a: found 0.001, which makes 2e7 steps, allowed: fewer",
             ),
             (
-                Refusal::new(file, "a[1]", Found::value("x"), "each name once").because(RefusalKind::Repeated),
+                Refusal::new(file, "a[1]", FoundValue::value("x"), "each name once").because(RefusalKind::Repeated),
                 "b.json: a[1]: found \"x\" twice, allowed: each name once",
             ),
             (

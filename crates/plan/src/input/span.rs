@@ -93,7 +93,7 @@ pub fn mark(text: &str, refusal: &Refusal) -> Option<Mark> {
 }
 
 /// The place of what makes a text no JSON.
-fn of_fault(text: &str, fault: strict::Fault) -> Mark {
+fn of_fault(text: &str, fault: strict::SyntaxFault) -> Mark {
     let kind = match fault.kind {
         FaultKind::RepeatedKey(_) => {
             let first = parsed(text).flatten().and_then(|root| first_of(&root, &fault.bytes));

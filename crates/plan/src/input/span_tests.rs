@@ -1,12 +1,12 @@
 //! Places that refusals mean, told as the text that stands there.
 
-use super::{Document, Found, Mark, MarkKind, Refusal, RefusalKind, mark};
+use super::{Document, FoundValue, Mark, MarkKind, Refusal, RefusalKind, mark};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// A refusal without words.
 fn refusal(kind: RefusalKind, path: &str, found: Option<Value>) -> Refusal {
-    let found = found.map_or(Found::NOTHING, Found::value);
+    let found = found.map_or(FoundValue::NOTHING, FoundValue::value);
     Refusal::new(Path::new("f.json"), path, found, "").because(kind)
 }
 

@@ -3,7 +3,7 @@
 //! Knows that a key written twice, a number out of range and a NaN are faults, and where in the text they are. Does not know
 //! keys. No tree is built: a document of any size costs its two texts.
 
-use super::path::Step;
+use super::path::PathStep;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::{Number, Value};
 use std::collections::HashSet;
@@ -18,13 +18,13 @@ pub(super) const MOST_LEVELS: usize = 127;
 
 /// What makes a text no JSON document.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Fault {
+pub(super) struct SyntaxFault {
     /// Its bytes; none at the end of a text that ends too early.
     pub(super) bytes: Range<usize>,
     /// What it is.
     pub(super) kind: FaultKind,
     /// The way to the value that could not be read.
-    pub(super) path: Vec<Step>,
+    pub(super) path: Vec<PathStep>,
 }
 
 /// What is wrong with a text.
@@ -44,15 +44,15 @@ pub(super) enum FaultKind {
 
 /// The canonical text of a document: no blanks, whole numbers written as whole numbers (`3.0` as `3`, `-0.0` as `0`), so that
 /// equal documents have equal texts.
-pub(super) fn canonical_of(text: &str) -> Result<String, Fault> {
+pub(super) fn canonical_of(text: &str) -> Result<String, SyntaxFault> {
     if text.starts_with(MARK) {
-        return Err(Fault {
+        return Err(SyntaxFault {
             bytes: 0..MARK.len_utf8(),
             kind: FaultKind::ByteOrderMark,
             path: Vec::new(),
         });
     }
-    let (mut to, mut state) = (String::with_capacity(text.len()), State::default());
+    let (mut to, mut state) = (String::with_capacity(text.len()), FaultState::default());
     let mut reader = serde_json::Deserializer::from_str(text);
     let root = Copied {
         to: &mut to,
@@ -62,12 +62,12 @@ pub(super) fn canonical_of(text: &str) -> Result<String, Fault> {
     let copied = root.deserialize(&mut reader).and_then(|()| reader.end());
     match copied {
         Ok(()) => Ok(to),
-        Err(error) => Err(Fault::new(text, &error, state)),
+        Err(error) => Err(SyntaxFault::new(text, &error, state)),
     }
 }
 
 /// What is wrong with a text, if anything is. An empty one has no place to show.
-pub(super) fn fault(text: &str) -> Option<Fault> {
+pub(super) fn fault(text: &str) -> Option<SyntaxFault> {
     canonical_of(text)
         .err()
         .filter(|fault| fault.kind == FaultKind::ByteOrderMark || !text.trim().is_empty())
@@ -75,17 +75,17 @@ pub(super) fn fault(text: &str) -> Option<Fault> {
 
 /// What is known of a fault before its place is.
 #[derive(Debug, Default)]
-struct State {
+struct FaultState {
     /// The way to the value at fault, from the inside out.
-    path: Vec<Step>,
+    path: Vec<PathStep>,
     /// The key that was there before.
     repeated: Option<String>,
     /// Level of the innermost value that could not be read.
     level: Option<usize>,
 }
 
-impl Fault {
-    fn new(text: &str, error: &serde_json::Error, state: State) -> Self {
+impl SyntaxFault {
+    fn new(text: &str, error: &serde_json::Error, state: FaultState) -> Self {
         let lines = text.split_inclusive('\n');
         let before: usize = lines.take(error.line().saturating_sub(1)).map(str::len).sum();
         let (from, to) = token_in(text.get(before..).unwrap_or_default(), error.column());
@@ -156,7 +156,7 @@ fn token_in(line: &str, column: usize) -> (usize, usize) {
 /// A value on its way from one text to the other.
 struct Copied<'a> {
     to: &'a mut String,
-    state: &'a mut State,
+    state: &'a mut FaultState,
     /// Lists and objects that it is in.
     level: usize,
 }
@@ -242,7 +242,7 @@ impl<'de> Visitor<'de> for CopyVisitor<'_, '_> {
                     return Ok(());
                 }
                 Err(error) => {
-                    self.0.state.path.push(Step::Place(place));
+                    self.0.state.path.push(PathStep::Place(place));
                     return Err(error);
                 }
             }
@@ -271,7 +271,7 @@ impl<'de> Visitor<'de> for CopyVisitor<'_, '_> {
             self.0.to.push(':');
             if let Err(error) = map.next_value_seed(self.0.inner()) {
                 let name = key_at(self.0.to, &key);
-                self.0.state.path.push(Step::Key(name));
+                self.0.state.path.push(PathStep::Key(name));
                 return Err(error);
             }
         }

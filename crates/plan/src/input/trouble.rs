@@ -2,8 +2,8 @@
 //!
 //! Knows the words for what a type asks for. Does not know how a text is read.
 
-use super::path::{Step, join, join_steps};
-use super::refusal::{Found, Refusal, RefusalKind};
+use super::path::{PathStep, join, join_steps};
+use super::refusal::{FoundValue, Refusal, RefusalKind};
 use serde::de::Unexpected;
 use serde_json::Value;
 use std::fmt::{self, Display};
@@ -45,16 +45,16 @@ impl Display for Expected {
 #[derive(Debug)]
 pub(super) struct Trouble {
     /// The way to it, from the inside out.
-    path: Vec<Step>,
+    path: Vec<PathStep>,
     kind: RefusalKind,
-    found: Box<Found>,
+    found: Box<FoundValue>,
     allowed: String,
     /// Names that are known, where one is not.
     known: &'static [&'static str],
 }
 
 impl Trouble {
-    pub(super) fn new(kind: RefusalKind, found: impl Into<Found>, allowed: impl Display) -> Self {
+    pub(super) fn new(kind: RefusalKind, found: impl Into<FoundValue>, allowed: impl Display) -> Self {
         Self {
             path: Vec::new(),
             kind,
@@ -67,11 +67,11 @@ impl Trouble {
     pub(super) fn unknown(kind: RefusalKind, name: &str, known: &'static [&'static str]) -> Self {
         Self {
             known,
-            ..Self::new(kind, Found::value(name), "")
+            ..Self::new(kind, FoundValue::value(name), "")
         }
     }
 
-    pub(super) fn under(mut self, step: Step) -> Self {
+    pub(super) fn under(mut self, step: PathStep) -> Self {
         self.path.push(step);
         self
     }
@@ -80,7 +80,7 @@ impl Trouble {
     pub(super) fn of_key(self, key: &str) -> Self {
         Self {
             kind: RefusalKind::UnknownKey,
-            ..self.under(Step::Key(key.to_owned()))
+            ..self.under(PathStep::Key(key.to_owned()))
         }
     }
 
@@ -130,23 +130,23 @@ impl serde::de::Error for Trouble {
     }
 
     fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
-        Self::unknown(RefusalKind::UnknownKey, field, expected).under(Step::Key(field.to_owned()))
+        Self::unknown(RefusalKind::UnknownKey, field, expected).under(PathStep::Key(field.to_owned()))
     }
 
     fn missing_field(field: &'static str) -> Self {
-        Self::new(RefusalKind::Missing, Found::NOTHING, "").under(Step::Key(field.to_owned()))
+        Self::new(RefusalKind::Missing, FoundValue::NOTHING, "").under(PathStep::Key(field.to_owned()))
     }
 }
 
 /// What a type was given and does not take.
-fn found(unexpected: &Unexpected<'_>) -> Found {
+fn found(unexpected: &Unexpected<'_>) -> FoundValue {
     match *unexpected {
-        Unexpected::Bool(flag) => Found::value(flag),
-        Unexpected::Unsigned(count) => Found::value(count),
-        Unexpected::Signed(number) => Found::value(number),
+        Unexpected::Bool(flag) => FoundValue::value(flag),
+        Unexpected::Unsigned(count) => FoundValue::value(count),
+        Unexpected::Signed(number) => FoundValue::value(number),
         Unexpected::Float(number) => number.into(),
-        Unexpected::Str(word) => Found::value(word),
-        Unexpected::Unit | Unexpected::Option => Found::value(Value::Null),
+        Unexpected::Str(word) => FoundValue::value(word),
+        Unexpected::Unit | Unexpected::Option => FoundValue::value(Value::Null),
         Unexpected::Seq => "a list".into(),
         Unexpected::Map => "an object".into(),
         Unexpected::Other(words) => words.into(),

@@ -4,7 +4,7 @@
 //! `reader` goes through a canonical text and keeps what is wrong as values.
 
 use super::document::Document;
-use super::reader::Reader;
+use super::reader::CanonicalReader;
 use super::refusal::Refusal;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -16,7 +16,7 @@ use std::path::Path;
 /// # Errors
 /// [`Refusal`] with the path in the file.
 pub fn typed<T: DeserializeOwned>(file: &Path, prefix: &str, document: &Document) -> Result<T, Refusal> {
-    T::deserialize(&mut Reader::new(document.text())).map_err(|trouble| trouble.refusal(file, prefix))
+    T::deserialize(&mut CanonicalReader::new(document.text())).map_err(|trouble| trouble.refusal(file, prefix))
 }
 
 /// The same of a tree.

@@ -2,7 +2,7 @@
 //!
 //! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
 
-use crate::design::{Point, Root};
+use crate::design::{DesignPoint, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
 use crate::study_file::{Analysis, Study, filled_vehicle};
 use pontoon_core::bridge::{BridgeDesign, Supports};
@@ -70,14 +70,14 @@ pub(super) struct Documents {
 }
 
 /// What was asked for: the text of the changes, nothing where there are none, and bits of what else they are read with.
-type Asked = (u64, Option<String>);
+type DocumentRequest = (u64, Option<String>);
 
 /// Entries by what was asked for, then by what it came to: two ways of writing the same share one entry.
 #[derive(Debug)]
 struct Interned<T> {
     /// What was asked for last: most points of a study ask for the same as the one before.
-    last: Option<(Asked, Arc<T>)>,
-    asked: HashMap<Asked, Arc<T>>,
+    last: Option<(DocumentRequest, Arc<T>)>,
+    asked: HashMap<DocumentRequest, Arc<T>>,
     distinct: HashMap<String, Arc<T>>,
 }
 
@@ -95,7 +95,7 @@ impl<T> Interned<T> {
     /// The entry for `asked`; `make` reads it and gives its text, `build` makes the entry of a text not seen before.
     fn get<D>(
         &mut self,
-        asked: Asked,
+        asked: DocumentRequest,
         make: impl FnOnce() -> Result<(String, D), Refusal>,
         build: impl FnOnce(usize, D) -> T,
     ) -> Result<Arc<T>, Refusal> {
@@ -119,7 +119,7 @@ impl<T> Interned<T> {
 
 impl Documents {
     /// The bridge of a point.
-    pub(super) fn bridge(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<BridgeEntry>, Refusal> {
+    pub(super) fn bridge(&mut self, study: &Study, point: &DesignPoint<'_>) -> Result<Arc<BridgeEntry>, Refusal> {
         let changes = Changes::of(study, point, Root::Bridge);
         let read = || {
             let design = match changes.applied(&study.bridge.design)? {
@@ -141,7 +141,7 @@ impl Documents {
     pub(super) fn vehicle(
         &mut self,
         study: &Study,
-        point: &Point<'_>,
+        point: &DesignPoint<'_>,
         bridge: &BridgeEntry,
     ) -> Result<Arc<VehicleEntry>, Refusal> {
         let changes = Changes::of(study, point, Root::Vehicle);
@@ -171,7 +171,7 @@ impl Documents {
     }
 
     /// The analysis of a point.
-    pub(super) fn analysis(&mut self, study: &Study, point: &Point<'_>) -> Result<Arc<AnalysisEntry>, Refusal> {
+    pub(super) fn analysis(&mut self, study: &Study, point: &DesignPoint<'_>) -> Result<Arc<AnalysisEntry>, Refusal> {
         let changes = Changes::of(study, point, Root::Analysis);
         let read = || {
             let analysis = match changes.applied(&study.analysis_written)? {
@@ -225,13 +225,13 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
 /// What the axes of a point change in one document.
 struct Changes<'a> {
     file: &'a Path,
-    point: &'a Point<'a>,
+    point: &'a DesignPoint<'a>,
     root: Root,
     list: Vec<(&'a str, &'a DocumentPath, &'a Cell<'a>)>,
 }
 
 impl<'a> Changes<'a> {
-    fn of(study: &'a Study, point: &'a Point<'a>, root: Root) -> Self {
+    fn of(study: &'a Study, point: &'a DesignPoint<'a>, root: Root) -> Self {
         Self {
             file: &study.file,
             point,

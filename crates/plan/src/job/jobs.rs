@@ -3,10 +3,10 @@
 //! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a fingerprint a job.
 
 use super::documents::{BridgeEntry, Documents, VehicleEntry};
-use super::seen::Seen;
-use super::{Job, Load, Task};
-use crate::design::{Goes, JobAxis, NAMED_AXES, NamedAxis, Point, Root, Varies};
-use crate::input::{Cell, Found, Refusal, RefusalKind};
+use super::seen::SeenJobs;
+use super::{Job, StandingLoad, Task};
+use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
+use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study, check_histories};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::InvalidInput;
@@ -18,9 +18,9 @@ const MOST_STEPS: f64 = 1e7;
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
 pub struct Jobs<'a> {
     study: &'a Study,
-    points: Box<dyn Iterator<Item = Point<'a>> + 'a>,
+    points: Box<dyn Iterator<Item = DesignPoint<'a>> + 'a>,
     documents: Documents,
-    seen: Seen,
+    seen: SeenJobs,
     /// Bridges whose size was checked, with their model.
     sized: HashSet<(usize, ModelSpec)>,
 }
@@ -33,7 +33,7 @@ impl<'a> Jobs<'a> {
             study,
             points,
             documents: Documents::default(),
-            seen: Seen::with_room_for(study.points()),
+            seen: SeenJobs::with_room_for(study.points()),
             sized: HashSet::new(),
         }
     }
@@ -55,7 +55,7 @@ impl Iterator for Jobs<'_> {
 }
 
 impl Jobs<'_> {
-    fn job(&mut self, point: &Point<'_>) -> Result<Job, Refusal> {
+    fn job(&mut self, point: &DesignPoint<'_>) -> Result<Job, Refusal> {
         let bridge = self.documents.bridge(self.study, point)?;
         let vehicle = self.documents.vehicle(self.study, point, &bridge)?;
         let analysis = self.documents.analysis(self.study, point)?;
@@ -102,7 +102,7 @@ impl Jobs<'_> {
 /// The axes with short names of one point.
 struct Short<'a> {
     study: &'a Study,
-    point: &'a Point<'a>,
+    point: &'a DesignPoint<'a>,
 }
 
 impl Short<'_> {
@@ -124,7 +124,7 @@ impl Short<'_> {
         }
     }
 
-    fn refuse(&self, axis: JobAxis, found: impl Into<Found>, allowed: impl Into<String>) -> Refusal {
+    fn refuse(&self, axis: JobAxis, found: impl Into<FoundValue>, allowed: impl Into<String>) -> Refusal {
         Refusal::new(&self.study.file, self.path(axis), found, allowed)
     }
 
@@ -216,7 +216,7 @@ impl Short<'_> {
         speed_m_s: f64,
     ) -> Result<(), Refusal> {
         let step = analysis.time_step.seconds();
-        let refuse = |found: Found, allowed: String| {
+        let refuse = |found: FoundValue, allowed: String| {
             let path = self.path_or("analysis.time_step_s");
             Err(Refusal::new(&self.study.file, path, found, allowed).because(RefusalKind::Conflict))
         };
@@ -230,7 +230,7 @@ impl Short<'_> {
         let way = bridge.design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
         let steps = (way / speed_m_s + analysis.tail_s) / step;
         if steps > MOST_STEPS {
-            let found = Found::from(step).which(format!("which makes {steps:.1e} steps"));
+            let found = FoundValue::from(step).which(format!("which makes {steps:.1e} steps"));
             return refuse(found, format!("a crossing of at most {MOST_STEPS} steps"));
         }
         Ok(())
@@ -243,7 +243,7 @@ impl Short<'_> {
         }
         let path = self.path_or("analysis.damping.frequencies_hz");
         let allowed = "two frequencies: a bridge of one module has no vertical bending modes to take them from";
-        Err(Refusal::new(&self.study.file, path, Found::NOTHING, allowed))
+        Err(Refusal::new(&self.study.file, path, FoundValue::NOTHING, allowed))
     }
 
     /// Refuses a static case of a bridge that its supports and hinges leave free to move horizontally.
@@ -268,7 +268,7 @@ impl Short<'_> {
         Refusal::of(&self.study.bridge.file, "", refused)
     }
 
-    fn place(&self, bridge: &BridgeEntry) -> Result<Load, Refusal> {
+    fn place(&self, bridge: &BridgeEntry) -> Result<StandingLoad, Refusal> {
         self.absent(JobAxis::Speed, "no speed in a static study")?;
         let design = &bridge.design;
         match (self.number(JobAxis::LoadPosition)?, self.number(JobAxis::LoadPlace)?) {
@@ -277,12 +277,12 @@ impl Short<'_> {
                 let position = (1..=positions).find(|p| *p as f64 == at);
                 let allowed = || format!("a whole number from 1 to {positions}");
                 let position = position.ok_or_else(|| self.refuse(JobAxis::LoadPosition, at, allowed()))?;
-                Ok(Load {
+                Ok(StandingLoad {
                     position: Some(position),
                     x_m: design.position_x_m(position),
                 })
             }
-            (None, Some(x_m)) if (0.0..=design.length_m()).contains(&x_m) => Ok(Load { position: None, x_m }),
+            (None, Some(x_m)) if (0.0..=design.length_m()).contains(&x_m) => Ok(StandingLoad { position: None, x_m }),
             (None, Some(x_m)) => {
                 let allowed = format!("a number from 0 to {}", design.length_m());
                 Err(self.refuse(JobAxis::LoadPlace, x_m, allowed))

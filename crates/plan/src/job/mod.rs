@@ -61,14 +61,14 @@ pub enum Task {
         speed_m_s: f64,
     },
     /// A static case.
-    Static(Load),
+    Static(StandingLoad),
     /// Natural frequencies.
     Modes,
 }
 
 /// Where the vehicle stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Load {
+pub struct StandingLoad {
     /// The position it was put on, where it was put on one.
     pub position: Option<usize>,
     /// Place of its centre `[m]`.

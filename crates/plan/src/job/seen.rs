@@ -8,13 +8,13 @@ use std::hash::{BuildHasherDefault, DefaultHasher, Hash, Hasher};
 
 /// The jobs seen so far.
 #[derive(Debug)]
-pub(super) struct Seen {
+pub(super) struct SeenJobs {
     fingerprints: HashSet<u128, BuildHasherDefault<Itself>>,
     /// What tells the job at hand apart.
     bytes: Bytes,
 }
 
-impl Seen {
+impl SeenJobs {
     /// None yet, with room for so many: a table that grows would for a while be there twice.
     pub(super) fn with_room_for(jobs: usize) -> Self {
         Self {
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn what_was_seen_is_not_new_and_everything_else_is() {
-        let mut seen = Seen::with_room_for(2);
+        let mut seen = SeenJobs::with_room_for(2);
         for round in 0..2 {
             for a in 0..100_u64 {
                 for text in ["x", "y"] {

@@ -5,7 +5,7 @@
 use super::analysis::Analysis;
 use super::raw::{AnalysisSpec, HistoriesSpec, Kind, RecordSpec, StudySpec};
 use crate::design::{Block, Goes, NAMED_AXES, Varies};
-use crate::input::{Document, Found, Refusal, RefusalKind, leaves, to_value, typed};
+use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::vehicle::VehicleDesign;
 use serde_json::Value;
@@ -82,7 +82,7 @@ impl Study {
         let spec: StudySpec = typed(&file, "", &document)?;
         let bridge_path = file.parent().unwrap_or(Path::new("")).join(&spec.bridge);
         if !bridge_path.is_file() {
-            let found = Found::value(spec.bridge).which("which is no file");
+            let found = FoundValue::value(spec.bridge).which("which is no file");
             return Err(Refusal::new(
                 &file,
                 "bridge",
@@ -187,7 +187,7 @@ fn check_name(file: &Path, name: &str) -> Result<(), Refusal> {
         return Err(Refusal::new(
             file,
             "name",
-            Found::value(name),
+            FoundValue::value(name),
             "letters, digits, _, - and ., not beginning with .",
         ));
     }

@@ -5,11 +5,11 @@
 use super::bench::{Bench, static_case};
 use super::failure::JobFailure;
 use pontoon_core::response::StaticResponse;
-use pontoon_plan::job::{Job, Load};
+use pontoon_plan::job::{Job, StandingLoad};
 use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// Solves the static case of a job.
-pub(super) fn solve(job: &Job, load: Load, bench: &Bench) -> Result<JobRecord, JobFailure> {
+pub(super) fn solve(job: &Job, load: StandingLoad, bench: &Bench) -> Result<JobRecord, JobFailure> {
     let response = bench
         .statics(job)?
         .solve(&job.vehicle.vehicle, &static_case(job, load.x_m))?;

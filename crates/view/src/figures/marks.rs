@@ -3,7 +3,7 @@
 //! Knows what was measured and which checks say what a position, a joint or a job should have. Does not know which figure a
 //! mark ends in, and judges nothing.
 
-use pontoon_judge::checks::{Check, Curve, Expectation};
+use pontoon_judge::checks::{Check, CheckCurve, Expectation};
 use pontoon_judge::quantity::SelectQuantity;
 use pontoon_judge::reference::{Against, MeasuredSpec, Reference};
 use pontoon_plan::input::filter::{Allowed, Filter};
@@ -189,7 +189,7 @@ fn of_select(places: &Places<'_>, check: &Check, select: &SelectQuantity, y: f64
     marks
 }
 
-fn of_curve(check: &Check, curve: &Curve<'_>) -> Vec<Mark> {
+fn of_curve(check: &Check, curve: &CheckCurve<'_>) -> Vec<Mark> {
     let Some((position, axes)) = place_and_axes(&check.filter) else {
         return Vec::new();
     };

@@ -3,7 +3,7 @@
 //! Knows the words of a line. Does not know how it was judged.
 
 use pontoon_judge::checks::Role;
-use pontoon_judge::compare::{Comparison, Line, Verdict};
+use pontoon_judge::compare::{CheckResult, Comparison, Verdict};
 use serde::Serialize;
 
 /// Results held against a reference.
@@ -69,7 +69,7 @@ fn tone(verdict: Verdict) -> Tone {
 impl Verdicts {
     /// The lines of a comparison.
     pub(super) fn new(compared: &Comparison) -> Self {
-        let line = |line: &Line| VerdictLine {
+        let line = |line: &CheckResult| VerdictLine {
             id: line.id.clone(),
             statement: line.statement.clone(),
             role: line.role,

@@ -2,7 +2,7 @@
 //!
 //! Knows the model, the bounds and the step of the differences. Does not know where a search goes, nor why.
 
-use super::{Differences, Model, ModelError, Parameter, Settings, sum_of_squares};
+use super::{Differences, ModelError, ModelFn, Parameter, Settings, sum_of_squares};
 
 /// What a point was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,14 +26,14 @@ pub struct FailedPoint {
 
 /// A point and what the model answered there.
 #[derive(Clone, Debug)]
-pub(super) struct Answer {
+pub(super) struct Evaluation {
     /// The parameters.
     pub point: Vec<f64>,
     /// The scaled residuals.
     pub residuals: Vec<f64>,
 }
 
-impl Answer {
+impl Evaluation {
     /// Whether the sum of squares is as low as that of `other`, or lower.
     pub(super) fn is_no_worse_than(&self, other: &Self) -> bool {
         sum_of_squares(&self.residuals) <= sum_of_squares(&other.residuals)
@@ -41,26 +41,26 @@ impl Answer {
 }
 
 /// Columns of a Jacobian, one a parameter; `None` where no derivative could be formed.
-pub(super) type Columns = Vec<Option<Vec<f64>>>;
+pub(super) type JacobianColumns = Vec<Option<Vec<f64>>>;
 
 /// The model with its book-keeping.
-pub(super) struct Evaluator<'a> {
+pub(super) struct ModelEvaluator<'a> {
     /// The parameters.
     pub parameters: &'a [Parameter],
     /// Points asked for so far.
     pub evaluations: usize,
     /// Points at which the model failed so far.
     pub failed: Vec<FailedPoint>,
-    model: &'a Model<'a>,
+    model: &'a ModelFn<'a>,
     difference_share: f64,
     differences: Differences,
     residual_count: Option<usize>,
     known: Vec<(Vec<f64>, Option<Vec<f64>>)>,
 }
 
-impl<'a> Evaluator<'a> {
+impl<'a> ModelEvaluator<'a> {
     /// A model that has not been asked yet.
-    pub(super) fn new(parameters: &'a [Parameter], model: &'a Model<'a>, settings: &Settings) -> Self {
+    pub(super) fn new(parameters: &'a [Parameter], model: &'a ModelFn<'a>, settings: &Settings) -> Self {
         Self {
             parameters,
             model,
@@ -119,12 +119,12 @@ impl<'a> Evaluator<'a> {
     }
 
     /// [`Self::evaluate`] for trial points, the answers with their points.
-    pub(super) fn answers(&mut self, points: Vec<Vec<f64>>) -> Vec<Option<Answer>> {
+    pub(super) fn answers(&mut self, points: Vec<Vec<f64>>) -> Vec<Option<Evaluation>> {
         let answers = self.evaluate(&points, |_| Purpose::Trial);
         points
             .into_iter()
             .zip(answers)
-            .map(|(point, r)| r.map(|residuals| Answer { point, residuals }))
+            .map(|(point, r)| r.map(|residuals| Evaluation { point, residuals }))
             .collect()
     }
 
@@ -135,9 +135,9 @@ impl<'a> Evaluator<'a> {
 
     /// Columns of the Jacobian at `at`, by parameters in widths between their bounds; `None` where the model fails on
     /// both sides. One batch; a second one for the other sides of those that failed.
-    pub(super) fn jacobian(&mut self, at: &Answer) -> Columns {
+    pub(super) fn jacobian(&mut self, at: &Evaluation) -> JacobianColumns {
         let count = at.point.len();
-        let mut sides: Vec<Vec<Answer>> = vec![Vec::new(); count];
+        let mut sides: Vec<Vec<Evaluation>> = vec![Vec::new(); count];
         let first: Vec<(usize, Vec<f64>)> = (0..count)
             .flat_map(|k| self.first_sides(&at.point, k).into_iter().map(move |p| (k, p)))
             .collect();
@@ -150,7 +150,7 @@ impl<'a> Evaluator<'a> {
                 .collect();
             self.ask(other, &mut sides);
         }
-        let column = |k: usize, from: &Answer, to: &Answer| {
+        let column = |k: usize, from: &Evaluation, to: &Evaluation| {
             let step = (to.point[k] - from.point[k]) / self.parameters[k].width();
             from.residuals
                 .iter()
@@ -167,11 +167,11 @@ impl<'a> Evaluator<'a> {
             .collect()
     }
 
-    fn ask(&mut self, wanted: Vec<(usize, Vec<f64>)>, sides: &mut [Vec<Answer>]) {
+    fn ask(&mut self, wanted: Vec<(usize, Vec<f64>)>, sides: &mut [Vec<Evaluation>]) {
         let (owners, points): (Vec<usize>, Vec<Vec<f64>>) = wanted.into_iter().unzip();
         let answers = self.evaluate(&points, |i| Purpose::Difference(owners[i]));
         for ((k, point), residuals) in owners.into_iter().zip(points).zip(answers) {
-            sides[k].extend(residuals.map(|residuals| Answer { point, residuals }));
+            sides[k].extend(residuals.map(|residuals| Evaluation { point, residuals }));
         }
     }
 

@@ -47,7 +47,7 @@ fn gap_is_crossed_or_said_to_stop_the_search() {
         )
         .unwrap();
         match fit.ending {
-            Ending::StoppedByFailures => stopped += 1,
+            StopReason::StoppedByFailures => stopped += 1,
             _ => crossed += 1,
         }
         assert_eq!(
@@ -72,7 +72,7 @@ fn minimum_in_a_region_of_failure_is_no_convergence() {
         }
     });
     let fit = fit(&[parameter("x", 3.0, -5.0, 5.0)], &model, &Settings::default()).unwrap();
-    assert_eq!(fit.ending, Ending::StoppedByFailures);
+    assert_eq!(fit.ending, StopReason::StoppedByFailures);
     assert!((1.0..1.1).contains(&fit.parameters[0].best), "{:?}", best(&fit));
     assert!(fit.failed.iter().any(|point| point.purpose == Purpose::Trial));
 }
@@ -100,7 +100,7 @@ fn failed_difference_takes_the_other_side_and_two_failures_are_said() {
     });
     let two = [parameter("x", 0.0, -4.0, 4.0), parameter("y", 0.5, 0.0, 1.0)];
     let fit_two = fit(&two, &alone, &Settings::default()).unwrap();
-    assert_eq!(fit_two.ending, Ending::Blind);
+    assert_eq!(fit_two.ending, StopReason::Blind);
     assert!(fit_two.parameters[0].has_derivative && !fit_two.parameters[1].has_derivative);
     assert!(is_close(fit_two.parameters[0].best, 1.0, 1e-5), "{:?}", best(&fit_two));
     assert_eq!(fit_two.parameters[1].standard_error, None);
@@ -164,7 +164,7 @@ fn bad_input_is_refused_with_its_numbers() {
 
 #[test]
 fn unusable_answers_are_failures() {
-    let ask = |model: &Model<'_>| fit(&[parameter("x", 1.0, 0.0, 4.0)], model, &Settings::default());
+    let ask = |model: &ModelFn<'_>| fit(&[parameter("x", 1.0, 0.0, 4.0)], model, &Settings::default());
     let reason = |fit: Result<Fit, FitError>| match fit {
         Err(FitError::Start { reason, .. }) => reason,
         other => panic!("{other:?}"),
@@ -175,9 +175,12 @@ fn unusable_answers_are_failures() {
     assert_eq!(ask(&each(|_| Ok(Vec::new()))), Err(FitError::NoResiduals));
     let other_count = ask(&each(|x| Ok(vec![x[0]; if x[0] == 1.0 { 2 } else { 3 }]))).unwrap();
     assert_eq!(other_count.failed[0].reason, "3 residuals where 2 came before");
-    assert_eq!(ask(&each(|_| Ok(vec![1.0, 2.0]))).unwrap().ending, Ending::NoInfluence);
+    assert_eq!(
+        ask(&each(|_| Ok(vec![1.0, 2.0]))).unwrap().ending,
+        StopReason::NoInfluence
+    );
     assert_eq!(
         ask(&each(|_| Ok(vec![0.0, 0.0]))).unwrap().ending,
-        Ending::ResidualsZero
+        StopReason::ResidualsZero
     );
 }

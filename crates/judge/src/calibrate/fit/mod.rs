@@ -37,18 +37,18 @@ mod statistics;
 mod tests;
 mod variable;
 
-use evaluation::Evaluator;
+use evaluation::ModelEvaluator;
 pub use evaluation::{FailedPoint, Purpose};
 pub use input::{Differences, FitError, ModelError, Parameter, Settings};
 use problem::{PULL, outward_cosine};
-pub use search::Ending;
-use search::Found;
-use statistics::Statistics;
-pub use statistics::{Component, Direction, ErrorScale};
+use search::SearchResult;
+pub use search::StopReason;
+use statistics::FitStatistics;
+pub use statistics::{Component, ErrorScale, ParameterDirection};
 
 /// The model: a batch of points, each with one value a parameter, to as many answers, each with the scaled residuals
 /// (measured less computed, over the standard deviation of the measurement) or why there are none.
-pub type Model<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Result<Vec<f64>, ModelError>> + Sync + 'a;
+pub type ModelFn<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Result<Vec<f64>, ModelError>> + Sync + 'a;
 
 /// A bound of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +94,7 @@ pub struct Fit {
     /// Points at which the model was asked.
     pub evaluations: usize,
     /// Why the search ended.
-    pub ending: Ending,
+    pub ending: StopReason,
     /// Derivatives at the best point, `jacobian[residual][parameter]`, each in one over the unit of the parameter; zero
     /// for a parameter that has no derivative.
     pub jacobian: Vec<Vec<f64>>,
@@ -106,7 +106,7 @@ pub struct Fit {
     /// descending.
     pub singular_values: Vec<f64>,
     /// Combinations of parameters that the residuals do not determine.
-    pub undetermined: Vec<Direction>,
+    pub undetermined: Vec<ParameterDirection>,
     /// Points at which the model failed, in the order asked for.
     pub failed: Vec<FailedPoint>,
 }
@@ -120,9 +120,9 @@ pub struct Fit {
 /// # Errors
 ///
 /// Parameters or settings out of range, and a model that fails at the start. Verified by `tests.rs` beside this file.
-pub fn fit(parameters: &[Parameter], model: &Model<'_>, settings: &Settings) -> Result<Fit, FitError> {
+pub fn fit(parameters: &[Parameter], model: &ModelFn<'_>, settings: &Settings) -> Result<Fit, FitError> {
     input::check(parameters, settings)?;
-    let mut evaluator = Evaluator::new(parameters, model, settings);
+    let mut evaluator = ModelEvaluator::new(parameters, model, settings);
     let found = search::search(&mut evaluator, settings)?;
     let at_bound: Vec<Option<Bound>> = parameters
         .iter()
@@ -167,7 +167,7 @@ pub fn fit(parameters: &[Parameter], model: &Model<'_>, settings: &Settings) -> 
 }
 
 /// Lists the parameters that the statistics are of: those with a derivative that are not held at a bound.
-fn free(parameters: &[Parameter], found: &Found, at_bound: &[Option<Bound>]) -> Vec<usize> {
+fn free(parameters: &[Parameter], found: &SearchResult, at_bound: &[Option<Bound>]) -> Vec<usize> {
     // On a bound and pushed there: held fixed. On a bound with no push: free like any other.
     let is_held = |k: usize| {
         let (x, column) = (found.best.point[k], found.columns[k].as_deref());
@@ -179,7 +179,7 @@ fn free(parameters: &[Parameter], found: &Found, at_bound: &[Option<Bound>]) -> 
 }
 
 /// Gives the standard errors of all parameters in their own units, from those of the free ones in widths between bounds.
-fn standard_errors(parameters: &[Parameter], free: &[usize], statistics: &Statistics) -> Vec<Option<f64>> {
+fn standard_errors(parameters: &[Parameter], free: &[usize], statistics: &FitStatistics) -> Vec<Option<f64>> {
     let mut standard_errors = vec![None; parameters.len()];
     for (i, &k) in free.iter().enumerate() {
         standard_errors[k] = statistics.standard_errors[i].map(|error| error * parameters[k].width());
@@ -188,7 +188,7 @@ fn standard_errors(parameters: &[Parameter], free: &[usize], statistics: &Statis
 }
 
 /// Gives the correlation of all `count` parameters from that of the free ones.
-fn correlation(count: usize, free: &[usize], statistics: &Statistics) -> Vec<Vec<Option<f64>>> {
+fn correlation(count: usize, free: &[usize], statistics: &FitStatistics) -> Vec<Vec<Option<f64>>> {
     let mut correlation = vec![vec![None; count]; count];
     for (i, &k) in free.iter().enumerate() {
         for (j, &l) in free.iter().enumerate() {
@@ -199,7 +199,7 @@ fn correlation(count: usize, free: &[usize], statistics: &Statistics) -> Vec<Vec
 }
 
 /// Gives [`Fit::jacobian`] from the columns by widths between bounds.
-fn jacobian(parameters: &[Parameter], found: &Found) -> Vec<Vec<f64>> {
+fn jacobian(parameters: &[Parameter], found: &SearchResult) -> Vec<Vec<f64>> {
     let slope = |row: usize, k: usize| {
         found.columns[k]
             .as_ref()

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 
-use super::evaluation::{Answer, Columns, Evaluator, Purpose};
+use super::evaluation::{Evaluation, JacobianColumns, ModelEvaluator, Purpose};
 use super::variable::{bounded, unbounded};
 use super::{Parameter, sum_of_squares};
 
@@ -31,7 +31,7 @@ pub(super) fn outward_cosine(parameter: &Parameter, x: f64, column: Option<&[f64
 }
 
 /// The least-squares problem as the optimiser asks for it.
-pub(super) struct Problem<'p, 'a> {
+pub(super) struct LeastSquares<'p, 'a> {
     /// Where the search starts: an `u` that has not moved gives back its value bit by bit.
     origin: (DVector<f64>, Vec<f64>),
     u: DVector<f64>,
@@ -39,32 +39,32 @@ pub(super) struct Problem<'p, 'a> {
     evaluations_limit: usize,
     left_alone_share: f64,
     refused: DVector<f64>,
-    evaluator: RefCell<&'p mut Evaluator<'a>>,
+    evaluator: RefCell<&'p mut ModelEvaluator<'a>>,
     notes: RefCell<Notes>,
 }
 
 /// What a search remembers of its way.
 pub(super) struct Notes {
     /// The best of all points tried, or what was best before.
-    pub best: Answer,
+    pub best: Evaluation,
     /// The last Jacobian, and the point it is of.
-    pub columns: Option<(Vec<f64>, Columns)>,
+    pub columns: Option<(Vec<f64>, JacobianColumns)>,
     /// Whether the limit of evaluations kept from going on.
     pub limit_reached: bool,
     /// Whether the model failed at the last point tried.
     pub trial_failed: bool,
-    last: Answer,
+    last: Evaluation,
 }
 
-impl<'p, 'a> Problem<'p, 'a> {
+impl<'p, 'a> LeastSquares<'p, 'a> {
     /// A search from `from`, where `best` is the best point so far. A parameter closer to a bound than
     /// `left_alone_share` of the width that is pushed outwards is left alone.
     pub(super) fn new(
-        evaluator: &'p mut Evaluator<'a>,
+        evaluator: &'p mut ModelEvaluator<'a>,
         evaluations_limit: usize,
         left_alone_share: f64,
-        best: Answer,
-        from: Answer,
+        best: Evaluation,
+        from: Evaluation,
     ) -> Self {
         let count = from.residuals.len();
         let level = REFUSED_NORM * (sum_of_squares(&from.residuals) / count as f64).sqrt();
@@ -101,7 +101,7 @@ impl<'p, 'a> Problem<'p, 'a> {
     }
 }
 
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
+impl LeastSquaresProblem<f64, Dyn, Dyn> for LeastSquares<'_, '_> {
     type ParameterStorage = Owned<f64, Dyn>;
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;
@@ -142,7 +142,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
             let Some(residuals) = residuals else {
                 return Some(self.refused.clone());
             };
-            notes.last = Answer {
+            notes.last = Evaluation {
                 point: self.point.clone(),
                 residuals,
             };

@@ -9,8 +9,8 @@
 
 use levenberg_marquardt::{LevenbergMarquardt, TerminationReason};
 
-use super::evaluation::{Answer, Columns, Evaluator};
-use super::problem::{Notes, PULL, Problem, outward_cosine};
+use super::evaluation::{Evaluation, JacobianColumns, ModelEvaluator};
+use super::problem::{LeastSquares, Notes, PULL, outward_cosine};
 use super::variable::nudged;
 use super::{FitError, Parameter, Settings};
 
@@ -30,7 +30,7 @@ const CLOSEST_SHARE: f64 = 1e-7;
 
 /// Why a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
+pub enum StopReason {
     /// All residuals are zero.
     ResidualsZero,
     /// The residuals are orthogonal to every column of the Jacobian.
@@ -53,7 +53,7 @@ pub enum Ending {
     Numerical,
 }
 
-impl Ending {
+impl StopReason {
     /// Whether the best point is a minimum, as far as the tolerance tells.
     pub fn converged(self) -> bool {
         matches!(
@@ -80,19 +80,19 @@ impl Ending {
 }
 
 /// What a search found.
-pub(super) struct Found {
+pub(super) struct SearchResult {
     /// The start as given.
-    pub start: Answer,
+    pub start: Evaluation,
     /// The best of all points tried.
-    pub best: Answer,
-    /// Columns of the Jacobian at the best point, see [`Evaluator::jacobian`].
-    pub columns: Columns,
+    pub best: Evaluation,
+    /// Columns of the Jacobian at the best point, see [`ModelEvaluator::jacobian`].
+    pub columns: JacobianColumns,
     /// Why it ended.
-    pub ending: Ending,
+    pub ending: StopReason,
 }
 
 /// Searches from the start of the parameters.
-pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Result<Found, FitError> {
+pub(super) fn search(evaluator: &mut ModelEvaluator<'_>, settings: &Settings) -> Result<SearchResult, FitError> {
     let parameters = evaluator.parameters;
     let (start, mut from) = starts(evaluator)?;
     let optimiser = optimiser(settings);
@@ -104,7 +104,7 @@ pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Resu
     let (mut rounds, mut left_alone_share) = (0, SNAP_SHARE);
     loop {
         rounds += 1;
-        let problem = Problem::new(evaluator, settings.evaluations_limit, left_alone_share, best, from);
+        let problem = LeastSquares::new(evaluator, settings.evaluations_limit, left_alone_share, best, from);
         let (problem, report) = optimiser.minimize(problem);
         let (ended_at, notes) = problem.into_parts();
         best = snapped(evaluator, notes.best.clone());
@@ -119,7 +119,7 @@ pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Resu
             left_alone_share *= CLOSER;
         }
         let is_open = match ending {
-            Ending::StuckNearBound => true,
+            StopReason::StuckNearBound => true,
             _ if !ending.converged() => false,
             _ => best.point != ended_at || (is_short_of_bound && left_alone_share > CLOSEST_SHARE),
         };
@@ -131,7 +131,7 @@ pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Resu
         match next {
             Some(next) => from = next,
             None => {
-                return Ok(Found {
+                return Ok(SearchResult {
                     start,
                     best,
                     columns,
@@ -144,7 +144,7 @@ pub(super) fn search(evaluator: &mut Evaluator<'_>, settings: &Settings) -> Resu
 
 /// Asks the model at the start as given, and at the start with parameters on a bound moved inside, from which the first
 /// round goes.
-fn starts(evaluator: &mut Evaluator<'_>) -> Result<(Answer, Answer), FitError> {
+fn starts(evaluator: &mut ModelEvaluator<'_>) -> Result<(Evaluation, Evaluation), FitError> {
     let parameters = evaluator.parameters;
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
     let moved: Vec<f64> = parameters
@@ -180,7 +180,12 @@ fn optimiser(settings: &Settings) -> LevenbergMarquardt<f64> {
 
 /// Tells whether the search left a parameter alone short of its bound: off it by less than `left_alone_share` of the width,
 /// and pushed outwards.
-fn is_short_of_bound(parameters: &[Parameter], best: &Answer, columns: &Columns, left_alone_share: f64) -> bool {
+fn is_short_of_bound(
+    parameters: &[Parameter],
+    best: &Evaluation,
+    columns: &JacobianColumns,
+    left_alone_share: f64,
+) -> bool {
     parameters
         .iter()
         .zip(&best.point)
@@ -193,7 +198,7 @@ fn is_short_of_bound(parameters: &[Parameter], best: &Answer, columns: &Columns,
 }
 
 /// Parameters on or next to a bound that would lower the sum of squares by going inside.
-fn pulled_inside(parameters: &[Parameter], best: &Answer, columns: &[Option<Vec<f64>>]) -> Vec<usize> {
+fn pulled_inside(parameters: &[Parameter], best: &Evaluation, columns: &[Option<Vec<f64>>]) -> Vec<usize> {
     (0..parameters.len())
         .filter(|&k| parameters[k].share_from_bound(best.point[k]) < ON_BOUND_SHARE)
         .filter(|&k| outward_cosine(&parameters[k], best.point[k], columns[k].as_deref(), &best.residuals) < -PULL)
@@ -201,7 +206,7 @@ fn pulled_inside(parameters: &[Parameter], best: &Answer, columns: &[Option<Vec<
 }
 
 /// `best` with the parameters that are pulled inside moved there; `None` where the model fails.
-fn released(evaluator: &mut Evaluator<'_>, best: &Answer, pulled: &[usize]) -> Option<Answer> {
+fn released(evaluator: &mut ModelEvaluator<'_>, best: &Evaluation, pulled: &[usize]) -> Option<Evaluation> {
     if pulled.is_empty() {
         return Some(best.clone());
     }
@@ -212,23 +217,23 @@ fn released(evaluator: &mut Evaluator<'_>, best: &Answer, pulled: &[usize]) -> O
     evaluator.answers(vec![point]).pop().flatten()
 }
 
-fn ending(termination: &TerminationReason, notes: &Notes, columns: &Columns, is_pulled: bool) -> Ending {
+fn ending(termination: &TerminationReason, notes: &Notes, columns: &JacobianColumns, is_pulled: bool) -> StopReason {
     match termination {
-        _ if notes.limit_reached => Ending::EvaluationsLimit,
-        TerminationReason::ResidualsZero => Ending::ResidualsZero,
-        _ if columns.iter().any(Option::is_none) => Ending::Blind,
-        _ if columns.iter().flatten().flatten().all(|&slope| slope == 0.0) => Ending::NoInfluence,
-        TerminationReason::Converged { ftol: false, .. } if notes.trial_failed => Ending::StoppedByFailures,
-        TerminationReason::LostPatience => Ending::EvaluationsLimit,
-        TerminationReason::Orthogonal | TerminationReason::Converged { .. } if is_pulled => Ending::StuckNearBound,
-        TerminationReason::Orthogonal => Ending::Orthogonal,
-        TerminationReason::Converged { ftol: true, .. } => Ending::SumOfSquaresSettled,
-        TerminationReason::Converged { .. } => Ending::ParametersSettled,
-        _ => Ending::Numerical,
+        _ if notes.limit_reached => StopReason::EvaluationsLimit,
+        TerminationReason::ResidualsZero => StopReason::ResidualsZero,
+        _ if columns.iter().any(Option::is_none) => StopReason::Blind,
+        _ if columns.iter().flatten().flatten().all(|&slope| slope == 0.0) => StopReason::NoInfluence,
+        TerminationReason::Converged { ftol: false, .. } if notes.trial_failed => StopReason::StoppedByFailures,
+        TerminationReason::LostPatience => StopReason::EvaluationsLimit,
+        TerminationReason::Orthogonal | TerminationReason::Converged { .. } if is_pulled => StopReason::StuckNearBound,
+        TerminationReason::Orthogonal => StopReason::Orthogonal,
+        TerminationReason::Converged { ftol: true, .. } => StopReason::SumOfSquaresSettled,
+        TerminationReason::Converged { .. } => StopReason::ParametersSettled,
+        _ => StopReason::Numerical,
     }
 }
 
-fn evaluate_start(evaluator: &mut Evaluator<'_>, points: Vec<Vec<f64>>) -> Result<Vec<Answer>, FitError> {
+fn evaluate_start(evaluator: &mut ModelEvaluator<'_>, points: Vec<Vec<f64>>) -> Result<Vec<Evaluation>, FitError> {
     let answers = evaluator.answers(points);
     if let Some(failed) = evaluator.failed.first() {
         return Err(FitError::Start {
@@ -241,7 +246,7 @@ fn evaluate_start(evaluator: &mut Evaluator<'_>, points: Vec<Vec<f64>>) -> Resul
 
 /// The best of `best` and what comes of moving its parameters that are close to a bound onto it: each alone, then all
 /// together that were better alone.
-fn snapped(evaluator: &mut Evaluator<'_>, best: Answer) -> Answer {
+fn snapped(evaluator: &mut ModelEvaluator<'_>, best: Evaluation) -> Evaluation {
     let parameters = evaluator.parameters;
     let bound = |k: usize| parameters[k].nearer_bound(best.point[k]);
     let with_on_bound = |moved: &[usize]| -> Vec<f64> {

@@ -67,7 +67,7 @@ pub struct Component {
 
 /// A direction in the space of the parameters in widths between their bounds, of length 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Direction {
+pub struct ParameterDirection {
     /// Singular value: norm of the change of the residuals for a step of length 1.
     pub singular_value: f64,
     /// Its share of the largest singular value; zero if all are.
@@ -77,7 +77,7 @@ pub struct Direction {
 }
 
 /// Statistics of the free parameters, in widths between their bounds.
-pub(super) struct Statistics {
+pub(super) struct FitStatistics {
     /// Standard errors; `None` for a parameter that is part of an undetermined direction.
     pub standard_errors: Vec<Option<f64>>,
     /// Correlation; `None` where one of the two has no standard error, or where it is zero.
@@ -87,7 +87,7 @@ pub(super) struct Statistics {
     /// Singular values, descending.
     pub singular_values: Vec<f64>,
     /// Directions that are undetermined, the best determined first.
-    pub undetermined: Vec<Direction>,
+    pub undetermined: Vec<ParameterDirection>,
 }
 
 /// Statistics from the Jacobian's `columns` (one for each free parameter, in the order of `indices`, each with one
@@ -98,7 +98,7 @@ pub(super) fn statistics(
     count: usize,
     sum_of_squares: f64,
     undetermined_share: f64,
-) -> Statistics {
+) -> FitStatistics {
     let free = columns.len();
     let error_scale = ErrorScale::of(count, free, sum_of_squares);
     let (singular_values, directions) = decomposition(columns, count);
@@ -120,7 +120,7 @@ pub(super) fn statistics(
         }
     }
     let standard_errors = covariance.standard_errors();
-    Statistics {
+    FitStatistics {
         correlation: covariance.correlation(&standard_errors),
         standard_errors,
         error_scale,
@@ -159,14 +159,14 @@ impl Covariance {
         part.iter().for_each(|&k| self.has_error[k] = false);
     }
 
-    /// Gives [`Statistics::standard_errors`].
+    /// Gives [`FitStatistics::standard_errors`].
     fn standard_errors(&self) -> Vec<Option<f64>> {
         (0..self.sum.len())
             .map(|k| Some(self.sum[k][k].sqrt()).filter(|error| self.has_error[k] && *error <= 1.0))
             .collect()
     }
 
-    /// Gives [`Statistics::correlation`].
+    /// Gives [`FitStatistics::correlation`].
     fn correlation(&self, standard_errors: &[Option<f64>]) -> Vec<Vec<Option<f64>>> {
         let correlation = |i: usize, j: usize| {
             let product = standard_errors[i]? * standard_errors[j]?;
@@ -201,10 +201,10 @@ fn decomposition(columns: &[&[f64]], count: usize) -> (Vec<f64>, Vec<Vec<f64>>) 
     (values, vectors.unwrap_or_default())
 }
 
-fn direction(w: f64, largest: f64, v: &[f64], mut part: Vec<usize>, indices: &[usize]) -> Direction {
+fn direction(w: f64, largest: f64, v: &[f64], mut part: Vec<usize>, indices: &[usize]) -> ParameterDirection {
     part.sort_by(|&a, &b| v[b].abs().total_cmp(&v[a].abs()));
     let sign = part.first().map_or(1.0, |&k| v[k].signum());
-    Direction {
+    ParameterDirection {
         singular_value: w,
         share_of_largest: if largest > 0.0 { w / largest } else { 0.0 },
         components: part

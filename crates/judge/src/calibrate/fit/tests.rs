@@ -255,7 +255,7 @@ fn limit_of_evaluations_holds_but_for_the_closing_jacobian() {
             ..Settings::default()
         };
         let fit = fit(&parameters, &each(rosenbrock), &settings).unwrap();
-        assert_eq!(fit.ending, Ending::EvaluationsLimit);
+        assert_eq!(fit.ending, StopReason::EvaluationsLimit);
         assert!(fit.evaluations <= evaluations_limit + 2 && fit.sum_of_squares_best <= fit.sum_of_squares_start);
     }
 }
