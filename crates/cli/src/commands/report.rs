@@ -11,7 +11,7 @@ use pontoon_plan::input::Refusal;
 use pontoon_results::PAGE;
 use pontoon_study::run::Cache;
 use pontoon_view::figures::{Figures, marks};
-use pontoon_view::report::{Found, Report, ReportSetting};
+use pontoon_view::report::{OpenedResults, Report, ReportSetting};
 use pontoon_view::{drawing, page};
 use serde_json::json;
 use std::fs::{self, File};
@@ -40,7 +40,7 @@ pub(crate) fn report(arguments: &ReportArguments, common: Common) -> Result<Endi
 
 /// Opens results and draws their figures.
 fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<Ending> {
-    let Found { results, notes, .. } = Found::open(&arguments.results, true)?;
+    let OpenedResults { results, notes, .. } = OpenedResults::open(&arguments.results, true)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     let compared = reference
         .as_ref()
@@ -70,7 +70,7 @@ fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<En
 /// Opens results, gathers what a page tells of them and writes it.
 fn page_of(arguments: &ReportArguments, common: Common) -> Result<Ending> {
     let out = page_file(arguments)?;
-    let found = Found::open(&arguments.results, arguments.with.is_some())?;
+    let found = OpenedResults::open(&arguments.results, arguments.with.is_some())?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     let judged = match &reference {
         Some(reference) => Some((

@@ -17,7 +17,7 @@ const APART: f64 = 11.0;
 const ROW: f64 = 10.5;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Sample {
+enum LegendSample {
     None,
     Line { style: usize, joined: bool },
     Mark(Origin),
@@ -25,11 +25,11 @@ enum Sample {
 }
 
 /// What, its words, and where it begins: across and in which row.
-type Entry = (Sample, String, f64, usize);
+type LegendEntry = (LegendSample, String, f64, usize);
 
 /// A legend laid out.
 pub(super) struct Legend {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
 }
 
 impl Legend {
@@ -75,7 +75,7 @@ impl Legend {
 
 /// An entry that is to have its place.
 struct Fitted {
-    sample: Sample,
+    sample: LegendSample,
     words: String,
     /// From its beginning to that of the next `[pt]`.
     width: f64,
@@ -83,7 +83,7 @@ struct Fitted {
 
 impl Fitted {
     /// Cuts the words of an entry to the room that there is across `[pt]`.
-    fn new(sample: Sample, words: &str, letters: &Letters, room: f64) -> Self {
+    fn new(sample: LegendSample, words: &str, letters: &Letters, room: f64) -> Self {
         let words = letters.fitting(words, SMALL, room - sample.width());
         let width = sample.width() + letters.width(&words, SMALL) + APART;
         Self { sample, words, width }
@@ -92,15 +92,15 @@ impl Fitted {
 
 /// Lists what the legend of a figure says, each once: what the lines' words are values of, the lines by their style, the
 /// marks.
-fn wanted(figure: &Figure) -> Vec<(Sample, String)> {
-    let mut wanted: Vec<(Sample, String)> = Vec::new();
-    let mut want = |entry: (Sample, String)| {
+fn wanted(figure: &Figure) -> Vec<(LegendSample, String)> {
+    let mut wanted: Vec<(LegendSample, String)> = Vec::new();
+    let mut want = |entry: (LegendSample, String)| {
         if !wanted.contains(&entry) {
             wanted.push(entry);
         }
     };
     for line in figure.panels.iter().flat_map(|panel| &panel.lines) {
-        let sample = Sample::Line {
+        let sample = LegendSample::Line {
             style: line.style,
             joined: line.joined,
         };
@@ -109,23 +109,27 @@ fn wanted(figure: &Figure) -> Vec<(Sample, String)> {
     for panel in &figure.panels {
         for mark in &panel.marks {
             let bar = !panel.y.words.is_empty();
-            let sample = if bar { Sample::Bar } else { Sample::Mark(mark.origin) };
+            let sample = if bar {
+                LegendSample::Bar
+            } else {
+                LegendSample::Mark(mark.origin)
+            };
             want((sample, mark.label.clone()));
         }
     }
     wanted.sort_by_key(|(sample, _)| sample.rank());
     if !figure.legend.is_empty() {
-        wanted.insert(0, (Sample::None, format!("{}:", capital(&figure.legend))));
+        wanted.insert(0, (LegendSample::None, format!("{}:", capital(&figure.legend))));
     }
     wanted
 }
 
 /// Places entries one behind the other from `left` `[pt]` on.
-fn in_one_row(fitted: Vec<Fitted>, left: f64) -> Vec<Entry> {
+fn in_one_row(fitted: Vec<Fitted>, left: f64) -> Vec<LegendEntry> {
     let (mut entries, mut x) = (Vec::new(), left);
     for Fitted { sample, words, width } in fitted {
         entries.push((sample, words, x, 0));
-        x += if sample == Sample::None {
+        x += if sample == LegendSample::None {
             width - 0.5 * APART
         } else {
             width
@@ -135,11 +139,11 @@ fn in_one_row(fitted: Vec<Fitted>, left: f64) -> Vec<Entry> {
 }
 
 /// Places entries that need several rows below each other, in as many columns as the room across takes `[pt]`.
-fn in_columns(fitted: Vec<Fitted>, left: f64, room: f64) -> Vec<Entry> {
+fn in_columns(fitted: Vec<Fitted>, left: f64, room: f64) -> Vec<LegendEntry> {
     let widest = fitted.iter().map(|entry| entry.width).fold(1.0, f64::max);
     let columns = (((room + APART) / widest).floor() as usize).max(1);
     // what the words are values of stands above them
-    let above = usize::from(fitted.first().is_some_and(|entry| entry.sample == Sample::None));
+    let above = usize::from(fitted.first().is_some_and(|entry| entry.sample == LegendSample::None));
     let mut entries = Vec::new();
     for (i, Fitted { sample, words, .. }) in fitted.into_iter().enumerate() {
         if i < above {
@@ -157,7 +161,7 @@ fn in_columns(fitted: Vec<Fitted>, left: f64, room: f64) -> Vec<Entry> {
     entries
 }
 
-impl Sample {
+impl LegendSample {
     /// Gives its place in the order of the legend: what lines are compared with comes last of the lines.
     fn rank(self) -> usize {
         match self {

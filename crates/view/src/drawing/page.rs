@@ -4,10 +4,10 @@
 
 use super::legend;
 use super::letters::Letters;
-use super::panel::{self, Frame};
+use super::panel::{self, PanelFrame};
 use super::pen::{Anchor, PT_MM, Pen};
 use super::style::LARGE;
-use crate::figures::{Figure, Panel};
+use crate::figures::{Figure, FigurePanel};
 use std::io;
 
 /// Width of a figure of one panel `[pt]`.
@@ -58,7 +58,7 @@ pub(super) fn svg(figure: &Figure, letters: &Letters) -> io::Result<String> {
     for (i, (panel, scale)) in figure.panels.iter().zip(&scales).enumerate() {
         let (column, line) = (i % columns, i / columns);
         let x = lefts[..=column].iter().sum::<f64>() + (across + GAP) * column as f64;
-        let frame = Frame {
+        let frame = PanelFrame {
             x,
             y: row * line as f64 + top,
             width: across,
@@ -73,7 +73,13 @@ pub(super) fn svg(figure: &Figure, letters: &Letters) -> io::Result<String> {
 }
 
 /// The letter of a panel and what sets it apart.
-fn title(pen: &mut Pen, panel: &Panel, frame: &Frame, number: Option<usize>, letters: &Letters) -> io::Result<()> {
+fn title(
+    pen: &mut Pen,
+    panel: &FigurePanel,
+    frame: &PanelFrame,
+    number: Option<usize>,
+    letters: &Letters,
+) -> io::Result<()> {
     let letter = number
         .and_then(|i| u8::try_from(i).ok())
         .map(|i| char::from(b'a' + i % 26));

@@ -6,7 +6,7 @@ use super::letters::Letters;
 use super::pen::{Anchor, Pen, Stroke};
 use super::scale::Scale;
 use super::style::{self, LARGE, MARK, MARKER, SMALL};
-use crate::figures::{Axis, Figure, Line, Origin, Panel};
+use crate::figures::{Figure, FigureAxis, FigureLine, FigurePanel, Origin};
 use std::io;
 
 /// Steps between ticks, about.
@@ -19,7 +19,7 @@ const MARKED: usize = 10;
 const MARKERS: usize = 7;
 
 /// Where a panel is `[pt]`.
-pub(super) struct Frame {
+pub(super) struct PanelFrame {
     /// Its left edge.
     pub x: f64,
     /// Its upper edge.
@@ -42,14 +42,14 @@ pub(super) struct Scales {
 }
 
 /// Whether panels of a figure count the same upward, so that they are drawn to one scale.
-fn alike(a: &Panel, b: &Panel) -> bool {
+fn alike(a: &FigurePanel, b: &FigurePanel) -> bool {
     a.y == b.y
 }
 
 /// The scales of all panels with one that they share.
-fn shared(figure: &Figure, own: impl Fn(&[&Panel], &Panel) -> Scales) -> Vec<Scales> {
-    let of = |panel: &Panel| {
-        let like: Vec<&Panel> = figure.panels.iter().filter(|other| alike(other, panel)).collect();
+fn shared(figure: &Figure, own: impl Fn(&[&FigurePanel], &FigurePanel) -> Scales) -> Vec<Scales> {
+    let of = |panel: &FigurePanel| {
+        let like: Vec<&FigurePanel> = figure.panels.iter().filter(|other| alike(other, panel)).collect();
         own(&like, panel)
     };
     figure.panels.iter().map(of).collect()
@@ -58,7 +58,7 @@ fn shared(figure: &Figure, own: impl Fn(&[&Panel], &Panel) -> Scales) -> Vec<Sca
 /// The scales of all panels: those that count the same upward have one.
 pub(super) fn scales(figure: &Figure) -> Vec<Scales> {
     shared(figure, |like, panel| {
-        let points = |panel: &Panel| -> Vec<[f64; 2]> {
+        let points = |panel: &FigurePanel| -> Vec<[f64; 2]> {
             let of_lines = panel.lines.iter().flat_map(|line| line.points.iter().copied());
             of_lines.chain(panel.marks.iter().map(|mark| mark.point)).collect()
         };
@@ -104,7 +104,7 @@ fn roomy(values: impl Iterator<Item = f64>, named: bool) -> impl Iterator<Item =
 }
 
 /// Room left of a panel `[pt]`.
-pub(super) fn left(panel: &Panel, scales: &Scales, letters: &Letters) -> f64 {
+pub(super) fn left(panel: &FigurePanel, scales: &Scales, letters: &Letters) -> f64 {
     let ticks = if panel.y.words.is_empty() {
         scales.y.ticks().iter().map(|tick| scales.y.text(*tick)).collect()
     } else {
@@ -116,7 +116,7 @@ pub(super) fn left(panel: &Panel, scales: &Scales, letters: &Letters) -> f64 {
 }
 
 /// The words of an axis with its unit.
-pub(super) fn words(axis: &Axis) -> String {
+pub(super) fn words(axis: &FigureAxis) -> String {
     if axis.unit.is_empty() {
         axis.label.clone()
     } else {
@@ -125,7 +125,7 @@ pub(super) fn words(axis: &Axis) -> String {
 }
 
 /// Draws a panel.
-pub(super) fn draw(pen: &mut Pen, panel: &Panel, scales: &Scales, frame: &Frame) -> io::Result<()> {
+pub(super) fn draw(pen: &mut Pen, panel: &FigurePanel, scales: &Scales, frame: &PanelFrame) -> io::Result<()> {
     let placed = Placed { panel, scales, frame };
     let at = |point| placed.at(point);
     placed.axes(pen)?;
@@ -166,7 +166,7 @@ pub(super) fn draw(pen: &mut Pen, panel: &Panel, scales: &Scales, frame: &Frame)
 }
 
 /// Where a line has markers: at each of few points, else at some evenly across, each line's between the others'.
-fn marked(line: &Line, scales: &Scales) -> Vec<[f64; 2]> {
+fn marked(line: &FigureLine, scales: &Scales) -> Vec<[f64; 2]> {
     if line.points.len() <= MARKED || !line.joined {
         return line.points.clone();
     }
@@ -203,9 +203,9 @@ const MOMENT: Stroke<'static> = Stroke {
 
 /// A panel in its place on paper.
 struct Placed<'a> {
-    panel: &'a Panel,
+    panel: &'a FigurePanel,
     scales: &'a Scales,
-    frame: &'a Frame,
+    frame: &'a PanelFrame,
 }
 
 impl Placed<'_> {

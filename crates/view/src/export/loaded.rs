@@ -6,7 +6,7 @@ use super::pictures::Pictures;
 use super::ready::Ready;
 use super::series::Series;
 use super::subject::{CrossingWanted, StaticWanted, Subject};
-use super::vtk::{Array, Counter, Grid, Values};
+use super::vtk::{Array, Counter, VtkGrid, VtkValues};
 use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};
 use pontoon_core::analysis::crossing::CrossingSettings;
@@ -21,13 +21,13 @@ use pontoon_study::run::{RETRY_STEP_SHARE, half_step_may_help};
 const INSTANTS_A_SECOND: f64 = 20.0;
 
 /// The three series of a loaded bridge.
-struct Shown {
+struct LoadedSeries {
     mesh: Series,
     joints: Series,
     vehicle: Series,
 }
 
-impl Shown {
+impl LoadedSeries {
     fn of_statics() -> Self {
         Self {
             mesh: Series::new("static", "static case: the mesh", 1),
@@ -48,7 +48,7 @@ impl Shown {
         &mut self,
         folder: &mut WholeFolder,
         time_s: f64,
-        [mesh, joints, vehicle]: [Grid; 3],
+        [mesh, joints, vehicle]: [VtkGrid; 3],
     ) -> Result<(), ExportError> {
         let name = format!("{time_s:.3} s");
         self.mesh.write(folder, time_s, &name, &mesh)?;
@@ -66,9 +66,9 @@ impl Shown {
 }
 
 /// The three grids of a state.
-fn grids(pictures: &Pictures, ready: &Ready, state: &Snapshot) -> [Grid; 3] {
+fn grids(pictures: &Pictures, ready: &Ready, state: &Snapshot) -> [VtkGrid; 3] {
     let displacement_m = ready.meshed.displacement_m(&state.u);
-    let time = || vec![Array::new("time_s", Values::F64(vec![state.time_s]))];
+    let time = || vec![Array::new("time_s", VtkValues::F64(vec![state.time_s]))];
     [
         pictures.mesh(&displacement_m, time()),
         pictures.joints(ready, state, &displacement_m, time()),
@@ -93,7 +93,7 @@ pub(super) fn statics(
         .deflection_m
         .into_iter()
         .fold(0.0, f64::max);
-    let mut shown = Shown::of_statics();
+    let mut shown = LoadedSeries::of_statics();
     shown.write(folder, 0.0, grids(&Pictures::of(&ready), &ready, &state))?;
     shown.finish(folder, peak)
 }
@@ -171,7 +171,7 @@ impl Passage<'_> {
         );
         let whole = [3 * instants as u64, instants as u64 * size.0];
         check_size(self.subject, ("--every", found), whole, self.note)?;
-        let mut shown = Shown::of_crossing(instants);
+        let mut shown = LoadedSeries::of_crossing(instants);
         shown.write(folder, under.snapshot().time_s, at_rest)?;
         let mut taken = 0;
         while under.step()? {

@@ -6,7 +6,7 @@ use super::pictures::Pictures;
 use super::ready::Ready;
 use super::series::Series;
 use super::subject::{ModesWanted, Subject};
-use super::vtk::{Array, Counter, Values};
+use super::vtk::{Array, Counter, VtkValues};
 use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};
 use pontoon_core::analysis::modes::{largest_made_one, modes};
@@ -68,9 +68,9 @@ pub(super) fn write(
 
 fn fields(number: usize, frequency_hz: f64, shape: &str) -> Vec<Array> {
     vec![
-        Array::new("number", Values::I32(vec![number as i32])),
-        Array::new("frequency_hz", Values::F64(vec![frequency_hz])),
-        Array::new("largest_component", Values::F64(vec![LARGEST])),
+        Array::new("number", VtkValues::I32(vec![number as i32])),
+        Array::new("frequency_hz", VtkValues::F64(vec![frequency_hz])),
+        Array::new("largest_component", VtkValues::F64(vec![LARGEST])),
         Array::text("shape", shape),
     ]
 }

@@ -3,7 +3,7 @@
 //! Knows which array says what. Does not know files or how the state was found.
 
 use super::ready::Ready;
-use super::vtk::{Array, CellType, Grid, Values};
+use super::vtk::{Array, CellType, VtkGrid, VtkValues};
 use pontoon_core::analysis::snapshot::Snapshot;
 use pontoon_core::bridge::Link;
 use pontoon_core::connector::State;
@@ -30,8 +30,8 @@ const MOTION: &str = "displacement";
 /// The grids of one bridge, with what does not change filled in.
 #[derive(Debug)]
 pub(super) struct Pictures {
-    mesh: Grid,
-    joints: Grid,
+    mesh: VtkGrid,
+    joints: VtkGrid,
     depth_m: f64,
 }
 
@@ -47,7 +47,7 @@ impl Pictures {
     }
 
     /// The mesh with its nodes moved.
-    pub(super) fn mesh(&self, displacement_m: &[[f64; 3]], fields: Vec<Array>) -> Grid {
+    pub(super) fn mesh(&self, displacement_m: &[[f64; 3]], fields: Vec<Array>) -> VtkGrid {
         let mut grid = self.mesh.clone();
         grid.point_data.push(Array::vectors(MOTION, displacement_m));
         grid.field_data.extend(fields);
@@ -61,7 +61,7 @@ impl Pictures {
         state: &Snapshot,
         displacement_m: &[[f64; 3]],
         fields: Vec<Array>,
-    ) -> Grid {
+    ) -> VtkGrid {
         let meshed = &ready.meshed;
         let hinges = meshed.hinge_forces_n(&state.elastic, state.inertial.as_deref());
         let sense = |force_n: f64| i32::from(force_n < 0.0) + 2 * i32::from(force_n > 0.0);
@@ -82,9 +82,9 @@ impl Pictures {
         let mut grid = self.joints.clone();
         grid.point_data.push(Array::vectors(MOTION, &moved));
         grid.cell_data.extend([
-            Array::new("state", Values::I32(states.collect())),
-            Array::new("force_n", Values::F64(forces.collect())),
-            Array::new("elongation_m", Values::F64(elongations.collect())),
+            Array::new("state", VtkValues::I32(states.collect())),
+            Array::new("force_n", VtkValues::F64(forces.collect())),
+            Array::new("elongation_m", VtkValues::F64(elongations.collect())),
         ]);
         grid.field_data.extend(fields);
         grid
@@ -97,21 +97,21 @@ impl Pictures {
         state: &Snapshot,
         displacement_m: &[[f64; 3]],
         fields: Vec<Array>,
-    ) -> Grid {
+    ) -> VtkGrid {
         let wheels = &state.wheels;
         let places: Vec<[f64; 3]> = wheels.iter().map(|w| [w.x_m, w.y_m, self.depth_m]).collect();
         let moved = wheels.iter().map(|wheel| {
             let row = wheel.row.as_ref();
             row.map_or([0.0; 3], |row| ready.meshed.of_deck_m(row, displacement_m))
         });
-        let numbers = |of: &dyn Fn(usize) -> usize| Values::I32((0..wheels.len()).map(|i| of(i) as i32).collect());
-        let mut grid = Grid::new(&places);
+        let numbers = |of: &dyn Fn(usize) -> usize| VtkValues::I32((0..wheels.len()).map(|i| of(i) as i32).collect());
+        let mut grid = VtkGrid::new(&places);
         (0..wheels.len()).for_each(|i| grid.cell(CellType::Vertex, &[i]));
         grid.point_data = vec![
             Array::vectors(MOTION, &moved.collect::<Vec<_>>()),
             Array::new(
                 "contact_force_n",
-                Values::F64(wheels.iter().map(|w| w.contact_force_n).collect()),
+                VtkValues::F64(wheels.iter().map(|w| w.contact_force_n).collect()),
             ),
             Array::new("axle", numbers(&|i| wheels[i].axle + 1)),
             Array::new("patch", numbers(&|i| wheels[i].patch + 1)),
@@ -128,9 +128,9 @@ fn version() -> Array {
     Array::text("program_version", pontoon_results::VERSION)
 }
 
-fn mesh(ready: &Ready) -> Grid {
+fn mesh(ready: &Ready) -> VtkGrid {
     let meshed = &ready.meshed;
-    let mut grid = Grid::new(&meshed.nodes_m);
+    let mut grid = VtkGrid::new(&meshed.nodes_m);
     let number = |plate: Plate| Plate::ALL.iter().position(|p| *p == plate).unwrap_or(Plate::ALL.len()) as i32;
     let (mut plates, mut thicknesses, mut modules) = (Vec::new(), Vec::new(), Vec::new());
     for shell in &meshed.shells {
@@ -146,9 +146,9 @@ fn mesh(ready: &Ready) -> Grid {
         modules.push(beam.module as i32);
     }
     grid.cell_data = vec![
-        Array::new("plate", Values::I32(plates)),
-        Array::new("thickness_m", Values::F64(thicknesses)),
-        Array::new("module", Values::I32(modules)),
+        Array::new("plate", VtkValues::I32(plates)),
+        Array::new("thickness_m", VtkValues::F64(thicknesses)),
+        Array::new("module", VtkValues::I32(modules)),
     ];
     grid.field_data = vec![version()];
     grid
@@ -159,24 +159,24 @@ fn links(ready: &Ready) -> impl Iterator<Item = &Link> {
     ready.meshed.connectors.iter().chain(&ready.meshed.hinges)
 }
 
-fn joints(ready: &Ready, drawn_m: f64) -> Grid {
+fn joints(ready: &Ready, drawn_m: f64) -> VtkGrid {
     let places = links(ready).flat_map(|link| {
         [(0, -drawn_m), (1, drawn_m)].map(|(end, aside)| {
             let [x, y, z] = ready.meshed.nodes_m[link.nodes[end]];
             [x + aside, y, z]
         })
     });
-    let mut grid = Grid::new(&places.collect::<Vec<_>>());
+    let mut grid = VtkGrid::new(&places.collect::<Vec<_>>());
     (0..links(ready).count()).for_each(|i| grid.cell(CellType::Line, &[2 * i, 2 * i + 1]));
     let connectors = ready.meshed.connectors.len();
     let kinds = (0..links(ready).count()).map(|i| i32::from(i >= connectors));
     grid.cell_data = vec![
-        Array::new("link", Values::I32(kinds.collect())),
+        Array::new("link", VtkValues::I32(kinds.collect())),
         Array::new(
             "joint",
-            Values::I32(links(ready).map(|link| link.joint as i32).collect()),
+            VtkValues::I32(links(ready).map(|link| link.joint as i32).collect()),
         ),
-        Array::new("y_m", Values::F64(links(ready).map(|link| link.y_m).collect())),
+        Array::new("y_m", VtkValues::F64(links(ready).map(|link| link.y_m).collect())),
     ];
     grid.field_data = vec![version()];
     grid

@@ -2,7 +2,7 @@
 //!
 //! Knows names. Does not know what a grid shows.
 
-use super::vtk::{Grid, Step, write_collection};
+use super::vtk::{VtkGrid, VtkStep, write_collection};
 use super::whole::WholeFolder;
 use super::{ExportError, Part};
 use std::io::Write;
@@ -13,7 +13,7 @@ pub(super) struct Series {
     name: &'static str,
     shows: String,
     digits: usize,
-    steps: Vec<Step>,
+    steps: Vec<VtkStep>,
     size: [usize; 2],
 }
 
@@ -38,7 +38,7 @@ impl Series {
         folder: &mut WholeFolder,
         time: f64,
         name: &str,
-        grid: &Grid,
+        grid: &VtkGrid,
     ) -> Result<(), ExportError> {
         if self.steps.is_empty() {
             self.size = [grid.points(), grid.cells()];
@@ -46,7 +46,7 @@ impl Series {
         let (number, digits) = (self.steps.len() + 1, self.digits);
         let file = format!("{}-{number:0digits$}.vtu", self.name);
         folder.write(&file, |out: &mut dyn Write| grid.write(out))?;
-        self.steps.push(Step {
+        self.steps.push(VtkStep {
             time,
             name: name.to_owned(),
             file,

@@ -24,14 +24,14 @@ pub(super) enum CellType {
 
 /// Numbers of an array.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Values {
+pub(super) enum VtkValues {
     F32(Vec<f32>),
     F64(Vec<f64>),
     I32(Vec<i32>),
     U8(Vec<u8>),
 }
 
-impl Values {
+impl VtkValues {
     fn word(&self) -> &'static str {
         match self {
             Self::F32(_) => "Float32",
@@ -74,12 +74,12 @@ impl Values {
 pub(super) struct Array {
     name: &'static str,
     components: usize,
-    values: Values,
+    values: VtkValues,
 }
 
 impl Array {
     /// One number a point, cell or field.
-    pub(super) fn new(name: &'static str, values: Values) -> Self {
+    pub(super) fn new(name: &'static str, values: VtkValues) -> Self {
         Self {
             name,
             components: 1,
@@ -92,19 +92,19 @@ impl Array {
         Self {
             name,
             components: 3,
-            values: Values::F32(vectors.iter().flatten().map(|&x| x as f32).collect()),
+            values: VtkValues::F32(vectors.iter().flatten().map(|&x| x as f32).collect()),
         }
     }
 
     /// A text as its UTF-8 bytes.
     pub(super) fn text(name: &'static str, text: &str) -> Self {
-        Self::new(name, Values::U8(text.as_bytes().to_vec()))
+        Self::new(name, VtkValues::U8(text.as_bytes().to_vec()))
     }
 }
 
 /// An unstructured grid.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct VtkGrid {
     points: Array,
     count: usize,
     connectivity: Vec<i32>,
@@ -118,7 +118,7 @@ pub(super) struct Grid {
     pub field_data: Vec<Array>,
 }
 
-impl Grid {
+impl VtkGrid {
     /// Points `[m]` without cells.
     pub(super) fn new(points_m: &[[f64; 3]]) -> Self {
         Self {
@@ -156,9 +156,9 @@ impl Grid {
     /// The writer's.
     pub(super) fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         let cells = [
-            Array::new("connectivity", Values::I32(self.connectivity.clone())),
-            Array::new("offsets", Values::I32(self.offsets.clone())),
-            Array::new("types", Values::U8(self.types.clone())),
+            Array::new("connectivity", VtkValues::I32(self.connectivity.clone())),
+            Array::new("offsets", VtkValues::I32(self.offsets.clone())),
+            Array::new("types", VtkValues::U8(self.types.clone())),
         ];
         let points = std::slice::from_ref(&self.points);
         let (of_points, of_cells) = (self.count.to_string(), self.cells().to_string());
@@ -200,7 +200,7 @@ impl Grid {
 #[derive(Default)]
 struct Appended<'a> {
     offset: usize,
-    values: Vec<&'a Values>,
+    values: Vec<&'a VtkValues>,
 }
 
 impl<'a> Appended<'a> {
@@ -250,7 +250,7 @@ impl<'a> Appended<'a> {
 
 /// One file of a collection.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Step {
+pub(super) struct VtkStep {
     /// Its time, or its number where there is none.
     pub time: f64,
     /// What it shows.
@@ -263,7 +263,7 @@ pub(super) struct Step {
 ///
 /// # Errors
 /// The writer's.
-pub(super) fn write_collection(steps: &[Step], remark: &str, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write_collection(steps: &[VtkStep], remark: &str, out: &mut dyn Write) -> io::Result<()> {
     let mut xml = Writer::new_with_indent(out, b' ', 2);
     let header = [
         ("type", "Collection"),
@@ -312,7 +312,7 @@ impl Write for Counter {
 mod tests {
     use super::*;
 
-    fn written(grid: &Grid) -> Vec<u8> {
+    fn written(grid: &VtkGrid) -> Vec<u8> {
         let mut bytes = Vec::new();
         grid.write(&mut bytes).unwrap();
         bytes
@@ -321,9 +321,9 @@ mod tests {
     /// Every array stands where its offset says, behind its count of bytes.
     #[test]
     fn offsets_lead_to_the_bytes() {
-        let mut grid = Grid::new(&[[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]);
+        let mut grid = VtkGrid::new(&[[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]);
         grid.cell(CellType::Line, &[0, 1]);
-        grid.cell_data.push(Array::new("force_n", Values::F64(vec![-1.5])));
+        grid.cell_data.push(Array::new("force_n", VtkValues::F64(vec![-1.5])));
         grid.field_data.push(Array::text("shape", "heave"));
         let bytes = written(&grid);
         let mark = b"<AppendedData encoding=\"raw\">";
@@ -358,7 +358,7 @@ mod tests {
 
     #[test]
     fn words_of_a_collection_cannot_be_markup() {
-        let step = Step {
+        let step = VtkStep {
             time: 0.25,
             name: "a<b & \"c\"".to_owned(),
             file: "x-0001.vtu".to_owned(),

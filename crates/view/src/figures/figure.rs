@@ -16,7 +16,7 @@ pub struct Figure {
     /// What the words of its lines are values of; empty where they say it themselves.
     pub legend: String,
     /// Its panels in the order of reading.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<FigurePanel>,
     /// What of its jobs it does not hold, in words; told with what no figure holds.
     #[serde(skip)]
     pub(super) left_out: Vec<String>,
@@ -32,24 +32,24 @@ impl Figure {
 
 /// A pair of axes with what is drawn between them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Panel {
+pub struct FigurePanel {
     /// What sets it apart from the others; empty where it is the only one.
     pub title: String,
     /// The axis across.
-    pub x: Axis,
+    pub x: FigureAxis,
     /// The axis up or, where its numbers count downward, down.
-    pub y: Axis,
+    pub y: FigureAxis,
     /// Lines, in the order of the legend.
-    pub lines: Vec<Line>,
+    pub lines: Vec<FigureLine>,
     /// Points of a reference.
     pub marks: Vec<PlottedMark>,
     /// Places across where something happens.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<FigureMoment>,
 }
 
 /// An axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Axis {
+pub struct FigureAxis {
     /// What it counts.
     pub label: String,
     /// In which unit; empty of words.
@@ -62,7 +62,7 @@ pub struct Axis {
 
 /// A line.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Line {
+pub struct FigureLine {
     /// Its words in the legend; lines of one figure with equal words are one entry.
     pub label: String,
     /// How it is drawn: 0 for what others are compared with, then by number.
@@ -90,7 +90,7 @@ pub struct PlottedMark {
 
 /// A place across a panel where something happens.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Moment {
+pub struct FigureMoment {
     /// What kind of place it is.
     #[serde(skip)]
     pub(super) kind: MomentKind,
@@ -111,14 +111,14 @@ pub(super) enum MomentKind {
 
 /// A quantity as figures have it: its words, its unit, what a number of the tables is multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Measure {
+pub(super) struct FigureMeasure {
     pub label: &'static str,
     pub unit: &'static str,
     pub factor: f64,
     pub down: bool,
 }
 
-impl Measure {
+impl FigureMeasure {
     /// What a curve of the registry counts.
     pub(super) fn of(curve: &Curve) -> Self {
         Self::up(curve.label, curve.unit, curve.factor)
@@ -148,8 +148,8 @@ impl Measure {
     pub(super) const FREQUENCY: Self = Self::up("Frequency", "Hz", 1.0);
 
     /// The axis that counts it.
-    pub(super) fn axis(self) -> Axis {
-        Axis {
+    pub(super) fn axis(self) -> FigureAxis {
+        FigureAxis {
             label: self.label.to_owned(),
             unit: self.unit.to_owned(),
             down: self.down,

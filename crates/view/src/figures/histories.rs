@@ -3,10 +3,10 @@
 //! Knows the table of histories. Does not know which jobs belong together.
 
 use super::family::families;
-use super::figure::{Figure, Line, Measure, Moment, MomentKind, Panel};
+use super::figure::{Figure, FigureLine, FigureMeasure, FigureMoment, FigurePanel, MomentKind};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
-use super::sheet::{Asked, Sheet};
+use super::sheet::{MarkRequest, Sheet};
 use crate::thinning::thinned;
 use pontoon_judge::quantity::moments_of;
 use pontoon_results::{Table, TableName};
@@ -32,8 +32,8 @@ pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     let mut figures = Vec::new();
     for (quantity, position) in channels {
         let (stem, what, y) = match quantity.as_str() {
-            "deflection_m" => ("deflection", "Deflection of position", Measure::DEFLECTION),
-            "force_n" => ("force", "Force of the joint at position", Measure::FORCE),
+            "deflection_m" => ("deflection", "Deflection of position", FigureMeasure::DEFLECTION),
+            "force_n" => ("force", "Force of the joint at position", FigureMeasure::FORCE),
             _ => continue,
         };
         for family in &families {
@@ -41,7 +41,7 @@ pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
             let (split, left_out) = by_speed(sheet, family, &name);
             let channel = (quantity.clone(), position);
             let of = |split: &Split| panel(sheet, table, split, &channel, y, &recorded);
-            let panels: Vec<Panel> = split.iter().map(of).filter(|panel| !panel.lines.is_empty()).collect();
+            let panels: Vec<FigurePanel> = split.iter().map(of).filter(|panel| !panel.lines.is_empty()).collect();
             if panels.is_empty() {
                 continue;
             }
@@ -89,12 +89,19 @@ fn recorded(sheet: &Sheet<'_>, table: &Table) -> (Vec<Channel>, Recorded) {
     (channels, found)
 }
 
-fn panel(sheet: &Sheet<'_>, table: &Table, split: &Split, channel: &Channel, y: Measure, recorded: &Recorded) -> Panel {
+fn panel(
+    sheet: &Sheet<'_>,
+    table: &Table,
+    split: &Split,
+    channel: &Channel,
+    y: FigureMeasure,
+    recorded: &Recorded,
+) -> FigurePanel {
     let mut lines = Vec::new();
     for line in &split.lines {
         let job = sheet.job(line.row);
         if let Some(rows) = recorded.get(&(job, channel.clone())) {
-            lines.push(Line {
+            lines.push(FigureLine {
                 label: line.label.clone(),
                 style: line.style,
                 joined: true,
@@ -104,18 +111,18 @@ fn panel(sheet: &Sheet<'_>, table: &Table, split: &Split, channel: &Channel, y: 
         }
     }
     let rows: Vec<usize> = split.lines.iter().map(|line| line.row).collect();
-    let asked = Asked {
+    let asked = MarkRequest {
         chart: Chart::History,
         table: TableName::Histories,
         columns: &[&channel.0],
         position: Some(channel.1),
-        x: Measure::TIME,
+        x: FigureMeasure::TIME,
         y,
         sign: 1.0,
     };
-    Panel {
+    FigurePanel {
         title: split.title.clone(),
-        x: Measure::TIME.axis(),
+        x: FigureMeasure::TIME.axis(),
         y: y.axis(),
         marks: sheet.marks_of(&rows, &asked),
         moments: arrival(sheet, &rows, channel.1),
@@ -124,7 +131,7 @@ fn panel(sheet: &Sheet<'_>, table: &Table, split: &Split, channel: &Channel, y: 
 }
 
 /// A history with its peaks, thinned.
-fn points(table: &Table, rows: &Range<usize>, y: Measure) -> Vec<[f64; 2]> {
+fn points(table: &Table, rows: &Range<usize>, y: FigureMeasure) -> Vec<[f64; 2]> {
     let (Some(time), Some(value)) = (table.numbers("time_s"), table.numbers("value")) else {
         return Vec::new();
     };
@@ -138,7 +145,7 @@ fn points(table: &Table, rows: &Range<usize>, y: Measure) -> Vec<[f64; 2]> {
 }
 
 /// When the vehicle's centre is at a position, where it is so for all jobs at once.
-fn arrival(sheet: &Sheet<'_>, rows: &[usize], position: u32) -> Vec<Moment> {
+fn arrival(sheet: &Sheet<'_>, rows: &[usize], position: u32) -> Vec<FigureMoment> {
     let at = |row: &usize| {
         moments_of(sheet.results, *row, position as usize)
             .ok()
@@ -148,11 +155,13 @@ fn arrival(sheet: &Sheet<'_>, rows: &[usize], position: u32) -> Vec<Moment> {
         return Vec::new();
     };
     match times.split_first() {
-        Some((first, others)) if others.iter().all(|time| (time - first).abs() < SAME_ARRIVAL_S) => vec![Moment {
-            kind: MomentKind::Arrival,
-            label: format!("vehicle at {position}"),
-            x: *first,
-        }],
+        Some((first, others)) if others.iter().all(|time| (time - first).abs() < SAME_ARRIVAL_S) => {
+            vec![FigureMoment {
+                kind: MomentKind::Arrival,
+                label: format!("vehicle at {position}"),
+                x: *first,
+            }]
+        }
         _ => Vec::new(),
     }
 }

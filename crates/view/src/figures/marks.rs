@@ -36,7 +36,7 @@ pub enum Origin {
 
 /// A point of a reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Mark {
+pub struct ReferenceMark {
     /// Id of the measurement or of the check.
     pub id: String,
     /// Whether it was measured.
@@ -61,7 +61,7 @@ pub struct Mark {
     pub note: Option<String>,
 }
 
-impl Mark {
+impl ReferenceMark {
     /// Whether the job in a row of the table of jobs has the axes that are fixed for the mark.
     pub fn belongs_to(&self, jobs: &Table, row: usize) -> bool {
         let fits = |(axis, value): (&String, &Cell<'_>)| jobs.has(axis) && same_value(value, &jobs.cell(axis, row));
@@ -74,7 +74,7 @@ impl Mark {
 ///
 /// # Errors
 /// [`Refusal`] where a measurement names an axis that the study does not have.
-pub fn marks(results: &Results, reference: &Reference) -> Result<Vec<Mark>, Refusal> {
+pub fn marks(results: &Results, reference: &Reference) -> Result<Vec<ReferenceMark>, Refusal> {
     let mut found = Vec::new();
     for (i, group) in reference.measured.iter().enumerate() {
         let known = results.axes();
@@ -87,10 +87,10 @@ pub fn marks(results: &Results, reference: &Reference) -> Result<Vec<Mark>, Refu
         }
         found.extend(of_measured(group));
     }
-    let places = Places::new(results);
+    let places = PositionPlaces::new(results);
     for check in &reference.checks {
         let expected = of_check(&places, check);
-        let new: Vec<Mark> = expected
+        let new: Vec<ReferenceMark> = expected
             .into_iter()
             .filter(|mark| !found.iter().any(|other| same_point(other, mark)))
             .collect();
@@ -103,7 +103,7 @@ pub fn marks(results: &Results, reference: &Reference) -> Result<Vec<Mark>, Refu
 const SAME_POINT: f64 = 1e-6;
 
 /// Whether two marks are one point: the same number at the same place, and no axis that both fix differs.
-fn same_point(a: &Mark, b: &Mark) -> bool {
+fn same_point(a: &ReferenceMark, b: &ReferenceMark) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= SAME_POINT * a.abs().max(b.abs());
     let same_x = match (a.x, b.x) {
         (Some(a), Some(b)) => near(a, b),
@@ -117,14 +117,14 @@ fn same_value(a: &Cell<'_>, b: &Cell<'_>) -> bool {
     Allowed::one(a).allows(b)
 }
 
-fn of_measured(group: &MeasuredSpec) -> impl Iterator<Item = Mark> {
+fn of_measured(group: &MeasuredSpec) -> impl Iterator<Item = ReferenceMark> {
     let (position, axes) = place_and_axes(&group.filter).unwrap_or_default();
     let chart = match group.against {
         Against::X => Chart::Profile,
         Against::Speed => Chart::Speed,
         Against::Time => Chart::History,
     };
-    group.points.iter().map(move |&[x, y]| Mark {
+    group.points.iter().map(move |&[x, y]| ReferenceMark {
         id: group.id.clone(),
         origin: Origin::Measured,
         chart,
@@ -140,7 +140,7 @@ fn of_measured(group: &MeasuredSpec) -> impl Iterator<Item = Mark> {
 }
 
 /// What a check expects, where that is a point of a chart.
-fn of_check(places: &Places<'_>, check: &Check) -> Vec<Mark> {
+fn of_check(places: &PositionPlaces<'_>, check: &Check) -> Vec<ReferenceMark> {
     if !check.each.is_empty() {
         return Vec::new();
     }
@@ -158,14 +158,20 @@ fn of_check(places: &Places<'_>, check: &Check) -> Vec<Mark> {
     }
 }
 
-fn of_select(places: &Places<'_>, check: &Check, select: &SelectQuantity, y: f64, origin: Origin) -> Vec<Mark> {
+fn of_select(
+    places: &PositionPlaces<'_>,
+    check: &Check,
+    select: &SelectQuantity,
+    y: f64,
+    origin: Origin,
+) -> Vec<ReferenceMark> {
     let Some((position, mut axes)) = place_and_axes(&select.filter.within(&check.filter)) else {
         return Vec::new();
     };
     if !Column::of(select.table, &select.column).is_some_and(|column| column.drawn) {
         return Vec::new();
     }
-    let mark = |chart: Chart, x: Option<f64>, axes: BTreeMap<String, Cell<'static>>| Mark {
+    let mark = |chart: Chart, x: Option<f64>, axes: BTreeMap<String, Cell<'static>>| ReferenceMark {
         id: check.id.clone(),
         origin,
         chart,
@@ -189,7 +195,7 @@ fn of_select(places: &Places<'_>, check: &Check, select: &SelectQuantity, y: f64
     marks
 }
 
-fn of_curve(check: &Check, curve: &CheckCurve<'_>) -> Vec<Mark> {
+fn of_curve(check: &Check, curve: &CheckCurve<'_>) -> Vec<ReferenceMark> {
     let Some((position, axes)) = place_and_axes(&check.filter) else {
         return Vec::new();
     };
@@ -199,7 +205,7 @@ fn of_curve(check: &Check, curve: &CheckCurve<'_>) -> Vec<Mark> {
         (TableName::Jobs, "speed_m_s") => Chart::Speed,
         _ => return Vec::new(),
     };
-    let mark = |&[x, y]: &[f64; 2]| Mark {
+    let mark = |&[x, y]: &[f64; 2]| ReferenceMark {
         id: check.id.clone(),
         origin: Origin::Expected,
         chart,
@@ -237,12 +243,12 @@ fn place_and_axes(filter: &Filter) -> Option<(Option<u32>, BTreeMap<String, Cell
 }
 
 /// Where along the bridge positions are: of each its rows' jobs, by their row in the table of jobs, and `x_m`.
-struct Places<'a> {
+struct PositionPlaces<'a> {
     results: &'a Results,
     of_position: BTreeMap<u32, Vec<(usize, f64)>>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> PositionPlaces<'a> {
     fn new(results: &'a Results) -> Self {
         let mut of_position: BTreeMap<u32, Vec<(usize, f64)>> = BTreeMap::new();
         let table = results.table(TableName::Positions);

@@ -25,8 +25,8 @@ mod profiles;
 mod sheet;
 mod speeds;
 
-pub use figure::{Axis, Figure, Line, Moment, Panel, PlottedMark};
-pub use marks::{Chart, Mark, Origin, marks};
+pub use figure::{Figure, FigureAxis, FigureLine, FigureMoment, FigurePanel, PlottedMark};
+pub use marks::{Chart, Origin, ReferenceMark, marks};
 
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Refusal;

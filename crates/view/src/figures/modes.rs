@@ -3,7 +3,7 @@
 //! Knows the table of modes and the checks of modes. Does not know shapes.
 
 use super::family::{Family, FamilyLine, families};
-use super::figure::{Axis, Figure, Line, Measure, Panel, PlottedMark};
+use super::figure::{Figure, FigureAxis, FigureLine, FigureMeasure, FigurePanel, PlottedMark};
 use super::marks::Origin;
 use super::panels::caption;
 use super::sheet::{Sheet, rows_by_job};
@@ -49,17 +49,17 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
                 place(table.cell("shape", row).word()?)?,
             ])
         };
-        let line = |line: &FamilyLine| Line {
+        let line = |line: &FamilyLine| FigureLine {
             label: line.label.clone(),
             style: line.style,
             joined: false,
             jobs: vec![sheet.job(line.rows[0])],
             points: of_line(line).into_iter().filter_map(point).collect(),
         };
-        let panel = Panel {
+        let panel = FigurePanel {
             title: String::new(),
-            x: Measure::FREQUENCY.axis(),
-            y: Axis {
+            x: FigureMeasure::FREQUENCY.axis(),
+            y: FigureAxis {
                 label: String::new(),
                 unit: String::new(),
                 down: true,

@@ -3,7 +3,7 @@
 //! Knows families and speeds. Does not know tables.
 
 use super::family::Family;
-use super::figure::{MomentKind, Panel};
+use super::figure::{FigurePanel, MomentKind};
 use super::sheet::{Sheet, listed};
 use crate::thinning::spread;
 use pontoon_results::labels::{self, SHOWN};
@@ -69,7 +69,7 @@ pub(super) fn by_speed(sheet: &Sheet<'_>, family: &Family, name: &str) -> (Vec<S
 }
 
 /// What a paper would write under a figure: what is drawn, for what, under which conditions, what panels and marks are.
-pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[Panel]) -> String {
+pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[FigurePanel]) -> String {
     let mut text = what.to_owned();
     let linear = family.lines.iter().any(|line| line.style == 0);
     if let Some(by) = &family.by {
@@ -95,7 +95,7 @@ pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[
 }
 
 /// What the panels are, where there are several.
-fn of_panels(panels: &[Panel]) -> String {
+fn of_panels(panels: &[FigurePanel]) -> String {
     if panels.len() < 2 {
         return String::new();
     }
@@ -105,7 +105,7 @@ fn of_panels(panels: &[Panel]) -> String {
 }
 
 /// What vertical lines are.
-fn of_moments(panels: &[Panel]) -> &'static str {
+fn of_moments(panels: &[FigurePanel]) -> &'static str {
     let mut moments = panels.iter().flat_map(|panel| &panel.moments);
     match moments.next().map(|moment| moment.kind) {
         Some(MomentKind::Standing) => " Vertical line: the vehicle's centre.",
@@ -115,7 +115,7 @@ fn of_moments(panels: &[Panel]) -> &'static str {
 }
 
 /// What marks are.
-fn of_marks(panels: &[Panel]) -> String {
+fn of_marks(panels: &[FigurePanel]) -> String {
     let mut marks: Vec<String> = Vec::new();
     for mark in panels.iter().flat_map(|panel| &panel.marks) {
         let said = if mark.label == mark.id {

@@ -3,10 +3,10 @@
 //! Knows the table of positions. Does not know which jobs belong together.
 
 use super::family::{Family, families};
-use super::figure::{Figure, Line, Measure, Moment, MomentKind, Panel};
+use super::figure::{Figure, FigureLine, FigureMeasure, FigureMoment, FigurePanel, MomentKind};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
-use super::sheet::{Asked, Sheet, rows_by_job};
+use super::sheet::{MarkRequest, Sheet, rows_by_job};
 use pontoon_results::{Table, TableName};
 use std::collections::{BTreeSet, HashMap};
 
@@ -22,7 +22,7 @@ pub(super) fn deflected(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     let of_job = rows_by_job(table);
     let figure = |family: &Family| {
         let rows = family.rows();
-        let lines = family.lines.iter().map(|line| Line {
+        let lines = family.lines.iter().map(|line| FigureLine {
             label: line.label.clone(),
             style: line.style,
             joined: true,
@@ -30,19 +30,19 @@ pub(super) fn deflected(sheet: &mut Sheet<'_>) -> Vec<Figure> {
             points: points(table, of_job.get(&sheet.job(line.rows[0])), "deflection_m", 1.0),
         });
         let lines = lines.collect();
-        let asked = Asked {
+        let asked = MarkRequest {
             chart: Chart::Profile,
             table: TableName::Positions,
             columns: &["deflection_m", "peak_deflection_m"],
             position: None,
-            x: Measure::ALONG,
-            y: Measure::DEFLECTION,
+            x: FigureMeasure::ALONG,
+            y: FigureMeasure::DEFLECTION,
             sign: 1.0,
         };
-        let panel = Panel {
+        let panel = FigurePanel {
             title: String::new(),
-            x: Measure::ALONG.axis(),
-            y: Measure::DEFLECTION.axis(),
+            x: FigureMeasure::ALONG.axis(),
+            y: FigureMeasure::DEFLECTION.axis(),
             marks: sheet.marks_of(&rows, &asked),
             moments: load_of(sheet, table, &rows, &of_job),
             lines,
@@ -74,7 +74,7 @@ pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     for family in &families {
         let name = family.name("envelope-along-bridge");
         let (split, left_out) = by_speed(sheet, family, &name);
-        let panels: Vec<Panel> = split
+        let panels: Vec<FigurePanel> = split
             .iter()
             .map(|split| envelope(sheet, table, &of_job, split))
             .collect();
@@ -94,12 +94,12 @@ pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     figures
 }
 
-fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>, split: &Split) -> Panel {
+fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>, split: &Split) -> FigurePanel {
     let rows: Vec<usize> = split.lines.iter().map(|line| line.row).collect();
     let sides = [("peak_deflection_m", 1.0), ("peak_uplift_m", -1.0)];
     let line = |(column, sign): (&str, f64)| {
         let column = column.to_owned();
-        split.lines.iter().map(move |line| Line {
+        split.lines.iter().map(move |line| FigureLine {
             label: line.label.clone(),
             style: line.style,
             joined: true,
@@ -108,21 +108,21 @@ fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>,
         })
     };
     let marks = |(column, sign): (&str, f64)| {
-        let asked = Asked {
+        let asked = MarkRequest {
             chart: Chart::Profile,
             table: TableName::Positions,
             columns: &[column],
             position: None,
-            x: Measure::ALONG,
-            y: Measure::DEFLECTION,
+            x: FigureMeasure::ALONG,
+            y: FigureMeasure::DEFLECTION,
             sign,
         };
         sheet.marks_of(&rows, &asked)
     };
-    Panel {
+    FigurePanel {
         title: split.title.clone(),
-        x: Measure::ALONG.axis(),
-        y: Measure::DEFLECTION.axis(),
+        x: FigureMeasure::ALONG.axis(),
+        y: FigureMeasure::DEFLECTION.axis(),
         lines: sides.into_iter().flat_map(line).collect(),
         marks: sides.into_iter().flat_map(marks).collect(),
         moments: Vec::new(),
@@ -133,14 +133,14 @@ fn points(table: &Table, rows: Option<&Vec<usize>>, column: &str, sign: f64) -> 
     let point = |row: &usize| {
         Some([
             table.number("x_m", *row)?,
-            sign * table.number(column, *row)? * Measure::DEFLECTION.factor,
+            sign * table.number(column, *row)? * FigureMeasure::DEFLECTION.factor,
         ])
     };
     rows.into_iter().flatten().filter_map(point).collect()
 }
 
 /// Where the vehicle stands, where it does so at one place.
-fn load_of(sheet: &Sheet<'_>, table: &Table, rows: &[usize], of_job: &HashMap<u64, Vec<usize>>) -> Vec<Moment> {
+fn load_of(sheet: &Sheet<'_>, table: &Table, rows: &[usize], of_job: &HashMap<u64, Vec<usize>>) -> Vec<FigureMoment> {
     let at = |row: &usize| {
         sheet.number("load_x_m", *row).or_else(|| {
             let position = sheet.number("load_position", *row)?;
@@ -154,7 +154,7 @@ fn load_of(sheet: &Sheet<'_>, table: &Table, rows: &[usize], of_job: &HashMap<u6
     let places: BTreeSet<u64> = rows.iter().filter_map(at).map(f64::to_bits).collect();
     let mut places = places.into_iter();
     match (places.next(), places.next()) {
-        (Some(place), None) => vec![Moment {
+        (Some(place), None) => vec![FigureMoment {
             kind: MomentKind::Standing,
             label: "vehicle".to_owned(),
             x: f64::from_bits(place),

@@ -2,8 +2,8 @@
 //!
 //! Knows jobs and axes. Does not know what is drawn of them.
 
-use super::figure::{Measure, PlottedMark};
-use super::marks::{Chart, Mark, Origin};
+use super::figure::{FigureMeasure, PlottedMark};
+use super::marks::{Chart, Origin, ReferenceMark};
 use pontoon_plan::input::Cell;
 use pontoon_results::{Results, Seen, Table, TableName, labels};
 use std::collections::{BTreeMap, HashMap};
@@ -22,7 +22,7 @@ pub(super) struct Sheet<'a> {
     /// Whether the job of each row of the table of jobs is linearly connected.
     linear: Vec<bool>,
     /// Points of a reference.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<ReferenceMark>,
     /// What no figure holds.
     pub left_out: Vec<String>,
 }
@@ -31,7 +31,7 @@ pub(super) struct Sheet<'a> {
 const EXPECTED: &str = "reference value";
 
 impl<'a> Sheet<'a> {
-    pub(super) fn new(results: &'a Results, marks: Vec<Mark>) -> Self {
+    pub(super) fn new(results: &'a Results, marks: Vec<ReferenceMark>) -> Self {
         let jobs = results.jobs();
         let rows: Vec<usize> = (0..jobs.rows()).filter(|row| !results.is_failed(*row)).collect();
         let axes = results.axes();
@@ -108,16 +108,16 @@ impl<'a> Sheet<'a> {
     }
 
     /// The marks of a chart that belong to any of some rows.
-    pub(super) fn marks_of(&self, rows: &[usize], asked: &Asked<'_>) -> Vec<PlottedMark> {
+    pub(super) fn marks_of(&self, rows: &[usize], asked: &MarkRequest<'_>) -> Vec<PlottedMark> {
         let jobs = self.results.jobs();
-        let meant = |mark: &&Mark| {
+        let meant = |mark: &&ReferenceMark| {
             mark.chart == asked.chart
                 && mark.table == asked.table
                 && asked.columns.contains(&mark.column.as_str())
                 && (asked.position.is_none() || mark.position == asked.position)
                 && rows.iter().any(|row| mark.belongs_to(jobs, *row))
         };
-        let plotted = |mark: &Mark| {
+        let plotted = |mark: &ReferenceMark| {
             Some(PlottedMark {
                 label: match mark.origin {
                     Origin::Measured => mark.label.clone(),
@@ -144,14 +144,14 @@ pub(super) fn rows_by_job(table: &Table) -> HashMap<u64, Vec<usize>> {
 }
 
 /// Which marks are asked for, and in which units.
-pub(super) struct Asked<'a> {
+pub(super) struct MarkRequest<'a> {
     pub chart: Chart,
     pub table: TableName,
     pub columns: &'a [&'a str],
     /// Of which position or joint, where it is one's.
     pub position: Option<u32>,
-    pub x: Measure,
-    pub y: Measure,
+    pub x: FigureMeasure,
+    pub y: FigureMeasure,
     /// -1 where it is drawn the other way: uplift on an axis of deflection.
     pub sign: f64,
 }

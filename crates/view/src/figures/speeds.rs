@@ -3,10 +3,10 @@
 //! Knows the table of jobs. Does not know which jobs belong together.
 
 use super::family::{Family, FamilyLine, families};
-use super::figure::{Figure, Line, Measure, Panel};
+use super::figure::{Figure, FigureLine, FigureMeasure, FigurePanel};
 use super::marks::Chart;
 use super::panels::caption;
-use super::sheet::{Asked, Sheet};
+use super::sheet::{MarkRequest, Sheet};
 use crate::thinning::spread;
 use pontoon_results::{Column, SpeedFigure, TableName};
 
@@ -28,11 +28,11 @@ fn words(figure: SpeedFigure) -> (&'static str, &'static str) {
 }
 
 /// The columns of a figure, each with what it counts.
-fn columns(figure: SpeedFigure) -> impl Iterator<Item = (&'static str, Measure)> {
+fn columns(figure: SpeedFigure) -> impl Iterator<Item = (&'static str, FigureMeasure)> {
     let curves = Column::measures().filter_map(|column| Some((column.name, column.curve?)));
     curves
         .filter(move |(_, curve)| curve.figure == figure)
-        .map(|(name, curve)| (name, Measure::of(&curve)))
+        .map(|(name, curve)| (name, FigureMeasure::of(&curve)))
 }
 
 /// Peaks against speed, a line each value of an axis; of jobs that have nothing alike a point each.
@@ -50,7 +50,7 @@ pub(super) fn speeds(sheet: &mut Sheet<'_>) -> Vec<Figure> {
     for family in &families {
         for figure in SpeedFigure::ALL {
             let (stem, what) = words(figure);
-            let panels: Vec<Panel> = columns(figure)
+            let panels: Vec<FigurePanel> = columns(figure)
                 .map(|(column, y)| panel(sheet, family, column, y, joined))
                 .collect();
             figures.push(Figure {
@@ -85,7 +85,7 @@ fn points(sheet: &Sheet<'_>) -> Family {
     }
 }
 
-fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: Measure, joined: bool) -> Panel {
+fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: FigureMeasure, joined: bool) -> FigurePanel {
     let line = |line: &FamilyLine| {
         let point = |row: &usize| {
             let point = [sheet.number("speed_m_s", *row)?, sheet.number(column, *row)? * y.factor];
@@ -93,7 +93,7 @@ fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: Measure, joined: b
         };
         let mut points: Vec<([f64; 2], u64)> = line.rows.iter().filter_map(point).collect();
         points.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]).then(a.1.cmp(&b.1)));
-        Line {
+        FigureLine {
             label: line.label.clone(),
             style: line.style,
             joined,
@@ -101,18 +101,18 @@ fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: Measure, joined: b
             points: points.into_iter().map(|(point, _)| point).collect(),
         }
     };
-    let asked = Asked {
+    let asked = MarkRequest {
         chart: Chart::Speed,
         table: TableName::Jobs,
         columns: &[column],
         position: None,
-        x: Measure::SPEED,
+        x: FigureMeasure::SPEED,
         y,
         sign: 1.0,
     };
-    Panel {
+    FigurePanel {
         title: String::new(),
-        x: Measure::SPEED.axis(),
+        x: FigureMeasure::SPEED.axis(),
         y: y.axis(),
         lines: family.lines.iter().map(line).collect(),
         marks: sheet.marks_of(&family.rows(), &asked),

@@ -24,7 +24,7 @@ pub enum AxisKind {
 
 /// An axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Axis {
+pub struct PageAxis {
     /// Its column.
     pub name: String,
     /// In words.
@@ -44,7 +44,7 @@ pub struct Axis {
     pub(super) of_row: Vec<u16>,
 }
 
-impl Axis {
+impl PageAxis {
     /// The axis of a column's cells.
     pub(super) fn new(name: &str, cells: &[Cell<'_>]) -> Self {
         let numeric = cells.iter().all(|cell| cell.is_nothing() || cell.number().is_some());
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn few_values_are_bins_of_their_own_and_null_is_the_last() {
         let values = [json!(7.0), json!(null), json!(3.0), json!(7.0), json!(-0.0)];
-        let axis = Axis::new("speed_m_s", &cells(&values));
+        let axis = PageAxis::new("speed_m_s", &cells(&values));
         let expected = [json!(-0.0), json!(3.0), json!(7.0), json!(null)];
         assert_eq!(axis.values, cells(&expected));
         assert_eq!(axis.of_row, [2, 3, 1, 2, 0]);
@@ -168,8 +168,8 @@ mod tests {
     #[test]
     fn many_values_are_put_into_bins_that_hold_them() {
         let cells: Vec<Cell<'_>> = (0..1000).map(|i| Cell::Number(2.0 + 0.018 * f64::from(i))).collect();
-        let mut axis = Axis::new("speed_m_s", &cells);
-        let holds = |axis: &Axis| {
+        let mut axis = PageAxis::new("speed_m_s", &cells);
+        let holds = |axis: &PageAxis| {
             let bins = axis.bins.as_ref().unwrap();
             cells.iter().zip(&axis.of_row).all(|(cell, &bin)| {
                 let ([from, to], x) = (bins[usize::from(bin)].unwrap(), cell.number().unwrap());
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn words_and_lists_are_bins_in_the_order_of_their_rows() {
         let values = [json!("linear"), json!([-3.0, -1.0]), json!("linear")];
-        let mut axis = Axis::new("vehicle.track_y_m", &cells(&values));
+        let mut axis = PageAxis::new("vehicle.track_y_m", &cells(&values));
         assert_eq!((axis.values.len(), axis.of_row.clone()), (2, vec![0, 1, 0]));
         assert!(!axis.coarsen());
     }

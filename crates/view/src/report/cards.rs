@@ -2,7 +2,7 @@
 //!
 //! Knows which columns tell the place of a peak. Does not know cells.
 
-use super::cells::Measure;
+use super::cells::PageMeasure;
 use pontoon_results::{Column, Results, Table, labels};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ const MOST_CAUSES: usize = 50;
 
 /// The largest value of a measure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Card {
+pub struct PageCard {
     /// The measure's column.
     pub measure: &'static str,
     /// In words.
@@ -44,7 +44,7 @@ pub struct FailureNote {
 }
 
 /// The cards of a table of jobs.
-pub(super) fn cards(results: &Results, measures: &[Measure], said: &dyn Fn(usize) -> String) -> Vec<Card> {
+pub(super) fn cards(results: &Results, measures: &[PageMeasure], said: &dyn Fn(usize) -> String) -> Vec<PageCard> {
     let card = |column: &'static Column| {
         let of = column.card?;
         let measure = measures.iter().find(|measure| measure.name == column.name)?;
@@ -55,7 +55,7 @@ pub(super) fn cards(results: &Results, measures: &[Measure], said: &dyn Fn(usize
             Some(format!("{kind} {place}"))
         });
         let when = number(of.time).map(|time| format!("at {time:.2} s"));
-        Some(Card {
+        Some(PageCard {
             measure: measure.name,
             label: of.label,
             value,

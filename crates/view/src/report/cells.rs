@@ -2,7 +2,7 @@
 //!
 //! Knows largest and smallest. Does not know what is drawn of them.
 
-use super::axes::Axis;
+use super::axes::PageAxis;
 use super::packed::Packed;
 use pontoon_results::{Column, Results, Table};
 use serde::Serialize;
@@ -16,7 +16,7 @@ const NO_JOB: u32 = u32::MAX;
 
 /// A measure of a job.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measure {
+pub struct PageMeasure {
     /// Its column.
     pub name: &'static str,
     /// In words.
@@ -26,12 +26,12 @@ pub struct Measure {
 }
 
 /// The measures that a table of jobs has.
-pub(super) fn measures(jobs: &Table) -> Vec<Measure> {
+pub(super) fn measures(jobs: &Table) -> Vec<PageMeasure> {
     let there = |column: &&Column| {
         let numbers = jobs.numbers(column.name);
         numbers.is_some_and(|list| list.iter().any(Option::is_some))
     };
-    let measure = |column: &Column| Measure {
+    let measure = |column: &Column| PageMeasure {
         name: column.name,
         label: column.label,
         unit: column.unit,
@@ -41,7 +41,7 @@ pub(super) fn measures(jobs: &Table) -> Vec<Measure> {
 
 /// All jobs, cell by cell in the order of their bins.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Cells {
+pub struct PageCells {
     /// Number of cells.
     pub count: usize,
     /// For each axis the bin of each cell.
@@ -59,7 +59,7 @@ pub struct Cells {
 }
 
 #[derive(Debug, Clone)]
-struct Cell {
+struct CellBin {
     jobs: u32,
     failed: u32,
     /// Largest, smallest and the job of the largest.
@@ -67,7 +67,7 @@ struct Cell {
 }
 
 /// Makes axes coarser until the jobs fall into few enough cells; whether any was.
-pub(super) fn coarsen(axes: &mut [Axis], rows: usize) -> bool {
+pub(super) fn coarsen(axes: &mut [PageAxis], rows: usize) -> bool {
     let mut coarser = false;
     while count(axes, rows) > MOST_CELLS {
         let mut order: Vec<usize> = (0..axes.len()).collect();
@@ -81,7 +81,7 @@ pub(super) fn coarsen(axes: &mut [Axis], rows: usize) -> bool {
     coarser
 }
 
-fn count(axes: &[Axis], rows: usize) -> usize {
+fn count(axes: &[PageAxis], rows: usize) -> usize {
     if rows <= MOST_CELLS {
         return rows;
     }
@@ -89,18 +89,18 @@ fn count(axes: &[Axis], rows: usize) -> usize {
     (0..rows).map(of).collect::<HashSet<_>>().len()
 }
 
-impl Cells {
+impl PageCells {
     /// The cells of all jobs.
-    pub(super) fn new(results: &Results, axes: &[Axis], measures: &[Measure]) -> Self {
+    pub(super) fn new(results: &Results, axes: &[PageAxis], measures: &[PageMeasure]) -> Self {
         let jobs = results.jobs();
         let columns: Vec<_> = measures
             .iter()
             .map(|m| jobs.numbers(m.name).unwrap_or_default())
             .collect();
-        let mut cells: BTreeMap<Vec<u16>, Cell> = BTreeMap::new();
+        let mut cells: BTreeMap<Vec<u16>, CellBin> = BTreeMap::new();
         for row in 0..jobs.rows() {
             let key = axes.iter().map(|axis| axis.of_row[row]).collect();
-            let cell = cells.entry(key).or_insert_with(|| Cell {
+            let cell = cells.entry(key).or_insert_with(|| CellBin {
                 jobs: 0,
                 failed: 0,
                 measures: vec![None; measures.len()],
@@ -122,7 +122,7 @@ impl Cells {
                 });
             }
         }
-        let each = |of: &dyn Fn(&Cell) -> u32| Packed::U32(cells.values().map(of).collect());
+        let each = |of: &dyn Fn(&CellBin) -> u32| Packed::U32(cells.values().map(of).collect());
         let of_measure = |m: usize, of: &dyn Fn((f64, f64, u32)) -> f64| {
             Packed::numbers(cells.values().map(|cell| cell.measures[m].map(of)))
         };

@@ -29,18 +29,18 @@ mod settings;
 mod shapes;
 mod verdicts;
 
-pub use axes::{Axis, AxisKind};
-pub use cards::{Card, FailureNote};
-pub use cells::{Cells, Measure};
+pub use axes::{AxisKind, PageAxis};
+pub use cards::{FailureNote, PageCard};
+pub use cells::{PageCells, PageMeasure};
 pub use histories::HistoryLine;
-pub use open::Found;
+pub use open::OpenedResults;
 pub use packed::{Packed, Scaled};
 pub use plays::{AxlePatch, Play};
-pub use rows::{ColumnData, Envelope, Profile, RowColumn, Rows, WordList};
+pub use rows::{ColumnData, JobRows, PageEnvelope, PageProfile, RowColumn, WordList};
 pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};
 
-use crate::figures::{Chart, Mark};
+use crate::figures::{Chart, ReferenceMark};
 use pontoon_judge::compare::Comparison;
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
@@ -156,13 +156,13 @@ impl BridgeNote {
 pub struct PageMark {
     /// The point.
     #[serde(flatten)]
-    pub mark: Mark,
+    pub mark: ReferenceMark,
     /// The measure whose chart it is drawn in.
     pub measure: String,
 }
 
-impl From<Mark> for PageMark {
-    fn from(mark: Mark) -> Self {
+impl From<ReferenceMark> for PageMark {
+    fn from(mark: ReferenceMark) -> Self {
         let measure = mark.column.clone();
         Self { mark, measure }
     }
@@ -170,7 +170,7 @@ impl From<Mark> for PageMark {
 
 /// How many jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Counts {
+pub struct JobCounts {
     /// Of the study.
     pub total: usize,
     /// That did not fail.
@@ -181,7 +181,7 @@ pub struct Counts {
     pub missing: usize,
 }
 
-impl Counts {
+impl JobCounts {
     fn new(results: &Results, missing: usize) -> Self {
         let rows = results.jobs().rows();
         let failed = (0..rows).filter(|&row| results.is_failed(row)).count();
@@ -206,25 +206,25 @@ pub struct Report {
     /// The bridge; null where this program cannot read the study.
     pub bridge: Option<BridgeNote>,
     /// How many jobs.
-    pub jobs: Counts,
+    pub jobs: JobCounts,
     /// What a reader must know.
     pub notes: Vec<String>,
     /// The axes.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<PageAxis>,
     /// The measures.
-    pub measures: Vec<Measure>,
+    pub measures: Vec<PageMeasure>,
     /// All jobs in aggregate.
-    pub cells: Cells,
+    pub cells: PageCells,
     /// The largest of each measure.
-    pub cards: Vec<Card>,
+    pub cards: Vec<PageCard>,
     /// Why jobs failed.
     pub failures: Vec<FailureNote>,
     /// Points of an experiment, and what checks expect.
     pub marks: Vec<PageMark>,
     /// Largest values along the bridge.
-    pub envelope: Option<Envelope>,
+    pub envelope: Option<PageEnvelope>,
     /// Jobs that are listed.
-    pub rows: Rows,
+    pub rows: JobRows,
     /// Recorded histories.
     pub histories: Vec<HistoryLine>,
     /// Crossings to be played.
@@ -251,13 +251,13 @@ impl Report {
     /// # Errors
     /// [`ResultsError::Damaged`] where a table cannot be scanned.
     pub fn new(
-        mut found: Found,
+        mut found: OpenedResults,
         compared: Option<&Comparison>,
-        marks: Vec<Mark>,
+        marks: Vec<ReferenceMark>,
         setting: &ReportSetting,
     ) -> Result<Self, ResultsError> {
         let all = found.jobs();
-        let Found {
+        let OpenedResults {
             results,
             study,
             missing,
@@ -270,7 +270,7 @@ impl Report {
         let said = |row: usize| cards::axes_in_words(jobs, &of_words, row);
         let measures = cells::measures(jobs);
         let chosen = rows::chosen(&results, &measures);
-        let (rows, envelope) = Rows::new(&results, &names, &measures, &chosen, &mut notes)?;
+        let (rows, envelope) = JobRows::new(&results, &names, &measures, &chosen, &mut notes)?;
         let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(&results, row)).collect();
         let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
         if histories.len() < recorded {
@@ -300,8 +300,8 @@ impl Report {
             },
             study: StudyNote::new(&results, study.as_ref()),
             bridge: all.first().map(BridgeNote::of),
-            jobs: Counts::new(&results, missing),
-            cells: Cells::new(&results, &axes, &measures),
+            jobs: JobCounts::new(&results, missing),
+            cells: PageCells::new(&results, &axes, &measures),
             cards: cards::cards(&results, &measures, &said),
             failures,
             marks: marks.into_iter().map(PageMark::from).collect(),
@@ -337,13 +337,13 @@ fn axes_shown(results: &Results) -> Vec<String> {
 
 /// The axes with their bins, and the names of those that say which job it is: those that vary, or all where none does. A note
 /// tells where bins hold several values.
-fn axes_of(jobs: &Table, names: &[String], notes: &mut Vec<String>) -> (Vec<Axis>, Vec<String>) {
+fn axes_of(jobs: &Table, names: &[String], notes: &mut Vec<String>) -> (Vec<PageAxis>, Vec<String>) {
     let cells = |name: &String| {
         (0..jobs.rows())
             .map(|row| jobs.cell(name, row))
             .collect::<Vec<Cell<'_>>>()
     };
-    let mut axes: Vec<Axis> = names.iter().map(|name| Axis::new(name, &cells(name))).collect();
+    let mut axes: Vec<PageAxis> = names.iter().map(|name| PageAxis::new(name, &cells(name))).collect();
     let varying = axes.iter().filter(|axis| !axis.constant);
     let varying: Vec<String> = varying.map(|axis| axis.name.clone()).collect();
     if cells::coarsen(&mut axes, jobs.rows()) {
@@ -358,15 +358,16 @@ fn axes_of(jobs: &Table, names: &[String], notes: &mut Vec<String>) -> (Vec<Axis
 
 /// What is to be said of points that no chart shows: those of one position or joint against speed, as the charts show the
 /// largest of the bridge, and those of no job.
-fn undrawn(marks: &[Mark], jobs: &Table) -> Vec<String> {
-    let ids = |list: Vec<&Mark>| {
+fn undrawn(marks: &[ReferenceMark], jobs: &Table) -> Vec<String> {
+    let ids = |list: Vec<&ReferenceMark>| {
         let mut ids: Vec<&str> = list.iter().map(|mark| mark.id.as_str()).collect();
         ids.dedup();
         ids.join(", ")
     };
-    let alone = |mark: &&Mark| mark.chart == Chart::Speed && mark.table != TableName::Jobs;
-    let nobodys = |mark: &&Mark| !alone(mark) && !(0..jobs.rows()).any(|row| mark.belongs_to(jobs, row));
-    let said = |list: Vec<&Mark>, why: &str| (!list.is_empty()).then(|| format!("Not drawn, {why}: {}.", ids(list)));
+    let alone = |mark: &&ReferenceMark| mark.chart == Chart::Speed && mark.table != TableName::Jobs;
+    let nobodys = |mark: &&ReferenceMark| !alone(mark) && !(0..jobs.rows()).any(|row| mark.belongs_to(jobs, row));
+    let said =
+        |list: Vec<&ReferenceMark>, why: &str| (!list.is_empty()).then(|| format!("Not drawn, {why}: {}.", ids(list)));
     let of_one = said(
         marks.iter().filter(alone).collect(),
         "as charts against speed show the largest of the bridge",

@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Results with what is known of the run that left them.
 #[derive(Debug)]
-pub struct Found {
+pub struct OpenedResults {
     /// The tables.
     pub results: Results,
     /// The study, where this program can read it.
@@ -29,7 +29,7 @@ pub struct Found {
 /// Tables that a page has in memory where it need not have all.
 const NEEDED: [TableName; 2] = [TableName::Jobs, TableName::Modes];
 
-impl Found {
+impl OpenedResults {
     /// Opens a folder of results; one without tables where it has a journal. `whole` reads every table into memory, as
     /// comparisons need them.
     ///

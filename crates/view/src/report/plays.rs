@@ -3,7 +3,7 @@
 //! Knows which jobs are worth it and how many frames an eye needs. Does not know how a crossing is solved.
 
 use super::BridgeNote;
-use super::cells::Measure;
+use super::cells::PageMeasure;
 use super::packed::{Packed, Scaled};
 use super::rows::severest;
 use crate::thinning::spread;
@@ -72,7 +72,7 @@ pub(super) fn plays(
     study: &Study,
     all: &[Job],
     results: &Results,
-    (measures, rows): (&[Measure], &[usize]),
+    (measures, rows): (&[PageMeasure], &[usize]),
     most: usize,
     cache: Option<&Cache>,
 ) -> Played {
@@ -125,7 +125,7 @@ pub(super) fn plays(
 
 /// Places in `fit` of the jobs to be played: all where they are few, else in turn the one with the largest value of each
 /// measure, then the second ones, up to half of them, and an even sample. Of those by the reference solver only the first few.
-fn choose(jobs: &Table, measures: &[Measure], fit: &[(usize, &Job)], most: usize) -> BTreeSet<usize> {
+fn choose(jobs: &Table, measures: &[PageMeasure], fit: &[(usize, &Job)], most: usize) -> BTreeSet<usize> {
     let rows: Vec<usize> = fit.iter().map(|(row, _)| *row).collect();
     let ranked: Vec<Vec<usize>> = measures.iter().take(4).map(|m| severest(jobs, m.name, &rows)).collect();
     let severe = (0..most.div_ceil(2)).flat_map(|rank| ranked.iter().filter_map(move |list| list.get(rank).copied()));

@@ -2,7 +2,7 @@
 //!
 //! Knows how many rows are too many and which ones tell most. Does not know cells.
 
-use super::cells::Measure;
+use super::cells::PageMeasure;
 use super::packed::Packed;
 use crate::thinning::spread;
 use pontoon_plan::input::Cell;
@@ -72,7 +72,7 @@ pub struct RowColumn {
 
 /// What rows are along the bridge: a line of positions or joints for each row, NaN where a job failed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Profile {
+pub struct PageProfile {
     /// Largest deflection of each position `[m]`.
     pub deflection_m: Packed,
     /// Largest uplift `[m]`.
@@ -87,7 +87,7 @@ pub struct Profile {
 
 /// Rows of the table of jobs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Rows {
+pub struct JobRows {
     /// Number of rows.
     pub count: usize,
     /// Which jobs they are.
@@ -101,12 +101,12 @@ pub struct Rows {
     /// Why it failed, or what else is to be said.
     pub reason: WordList,
     /// Along the bridge, where the study leaves the tables of positions and connectors.
-    pub profile: Option<Profile>,
+    pub profile: Option<PageProfile>,
 }
 
 /// Largest values along the bridge, of all jobs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Envelope {
+pub struct PageEnvelope {
     /// Places of the positions `[m]`.
     pub x_m: Vec<f64>,
     /// Largest deflection there `[m]`.
@@ -122,7 +122,7 @@ pub struct Envelope {
 }
 
 /// The rows of the table of jobs that a page lists, in their order.
-pub(super) fn chosen(results: &Results, measures: &[Measure]) -> (Vec<usize>, String) {
+pub(super) fn chosen(results: &Results, measures: &[PageMeasure]) -> (Vec<usize>, String) {
     let jobs = results.jobs();
     let all = jobs.rows();
     if all <= MOST_ROWS {
@@ -164,7 +164,7 @@ pub(super) fn severest(jobs: &Table, column: &str, rows: &[usize]) -> Vec<usize>
     places
 }
 
-impl Rows {
+impl JobRows {
     /// The rows with their profiles and the envelope of all jobs.
     ///
     /// # Errors
@@ -172,10 +172,10 @@ impl Rows {
     pub(super) fn new(
         results: &Results,
         axes: &[String],
-        measures: &[Measure],
+        measures: &[PageMeasure],
         (rows, note): &(Vec<usize>, String),
         notes: &mut Vec<String>,
-    ) -> Result<(Self, Option<Envelope>), ResultsError> {
+    ) -> Result<(Self, Option<PageEnvelope>), ResultsError> {
         let jobs = results.jobs();
         let further = Column::of_table(TableName::Jobs).filter(|column| column.role == ColumnRole::Listed);
         let further = further.map(|column| column.name);
@@ -183,9 +183,9 @@ impl Rows {
         let there = |name: &String| jobs.kind(name).is_some();
         let names = axes.iter().cloned().chain(outcomes.map(str::to_owned)).filter(there);
         let lines = match along(results, rows)? {
-            Along::Lines(lines) => Some(*lines),
-            Along::Nothing => None,
-            Along::Bridges => {
+            AlongBridge::Lines(lines) => Some(*lines),
+            AlongBridge::Nothing => None,
+            AlongBridge::Bridges => {
                 notes
                     .push("The jobs' bridges have positions at different places: no envelope, no profiles.".to_owned());
                 None
@@ -229,7 +229,7 @@ fn column(jobs: &Table, name: String, rows: &[usize]) -> RowColumn {
 }
 
 /// Values by place of the chosen rows and the largest of all jobs.
-struct Lines {
+struct ProfileLines {
     places: usize,
     /// Columns that the table has.
     found: usize,
@@ -237,7 +237,7 @@ struct Lines {
     largest: Vec<Vec<f32>>,
 }
 
-impl Lines {
+impl ProfileLines {
     fn new(rows: usize, places: usize, columns: usize) -> Self {
         Self {
             places,
@@ -274,13 +274,13 @@ impl Lines {
 const SAME_PLACE_M: f64 = 1e-6;
 
 /// What there is along the bridge.
-enum Along {
+enum AlongBridge {
     /// The study leaves no table of positions.
     Nothing,
     /// Jobs have bridges whose positions are at other places.
     Bridges,
     /// Profiles of the chosen rows and the envelope of all.
-    Lines(Box<(Profile, Envelope)>),
+    Lines(Box<(PageProfile, PageEnvelope)>),
 }
 
 /// Places of the positions `[m]`, and whether jobs have them at different ones; none where there is no table of positions.
@@ -313,9 +313,9 @@ struct AlongTable<'a> {
 }
 
 /// The lines of listed jobs, by their place in the list, and the largest of all.
-fn lines(results: &Results, listed: &HashMap<u64, usize>, of: &AlongTable<'_>) -> Result<Lines, ResultsError> {
+fn lines(results: &Results, listed: &HashMap<u64, usize>, of: &AlongTable<'_>) -> Result<ProfileLines, ResultsError> {
     let (place, first) = of.place;
-    let mut lines = Lines::new(listed.len(), of.places, of.columns.len());
+    let mut lines = ProfileLines::new(listed.len(), of.places, of.columns.len());
     let asked: Vec<&str> = ["job", place, "y_m"].iter().chain(of.columns).copied().collect();
     results.scan(of.table, &asked, |part| {
         let numbers: Vec<&[Option<f64>]> = of.columns.iter().filter_map(|column| part.numbers(column)).collect();
@@ -331,17 +331,17 @@ fn lines(results: &Results, listed: &HashMap<u64, usize>, of: &AlongTable<'_>) -
     Ok(lines)
 }
 
-fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
+fn along(results: &Results, rows: &[usize]) -> Result<AlongBridge, ResultsError> {
     let listed = rows.iter().enumerate();
     let listed: HashMap<u64, usize> = listed
         .map(|(i, &row)| (u64::from(super::job(results, row)), i))
         .collect();
     let (x_m, differ) = places(results)?;
     if x_m.is_empty() {
-        return Ok(Along::Nothing);
+        return Ok(AlongBridge::Nothing);
     }
     if differ {
-        return Ok(Along::Bridges);
+        return Ok(AlongBridge::Bridges);
     }
     let columns = ["peak_deflection_m", "peak_uplift_m", "deflection_m"];
     let mut at_ends = lines(
@@ -364,14 +364,14 @@ fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
             columns: &["peak_compression_n", "peak_tension_n"],
         },
     )?;
-    let profile = Profile {
+    let profile = PageProfile {
         deflection_m: at_ends.row(0),
         uplift_m: at_ends.row(1),
         compression_n: at_joints.row(0),
         tension_n: at_joints.row(1),
         signed_m: (at_ends.found == columns.len()).then(|| at_ends.row(2)),
     };
-    let envelope = Envelope {
+    let envelope = PageEnvelope {
         joint_x_m: x_m.get(1..x_m.len().saturating_sub(1)).unwrap_or_default().to_vec(),
         x_m,
         deflection_m: at_ends.envelope(0),
@@ -379,7 +379,7 @@ fn along(results: &Results, rows: &[usize]) -> Result<Along, ResultsError> {
         compression_n: at_joints.envelope(0),
         tension_n: at_joints.envelope(1),
     };
-    Ok(Along::Lines(Box::new((profile, envelope))))
+    Ok(AlongBridge::Lines(Box::new((profile, envelope))))
 }
 
 fn whole(table: &Table, column: &str, row: usize) -> usize {
