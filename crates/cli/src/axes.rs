@@ -12,7 +12,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 const MOST_TOLD: usize = 6;
 
 /// What is seen of an axis.
-struct Values {
+struct AxisSummary {
     name: String,
     /// The first of its values.
     first: Vec<Cell<'static>>,
@@ -24,7 +24,7 @@ struct Values {
 
 /// Each axis and its values, in the order of their first point.
 pub(crate) fn of(study: &Study) -> Vec<(String, String)> {
-    let mut axes: Vec<Values> = Vec::new();
+    let mut axes: Vec<AxisSummary> = Vec::new();
     for block in &study.blocks {
         let places: Vec<usize> = block.axes.iter().map(|axis| place(&mut axes, &axis.name)).collect();
         for point in block.points() {
@@ -37,9 +37,9 @@ pub(crate) fn of(study: &Study) -> Vec<(String, String)> {
     axes.iter().map(|values| (values.name.clone(), values.told())).collect()
 }
 
-fn place(axes: &mut Vec<Values>, name: &str) -> usize {
+fn place(axes: &mut Vec<AxisSummary>, name: &str) -> usize {
     axes.iter().position(|values| values.name == name).unwrap_or_else(|| {
-        axes.push(Values {
+        axes.push(AxisSummary {
             name: name.to_owned(),
             first: Vec::new(),
             known: HashSet::new(),
@@ -49,7 +49,7 @@ fn place(axes: &mut Vec<Values>, name: &str) -> usize {
     })
 }
 
-impl Values {
+impl AxisSummary {
     fn see(&mut self, value: &Cell<'_>) {
         let number = value.number();
         let mut hasher = DefaultHasher::new();

@@ -3,7 +3,7 @@
 //! Knows how lines are written down. Does not know how they came about.
 
 use crate::args::Format;
-use crate::terminal::{BAD, FAINT, GOOD, HEAD, Look, NOTABLE};
+use crate::terminal::{BAD, FAINT, GOOD, HEAD, NOTABLE, TextStyle};
 use crate::words;
 use anstyle::Style;
 use anyhow::Result;
@@ -30,7 +30,7 @@ fn cells(line: &CheckResult) -> [String; 7] {
 /// A comparison in a format.
 pub(crate) fn written(compared: &Comparison, format: Format) -> Result<String> {
     Ok(match format {
-        Format::Text => text(compared, Look::of_results()),
+        Format::Text => text(compared, TextStyle::of_results()),
         Format::Json => format!("{:#}\n", object(compared)),
         Format::Markdown => markdown(compared),
         Format::Junit => junit(compared)?,
@@ -48,7 +48,7 @@ const ORDER: [Verdict; 5] = [
 
 /// An aligned line a check with its verdict first, those of one verdict together, and the counts. Where lines are too long
 /// for a terminal, a check has several.
-pub(crate) fn text(compared: &Comparison, look: Look) -> String {
+pub(crate) fn text(compared: &Comparison, look: TextStyle) -> String {
     let lines: Vec<&CheckResult> = ORDER
         .iter()
         .flat_map(|&verdict| compared.lines.iter().filter(move |line| line.verdict == verdict))
@@ -108,7 +108,7 @@ fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec
 }
 
 /// A check over several lines, behind a verdict of at most `longest` characters.
-fn several(line: &CheckResult, longest: usize, look: Look) -> String {
+fn several(line: &CheckResult, longest: usize, look: TextStyle) -> String {
     let [check, expected, got, deviation, margin, verdict, remark] = cells(line);
     let width = look.width.unwrap_or(usize::MAX);
     let told = [

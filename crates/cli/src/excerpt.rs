@@ -2,7 +2,7 @@
 //!
 //! Knows how a place is shown and what is said at it. Does not know how it is found in the text.
 
-use crate::terminal::Look;
+use crate::terminal::TextStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, renderer::DecorStyle};
 use pontoon_plan::input::{Mark, MarkKind, Refusal, RefusalKind, mark};
 use pontoon_results::labels::printable;
@@ -18,7 +18,7 @@ const LONGEST_LABEL: usize = 72;
 const WIDTH: usize = 120;
 
 /// The place that a refusal is about, where it is one of a file that a person wrote. Ends in a line end.
-pub(crate) fn excerpt(refusal: &Refusal, look: Look) -> Option<String> {
+pub(crate) fn excerpt(refusal: &Refusal, look: TextStyle) -> Option<String> {
     let text = text_of(&refusal.file)?;
     let mark = mark(&text, refusal)?;
     Some(shown(
@@ -71,7 +71,7 @@ fn label(refusal: &Refusal, kind: &MarkKind) -> String {
 }
 
 /// A place of a text.
-fn shown(file: &str, text: &str, mark: &Mark, label: &str, look: Look) -> String {
+fn shown(file: &str, text: &str, mark: &Mark, label: &str, look: TextStyle) -> String {
     let first = match &mark.kind {
         MarkKind::Twice(first) => Some(first.clone()),
         _ => None,

@@ -37,14 +37,14 @@ mod words;
 
 use args::{Arguments, Command, Format};
 use clap::{CommandFactory, Parser, error::ErrorKind};
-use ending::Ending;
+use ending::ExitStatus;
 use pontoon_judge::calibrate::CalibrateError;
 use pontoon_plan::input::Refusal;
 use pontoon_results::ResultsError;
 use pontoon_study::sweep::SweepError;
 use pontoon_view::drawing::DrawingError;
 use std::process::ExitCode;
-use terminal::Look;
+use terminal::TextStyle;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -74,8 +74,8 @@ fn main() -> ExitCode {
         Command::Man(man) => commands::man::man(&man, common),
     };
     match ended {
-        Ok(Ending::Good) => ExitCode::SUCCESS,
-        Ok(Ending::Short) => ExitCode::from(1),
+        Ok(ExitStatus::Good) => ExitCode::SUCCESS,
+        Ok(ExitStatus::Short) => ExitCode::from(1),
         Err(error) => {
             tell(&error, common.format);
             ExitCode::from(status_of(&error))
@@ -85,7 +85,7 @@ fn main() -> ExitCode {
 
 /// Says what is wrong: for people with the place in the file that was refused.
 fn tell(error: &anyhow::Error, format: Format) {
-    let look = Look::of_notes();
+    let look = TextStyle::of_notes();
     let message = words::printable(&format!("{error:#}"));
     words::note(&format!("{} {message}", look.painted(terminal::BAD, "pontoon:")));
     let place = refusal_of(error).filter(|_| format != Format::Json);

@@ -3,7 +3,7 @@
 //! Knows terminals. Does not know what runs.
 
 use crate::bar::set_bar;
-use crate::terminal::Look;
+use crate::terminal::TextStyle;
 use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon_study::run::{Progress, Tally};
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use unicode_width::UnicodeWidthStr;
 
 /// How a run is shown.
-pub(crate) enum Shown {
+pub(crate) enum ProgressDisplay {
     /// Not at all.
     Not,
     /// As a bar with what a line says beside it.
@@ -38,7 +38,7 @@ const SHORTEST_BAR: usize = 5;
 /// Characters of most lines beside the bar.
 const BESIDE_BAR: usize = 62;
 
-impl Shown {
+impl ProgressDisplay {
     /// What fits where standard error goes.
     pub(crate) fn fitting(quiet: bool) -> Self {
         let now = Instant::now();
@@ -86,7 +86,7 @@ fn bar_style(width: Option<usize>) -> ProgressStyle {
     }
 }
 
-impl Progress for Shown {
+impl Progress for ProgressDisplay {
     fn stage(&self, what: &str) {
         match self {
             Self::Not => {}
@@ -113,7 +113,7 @@ impl Progress for Shown {
         let seconds = now.duration_since(pace.began).as_secs_f64();
         match self {
             Self::Bar(bar, _) => {
-                let width = Look::of_notes().width;
+                let width = TextStyle::of_notes().width;
                 if tally.ran == 0 {
                     bar.set_length(tally.total as u64);
                     bar.set_style(bar_style(width));

@@ -14,14 +14,14 @@ const INTERRUPTED: i32 = 130;
 
 /// What signals act on.
 #[derive(Debug, Default)]
-pub(crate) struct Heard {
+pub(crate) struct Signals {
     /// The run is to stop.
     pub stop: Stop,
     journal: Mutex<Weak<JournalWriter>>,
     tally: Mutex<Option<Tally>>,
 }
 
-impl Heard {
+impl Signals {
     /// Listens from now on.
     ///
     /// # Errors

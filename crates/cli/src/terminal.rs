@@ -8,7 +8,7 @@ use terminal_size::{Width, terminal_size_of};
 
 /// The looks of a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Look {
+pub(crate) struct TextStyle {
     /// Whether it shows colours.
     pub colour: bool,
     /// Characters of a line; none where lines may be of any length, as in a file.
@@ -26,7 +26,7 @@ pub(crate) const HEAD: Style = Style::new().bold();
 /// What is of lesser weight.
 pub(crate) const FAINT: Style = Style::new().dimmed();
 
-impl Look {
+impl TextStyle {
     /// Of standard output, where results go.
     pub(crate) fn of_results() -> Self {
         Self::new(

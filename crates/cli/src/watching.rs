@@ -2,8 +2,8 @@
 //!
 //! Knows how this program is started again for jobs that are to be solved apart. Does not know what runs.
 
-use crate::progress::Shown;
-use crate::signals::Heard;
+use crate::progress::ProgressDisplay;
+use crate::signals::Signals;
 use crate::words;
 use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Progress, Tally};
@@ -22,15 +22,15 @@ const KILLED: i32 = 9;
 
 /// Who is told of a sweep.
 pub(crate) struct Watching<'a> {
-    shown: Shown,
-    heard: &'a Heard,
+    shown: ProgressDisplay,
+    heard: &'a Signals,
     /// Study and folder of results, for a process of its own.
     again: Option<(PathBuf, PathBuf)>,
 }
 
 impl<'a> Watching<'a> {
     /// Shows and counts.
-    pub(crate) fn new(shown: Shown, heard: &'a Heard, again: Option<(PathBuf, PathBuf)>) -> Self {
+    pub(crate) fn new(shown: ProgressDisplay, heard: &'a Signals, again: Option<(PathBuf, PathBuf)>) -> Self {
         Self { shown, heard, again }
     }
 
@@ -53,7 +53,7 @@ impl Progress for Watching<'_> {
 
 impl Watcher for Watching<'_> {
     fn note(&self, what: &str) {
-        if !matches!(self.shown, Shown::Not) {
+        if !matches!(self.shown, ProgressDisplay::Not) {
             words::note(what);
         }
     }

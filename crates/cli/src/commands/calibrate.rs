@@ -1,7 +1,7 @@
 //! `pontoon calibrate`: a bridge's numbers identified from references.
 
 use crate::args::{CalibrateArguments, Common, Format};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::{Context, Result};
 use pontoon_journal::place::Folder;
@@ -14,7 +14,7 @@ use serde_json::json;
 use std::path::Path;
 
 /// Fits, writes the bridge and says what was found.
-pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<Ending> {
+pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<ExitStatus> {
     let bridge = read_bridge(&arguments.bridge)?;
     let references = arguments
         .with
@@ -42,7 +42,11 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
         Format::Json => format!("{:#}\n", json!(found)),
         _ => text(&found, &arguments.out),
     })?;
-    Ok(if found.converged { Ending::Good } else { Ending::Short })
+    Ok(if found.converged {
+        ExitStatus::Good
+    } else {
+        ExitStatus::Short
+    })
 }
 
 /// Refuses to write over the bridge that the fit starts from.

@@ -1,7 +1,7 @@
 //! `pontoon compare`: results held against a reference or against older results.
 
 use crate::args::{Common, CompareArguments};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::{comparison, words};
 use anyhow::Result;
 use pontoon_judge::compare::{Tolerances, against_old, against_reference};
@@ -10,7 +10,7 @@ use pontoon_plan::input::Refusal;
 use pontoon_results::Results;
 
 /// Compares and writes a line a check.
-pub(crate) fn compare(arguments: &CompareArguments, common: Common) -> Result<Ending> {
+pub(crate) fn compare(arguments: &CompareArguments, common: Common) -> Result<ExitStatus> {
     let results = Results::read(&arguments.results)?;
     let older = arguments.with.is_dir() && !arguments.with.join("reference.json").is_file();
     let compared = if older {
@@ -29,5 +29,9 @@ pub(crate) fn compare(arguments: &CompareArguments, common: Common) -> Result<En
     };
     words::result(&comparison::written(&compared, common.format)?)?;
     comparison::tell_changes(&compared);
-    Ok(if compared.good() { Ending::Good } else { Ending::Short })
+    Ok(if compared.good() {
+        ExitStatus::Good
+    } else {
+        ExitStatus::Short
+    })
 }

@@ -1,13 +1,13 @@
 //! `pontoon completions`: what makes a shell complete the words of this program.
 
 use crate::args::{Arguments, CompletionsArguments};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::Result;
 use clap::{Arg, Command, CommandFactory};
 
 /// Writes the script of a shell, made of the definitions that words are understood by.
-pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<Ending> {
+pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<ExitStatus> {
     let mut script = Vec::new();
     clap_complete::generate(
         arguments.shell,
@@ -16,7 +16,7 @@ pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<Ending> {
         &mut script,
     );
     words::results(|to| to.write_all(&script))?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 /// The program without what its help hides: a shell would offer it.

@@ -1,20 +1,20 @@
 //! `pontoon explain`: why a job ran or will run.
 
 use crate::args::{Common, ExplainArguments, Format};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::Result;
 use pontoon_study::sweep::{Explanation, explain as explain_job};
 use serde_json::json;
 
 /// Explains a job.
-pub(crate) fn explain(arguments: &ExplainArguments, common: Common) -> Result<Ending> {
+pub(crate) fn explain(arguments: &ExplainArguments, common: Common) -> Result<ExitStatus> {
     let told = explain_job(&arguments.folder, arguments.job)?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(told)),
         _ => text(&told),
     })?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 fn text(told: &Explanation) -> String {

@@ -1,7 +1,7 @@
 //! `pontoon export`: mode shapes, static cases and crossings as VTK files.
 
 use crate::args::{Common, ConnectionArgument, ExportArguments, Format};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::Result;
 use pontoon_plan::input::{Cell, Refusal};
@@ -10,7 +10,7 @@ use pontoon_view::export::{ExportError, Exported, LoadRequest, Part, Request, ex
 use serde_json::json;
 
 /// Writes what is asked for and says which files to open.
-pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Ending> {
+pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<ExitStatus> {
     let request = Request {
         count: arguments.count.map(usize::from),
         supports: arguments.supports,
@@ -40,7 +40,7 @@ pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Endi
         Format::Json => format!("{:#}\n", json!(exported)),
         _ => text(&exported, &arguments.to.display().to_string()),
     })?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 fn text(exported: &Exported, to: &str) -> String {

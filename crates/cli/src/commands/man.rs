@@ -1,7 +1,7 @@
 //! `pontoon man`: manual pages, one a command.
 
 use crate::args::{Arguments, Common, Format, ManArguments};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::{Context, Result};
 use clap::builder::Resettable;
@@ -12,7 +12,7 @@ use pontoon_plan::input::Refusal;
 use serde_json::json;
 
 /// Writes the pages of the definitions that words are understood by.
-pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<Ending> {
+pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<ExitStatus> {
     let to = &arguments.to;
     if to.exists() && !to.is_dir() {
         return Err(Refusal::new(to, "", "a file", "a folder for the pages").into());
@@ -31,7 +31,7 @@ pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<Ending> {
         Format::Json => format!("{:#}\n", json!({ "to": to.display().to_string(), "pages": names })),
         _ => format!("{} pages in {}\n", names.len(), to.display()),
     })?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 /// The program and each of its commands, named as their pages are; hidden ones left out.

@@ -2,16 +2,16 @@
 
 use super::run::answer;
 use crate::args::{Common, MergeArguments};
-use crate::ending::Ending;
-use crate::progress::Shown;
-use crate::signals::Heard;
+use crate::ending::ExitStatus;
+use crate::progress::ProgressDisplay;
+use crate::signals::Signals;
 use crate::watching::Watching;
 use anyhow::Result;
 use pontoon_study::sweep::{Merged, SweepSetting, merge as merge_shards};
 
 /// Puts shards together.
-pub(crate) fn merge(arguments: &MergeArguments, common: Common) -> Result<Ending> {
-    let heard = Heard::listen()?;
+pub(crate) fn merge(arguments: &MergeArguments, common: Common) -> Result<ExitStatus> {
+    let heard = Signals::listen()?;
     let merged = Merged::of(&arguments.folders)?;
     let setting = SweepSetting {
         out: arguments.out.clone(),
@@ -19,7 +19,7 @@ pub(crate) fn merge(arguments: &MergeArguments, common: Common) -> Result<Ending
         commit: crate::commit::COMMIT.map(str::to_owned),
         ..SweepSetting::default()
     };
-    let watching = Watching::new(Shown::fitting(common.quiet), &heard, None);
+    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &heard, None);
     let swept = merge_shards(&merged, &arguments.folders, &setting, &heard.stop, &watching);
     watching.finish();
     answer(&merged.study, &swept?, &arguments.out, None, common)

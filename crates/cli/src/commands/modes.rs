@@ -1,8 +1,8 @@
 //! `pontoon modes`: natural frequencies with the name of each shape.
 
 use crate::args::{Common, Format, ModesArguments};
-use crate::ending::Ending;
-use crate::terminal::Look;
+use crate::ending::ExitStatus;
+use crate::terminal::TextStyle;
 use crate::words;
 use anyhow::Result;
 use pontoon_plan::input::{Cell, Refusal};
@@ -13,7 +13,7 @@ use serde_json::json;
 use unicode_width::UnicodeWidthStr;
 
 /// Finds the lowest modes of a bridge file.
-pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending> {
+pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<ExitStatus> {
     let file = read_bridge(&arguments.bridge)?;
     let request = ModesRequest {
         model: arguments.model.into(),
@@ -39,14 +39,14 @@ pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<Ending
             fitting(&names, &found.iter().map(row).collect::<Vec<_>>())
         }
     })?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 /// The table with as many of its shares as a terminal has room for.
 fn fitting(columns: &[String], rows: &[Vec<Cell<'_>>]) -> String {
     let table = |columns: &[String]| words::table(columns, rows);
     let fits = |table: &String| {
-        let width = Look::of_results().width;
+        let width = TextStyle::of_results().width;
         width.is_none_or(|width| table.lines().all(|line| line.width() <= width))
     };
     let fewer = (3..=columns.len()).rev().map(|count| table(&columns[..count]));

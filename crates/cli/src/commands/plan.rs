@@ -1,8 +1,8 @@
 //! `pontoon plan`: what would run.
 
 use crate::args::{Common, Format, PlanArguments};
-use crate::ending::Ending;
-use crate::terminal::{BAD, Look};
+use crate::ending::ExitStatus;
+use crate::terminal::{BAD, TextStyle};
 use crate::{axes, words};
 use anyhow::Result;
 use pontoon_plan::study_file::Study;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use unicode_width::UnicodeWidthStr;
 
 /// Checks every job and says what would run, how long it takes, and what of it is done.
-pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> {
+pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<ExitStatus> {
     let study = Study::open(&arguments.study)?;
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let default_out = || PathBuf::from("results").join(&study.name);
@@ -21,16 +21,16 @@ pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<Ending> 
     let forecast = forecast(&study, &out, threads, Cache::of_user().as_ref())?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(forecast)),
-        _ => text(&study, &forecast, &out.display().to_string(), Look::of_results()),
+        _ => text(&study, &forecast, &out.display().to_string(), TextStyle::of_results()),
     })?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 /// The longest of the names that are told of every study.
 const LONGEST: &str = "distinct bridges";
 
 /// What would run, what is there of it, what the rest takes.
-fn text(study: &Study, forecast: &Forecast, out: &str, look: Look) -> String {
+fn text(study: &Study, forecast: &Forecast, out: &str, look: TextStyle) -> String {
     let plan = &forecast.plan;
     let width = look.width.unwrap_or(usize::MAX);
     let axes: Vec<(String, String)> = axes::of(study)

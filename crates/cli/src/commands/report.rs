@@ -1,7 +1,7 @@
 //! `pontoon report`: results as a page, and as figures for papers.
 
 use crate::args::{Common, Format, ReportArguments};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::Result;
 use pontoon_journal::place::{Folder, FolderError};
@@ -25,7 +25,7 @@ const MODES: usize = 16;
 const HEAD: u64 = 4096;
 
 /// Writes figures where they are asked for, and a page unless they alone are.
-pub(crate) fn report(arguments: &ReportArguments, common: Common) -> Result<Ending> {
+pub(crate) fn report(arguments: &ReportArguments, common: Common) -> Result<ExitStatus> {
     match &arguments.figures {
         Some(folder) => {
             let drawn = draw(arguments, folder, common)?;
@@ -39,7 +39,7 @@ pub(crate) fn report(arguments: &ReportArguments, common: Common) -> Result<Endi
 }
 
 /// Opens results and draws their figures.
-fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<Ending> {
+fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<ExitStatus> {
     let OpenedResults { results, notes, .. } = OpenedResults::open(&arguments.results, true)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     let compared = reference
@@ -64,11 +64,11 @@ fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<En
     }
     let failed = (0..results.jobs().rows()).any(|row| results.is_failed(row));
     let good = compared.as_ref().is_none_or(Comparison::good) && !failed;
-    Ok(if good { Ending::Good } else { Ending::Short })
+    Ok(if good { ExitStatus::Good } else { ExitStatus::Short })
 }
 
 /// Opens results, gathers what a page tells of them and writes it.
-fn page_of(arguments: &ReportArguments, common: Common) -> Result<Ending> {
+fn page_of(arguments: &ReportArguments, common: Common) -> Result<ExitStatus> {
     let out = page_file(arguments)?;
     let found = OpenedResults::open(&arguments.results, arguments.with.is_some())?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
@@ -96,7 +96,7 @@ fn page_of(arguments: &ReportArguments, common: Common) -> Result<Ending> {
         report.notes.iter().for_each(|note| words::note(note));
     }
     let good = compared.as_ref().is_none_or(Comparison::good) && report.jobs.failed == 0;
-    Ok(if good { Ending::Good } else { Ending::Short })
+    Ok(if good { ExitStatus::Good } else { ExitStatus::Short })
 }
 
 /// The page's file, which is no folder and no other file that somebody may miss.

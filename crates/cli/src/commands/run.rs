@@ -1,10 +1,10 @@
 //! `pontoon run`: a study to its tables.
 
 use crate::args::{Common, Format, RunArguments};
-use crate::ending::Ending;
-use crate::progress::Shown;
-use crate::signals::Heard;
-use crate::terminal::Look;
+use crate::ending::ExitStatus;
+use crate::progress::ProgressDisplay;
+use crate::signals::Signals;
+use crate::terminal::TextStyle;
 use crate::watching::Watching;
 use crate::{comparison, summary, words};
 use anyhow::Result;
@@ -23,8 +23,8 @@ use std::path::{Path, PathBuf};
 
 /// Checks every job, runs what is missing, writes the tables, prints the summary and, where asked, holds the results against
 /// a reference.
-pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
-    let heard = Heard::listen()?;
+pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus> {
+    let heard = Signals::listen()?;
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     if let Some(reference) = &reference {
@@ -36,10 +36,10 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<Ending> {
     if let Some((of, numbers)) = &arguments.apart {
         end_with_standard_input();
         run_apart(&study, &jobs, (of, numbers), &setting, &heard.stop)?;
-        return Ok(Ending::Good);
+        return Ok(ExitStatus::Good);
     }
     let again = Some((arguments.study.clone(), setting.out.clone()));
-    let watching = Watching::new(Shown::fitting(common.quiet), &heard, again);
+    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &heard, again);
     let swept = sweep(&study, &jobs, &setting, &heard.stop, &watching);
     watching.finish();
     answer(&study, &swept?, &setting.out, reference.as_ref(), common)
@@ -82,7 +82,7 @@ pub(super) fn answer(
     out: &Path,
     reference: Option<&Reference>,
     common: Common,
-) -> Result<Ending> {
+) -> Result<ExitStatus> {
     let outcome = &swept.outcome;
     failures(&outcome.failures);
     if outcome.preparation.operators.replaced > 0 {
@@ -107,7 +107,7 @@ pub(super) fn answer(
         (_, Some(compared)) => words::result(&format!(
             "{}\n{}",
             text(swept, out),
-            comparison::text(compared, Look::of_results())
+            comparison::text(compared, TextStyle::of_results())
         )),
         (_, None) => words::result(&text(swept, out)),
     }?;
@@ -116,9 +116,9 @@ pub(super) fn answer(
     }
     let good = compared.as_ref().is_none_or(Comparison::good);
     Ok(if outcome.failures.count == 0 && beyond == 0 && good {
-        Ending::Good
+        ExitStatus::Good
     } else {
-        Ending::Short
+        ExitStatus::Short
     })
 }
 
@@ -143,7 +143,7 @@ fn failures(failures: &Failures) {
 
 fn text(swept: &Swept<'_>, out: &Path) -> String {
     let outcome = &swept.outcome;
-    let look = Look::of_results();
+    let look = TextStyle::of_results();
     let recorded = match outcome.jobs - outcome.ran {
         0 => String::new(),
         known => format!(" ({known} recorded before)"),
@@ -185,26 +185,26 @@ struct Object<'a> {
     offline_s: f64,
     jobs_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    summary: Option<Rows<'a>>,
+    summary: Option<NamedRows<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Value>,
 }
 
-struct Rows<'a>(&'a SummaryTable<'a>);
+struct NamedRows<'a>(&'a SummaryTable<'a>);
 
-impl Serialize for Rows<'_> {
+impl Serialize for NamedRows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let columns = self.0.columns();
-        serializer.collect_seq(self.0.rows().map(|cells| Row { columns, cells }))
+        serializer.collect_seq(self.0.rows().map(|cells| NamedCells { columns, cells }))
     }
 }
 
-struct Row<'a> {
+struct NamedCells<'a> {
     columns: &'a [String],
     cells: Vec<Cell<'a>>,
 }
 
-impl Serialize for Row<'_> {
+impl Serialize for NamedCells<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.columns.iter().zip(&self.cells))
     }
@@ -228,7 +228,7 @@ fn write_object(
         threads: outcome.threads,
         offline_s: outcome.offline_s,
         jobs_s: outcome.jobs_s,
-        summary: swept.summary.as_ref().map(Rows),
+        summary: swept.summary.as_ref().map(NamedRows),
         comparison: compared.map(comparison::object),
     };
     serde_json::to_writer_pretty(&mut to, &object)?;

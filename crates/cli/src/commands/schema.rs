@@ -1,12 +1,12 @@
 //! `pontoon schema`: the JSON Schema of a file, and the columns of tables. Both are JSON in either format.
 
 use crate::args::{SchemaArguments, SchemaOf};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::Result;
 
 /// Writes a schema.
-pub(crate) fn schema(arguments: &SchemaArguments) -> Result<Ending> {
+pub(crate) fn schema(arguments: &SchemaArguments) -> Result<ExitStatus> {
     let schema = match arguments.of {
         SchemaOf::Study => pontoon_plan::schema::study(),
         SchemaOf::Bridge => pontoon_plan::schema::bridge(),
@@ -15,5 +15,5 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Result<Ending> {
         SchemaOf::Reference => pontoon_judge::schema::reference(),
     };
     words::result(&format!("{schema:#}\n"))?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }

@@ -1,7 +1,7 @@
 //! `pontoon status`: how far runs have come.
 
 use crate::args::{Common, Format, StatusArguments};
-use crate::ending::Ending;
+use crate::ending::ExitStatus;
 use crate::words;
 use anyhow::Result;
 use pontoon_plan::input::Cell;
@@ -9,13 +9,13 @@ use pontoon_study::sweep::{Standings, standings};
 use serde_json::{Value, json};
 
 /// Says how far the runs of folders have come.
-pub(crate) fn status(arguments: &StatusArguments, common: Common) -> Result<Ending> {
+pub(crate) fn status(arguments: &StatusArguments, common: Common) -> Result<ExitStatus> {
     let all = standings(&arguments.folders)?;
     words::result(&match common.format {
         Format::Json => format!("{:#}\n", object(&all)),
         _ => text(&all),
     })?;
-    Ok(Ending::Good)
+    Ok(ExitStatus::Good)
 }
 
 fn object(all: &Standings) -> Value {

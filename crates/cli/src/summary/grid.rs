@@ -2,7 +2,7 @@
 //!
 //! Knows widths, alignment and what stands in for names that are too long. Does not know what the values are.
 
-use crate::terminal::{HEAD, Look};
+use crate::terminal::{HEAD, TextStyle};
 use crate::words::{listed, padded};
 use anstyle::Style;
 use std::ops::Range;
@@ -13,7 +13,7 @@ const GAP: usize = 2;
 
 /// A value as it is written, with its style.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Entry {
+pub(super) struct TableEntry {
     /// The text; numbers end in a blank where others end in a mark.
     pub text: String,
     /// How it is painted.
@@ -22,7 +22,7 @@ pub(super) struct Entry {
 
 /// What names a row: a column of the table.
 #[derive(Debug, Clone)]
-pub(super) struct Names {
+pub(super) struct RowNames {
     /// Lines of the head; the last stands beside the last of the heads of values.
     pub head: Vec<String>,
     /// A name a row.
@@ -33,13 +33,13 @@ pub(super) struct Names {
 
 /// A table.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Grid {
+pub(super) struct TextTable {
     /// Columns that name rows.
-    pub names: Vec<Names>,
+    pub names: Vec<RowNames>,
     /// Heads of the columns of values, each of as many lines.
     pub heads: Vec<Vec<String>>,
     /// Values, a row of the table each.
-    pub rows: Vec<Vec<Entry>>,
+    pub rows: Vec<Vec<TableEntry>>,
     /// Blanks before a value: less than elsewhere where values end in one.
     pub gap: usize,
 }
@@ -64,14 +64,14 @@ fn longest<'a>(texts: impl Iterator<Item = &'a String>) -> usize {
     texts.map(|text| text.width()).max().unwrap_or(0)
 }
 
-impl Grid {
+impl TextTable {
     /// Number of pieces that a width asks for.
     pub(super) fn pieces(&self, width: usize) -> usize {
         self.split(width_of(&self.columns_of_names(width)), width).len()
     }
 
     /// The table in pieces that fit a width, if there is any way to.
-    pub(super) fn written(&self, width: usize, look: Look) -> String {
+    pub(super) fn written(&self, width: usize, look: TextStyle) -> String {
         let names = self.columns_of_names(width);
         let mut text = String::new();
         if self.is_numbered(width) {
@@ -105,8 +105,8 @@ impl Grid {
         names > 0 && (3 * names > 2 * width || names + self.gap + value > width)
     }
 
-    fn aligned_names(&self) -> Vec<Names> {
-        let aligned = |names: &Names| Names {
+    fn aligned_names(&self) -> Vec<RowNames> {
+        let aligned = |names: &RowNames| RowNames {
             head: names.head.clone(),
             rows: aligned(&names.rows),
             told: Vec::new(),
@@ -133,11 +133,11 @@ impl Grid {
     }
 
     /// The columns that name rows, or numbers where they leave no room for values.
-    fn columns_of_names(&self, width: usize) -> Vec<Names> {
+    fn columns_of_names(&self, width: usize) -> Vec<RowNames> {
         if !self.is_numbered(width) {
             return self.aligned_names();
         }
-        vec![Names {
+        vec![RowNames {
             head: Vec::new(),
             rows: (1..=self.rows.len()).map(|number| format!("#{number}")).collect(),
             told: Vec::new(),
@@ -156,7 +156,7 @@ impl Grid {
     }
 
     /// Lines of the head.
-    fn lines(&self, names: &[Names]) -> usize {
+    fn lines(&self, names: &[RowNames]) -> usize {
         let names = names.iter().map(|names| names.head.len());
         names.chain(self.heads.iter().map(Vec::len)).max().unwrap_or(0)
     }
@@ -171,9 +171,9 @@ impl Grid {
         longest(cells.chain(&self.heads[column]))
     }
 
-    fn piece(&self, names: &[Names], apart: usize, columns: Range<usize>, look: Look, text: &mut String) {
-        let named = |line: &dyn Fn(&Names) -> String| {
-            let column = |names: &Names| {
+    fn piece(&self, names: &[RowNames], apart: usize, columns: Range<usize>, look: TextStyle, text: &mut String) {
+        let named = |line: &dyn Fn(&RowNames) -> String| {
+            let column = |names: &RowNames| {
                 let width = longest(names.rows.iter().chain(&names.head));
                 let numbers = names
                     .rows
@@ -216,7 +216,7 @@ impl Grid {
     }
 }
 
-fn width_of(names: &[Names]) -> usize {
+fn width_of(names: &[RowNames]) -> usize {
     let columns = names.iter().map(|names| longest(names.rows.iter().chain(&names.head)));
     columns.sum::<usize>() + GAP * names.len().saturating_sub(1)
 }

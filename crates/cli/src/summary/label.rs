@@ -7,14 +7,14 @@ use pontoon_results::labels::{self, printable};
 
 /// A column as its head names it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Head {
+pub(super) struct ColumnHead {
     /// In words.
     pub name: String,
     /// Its unit, where it has one.
     pub unit: Option<&'static str>,
 }
 
-impl Head {
+impl ColumnHead {
     /// Of a column or axis: `gap_tension_m` is "tension gap" in "m".
     pub(super) fn of(name: &str) -> Self {
         Self {
@@ -37,11 +37,11 @@ impl Head {
 }
 
 /// Heads of axes: of a path its last part, where no other axis ends in the same.
-pub(super) fn heads(names: &[String]) -> Vec<Head> {
+pub(super) fn heads(names: &[String]) -> Vec<ColumnHead> {
     let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
     let short = |name: &String| {
         let alone = names.iter().filter(|other| last(other) == last(name)).count() == 1;
-        Head::of(&if alone { last(name) } else { name.clone() })
+        ColumnHead::of(&if alone { last(name) } else { name.clone() })
     };
     names.iter().map(short).collect()
 }
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn names_are_words_and_units() {
-        let head = |name: &str| (Head::of(name).name, Head::of(name).unit);
+        let head = |name: &str| (ColumnHead::of(name).name, ColumnHead::of(name).unit);
         assert_eq!(head("gap_tension_m"), ("tension gap".to_owned(), Some("m")));
         assert_eq!(head("speed_m_s"), ("speed".to_owned(), Some("m/s")));
         assert_eq!(head("hydrostatic_stiffness_pa_m").1, Some("Pa/m"));

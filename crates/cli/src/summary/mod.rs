@@ -18,15 +18,19 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-use crate::terminal::Look;
+use crate::terminal::TextStyle;
 pub(crate) use label::axis as told;
-use survey::Row;
+use survey::SummaryRow;
 
 /// Characters of a line where the place does not say how many it has.
 const WIDTH: usize = 118;
 
 /// The summary for people. `rows` are made as often as they are looked at.
-pub(crate) fn text<'a, I: Iterator<Item = Row<'a>>>(columns: &[String], rows: impl Fn() -> I, look: Look) -> String {
+pub(crate) fn text<'a, I: Iterator<Item = SummaryRow<'a>>>(
+    columns: &[String],
+    rows: impl Fn() -> I,
+    look: TextStyle,
+) -> String {
     let width = look.width.unwrap_or(WIDTH);
     if columns.last().is_some_and(|column| column == "shape") {
         modes::modes(columns, rows(), look, width)

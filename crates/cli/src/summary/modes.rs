@@ -2,10 +2,10 @@
 //!
 //! Knows how modes of one name are told apart. Does not know where rows come from.
 
-use super::grid::{Entry, Grid, Names};
-use super::label::{Head, axis, heads};
-use super::survey::Row;
-use crate::terminal::{FAINT, Look};
+use super::grid::{RowNames, TableEntry, TextTable};
+use super::label::{ColumnHead, axis, heads};
+use super::survey::SummaryRow;
+use crate::terminal::{FAINT, TextStyle};
 use crate::words::{listed, wrapped};
 use anstyle::Style;
 use pontoon_plan::input::Cell;
@@ -17,17 +17,17 @@ const MOST_JOBS: usize = 12;
 const MOST_SHAPES: usize = 60;
 
 /// A shape: its name, and how many modes of that name stand before it.
-type Shape = (String, usize);
+type ShapeName = (String, usize);
 
 /// A job: its axes, and the shapes and frequencies of its modes.
 struct OfJob<'a> {
-    axes: Row<'a>,
-    modes: Vec<(Shape, f64)>,
+    axes: SummaryRow<'a>,
+    modes: Vec<(ShapeName, f64)>,
 }
 
 impl<'a> OfJob<'a> {
     /// The first jobs, and how many more there are. A row ends in the number of a mode, its frequency and its shape.
-    fn all(axes: usize, rows: impl Iterator<Item = Row<'a>>) -> (Vec<Self>, usize) {
+    fn all(axes: usize, rows: impl Iterator<Item = SummaryRow<'a>>) -> (Vec<Self>, usize) {
         let mut jobs: Vec<Self> = Vec::new();
         let mut left = 0;
         for row in rows {
@@ -58,9 +58,9 @@ impl<'a> OfJob<'a> {
         self.modes.push(((shape, same), frequency.number().unwrap_or_default()));
     }
 
-    fn frequency(&self, shape: &Shape) -> Entry {
+    fn frequency(&self, shape: &ShapeName) -> TableEntry {
         let found = self.modes.iter().find(|(name, _)| name == shape);
-        Entry {
+        TableEntry {
             text: found.map_or(String::new(), |(_, hz)| labels::digits("frequency_hz", *hz)),
             style: Style::new(),
         }
@@ -68,7 +68,12 @@ impl<'a> OfJob<'a> {
 }
 
 /// The frequencies of a summary of modes.
-pub(super) fn modes<'a>(columns: &[String], rows: impl Iterator<Item = Row<'a>>, look: Look, width: usize) -> String {
+pub(super) fn modes<'a>(
+    columns: &[String],
+    rows: impl Iterator<Item = SummaryRow<'a>>,
+    look: TextStyle,
+    width: usize,
+) -> String {
     let axes = columns.len() - 3;
     let (jobs, left) = OfJob::all(axes, rows);
     let heads = heads(&columns[..axes]);
@@ -81,7 +86,7 @@ pub(super) fn modes<'a>(columns: &[String], rows: impl Iterator<Item = Row<'a>>,
         let constant = constant.iter().map(|&i| heads[i].told(&job.axes[i]));
         text += &listed("throughout: ", constant, width, 2);
     }
-    let mut shapes: Vec<&Shape> = Vec::new();
+    let mut shapes: Vec<&ShapeName> = Vec::new();
     for (shape, _) in jobs.iter().flat_map(|job| &job.modes) {
         if !shapes.contains(&shape) {
             shapes.push(shape);
@@ -103,12 +108,12 @@ pub(super) fn modes<'a>(columns: &[String], rows: impl Iterator<Item = Row<'a>>,
 }
 
 /// A row a shape, a column a job.
-fn grid(jobs: &[OfJob<'_>], shapes: &[&Shape], varying: &[usize], heads: &[Head]) -> Grid {
+fn grid(jobs: &[OfJob<'_>], shapes: &[&ShapeName], varying: &[usize], heads: &[ColumnHead]) -> TextTable {
     let or_blank = |names: Vec<String>| if names.is_empty() { vec![String::new()] } else { names };
     let names: Vec<String> = shapes.iter().map(|(name, _)| name.clone()).collect();
-    Grid {
+    TextTable {
         gap: 2,
-        names: vec![Names {
+        names: vec![RowNames {
             head: or_blank(varying.iter().map(|&i| heads[i].united()).collect()),
             rows: names.clone(),
             told: names,

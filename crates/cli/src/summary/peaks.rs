@@ -3,10 +3,10 @@
 //!
 //! Knows how many rows a person looks at. Does not know where rows come from.
 
-use super::grid::{Entry, Grid, Names};
-use super::label::{Head, axis, heads};
-use super::survey::{Along, Row, Survey, hash, peaks_among};
-use crate::terminal::{BAD, FAINT, Look, NOTABLE};
+use super::grid::{RowNames, TableEntry, TextTable};
+use super::label::{ColumnHead, axis, heads};
+use super::survey::{SummaryRow, Survey, SurveyAxis, hash, peaks_among};
+use crate::terminal::{BAD, FAINT, NOTABLE, TextStyle};
 use crate::words::{listed, wrapped};
 use anstyle::Style;
 use pontoon_plan::input::Cell;
@@ -23,17 +23,17 @@ const FEWEST_ROWS: usize = 5;
 const FAILED: &str = "failed";
 
 /// The peaks of a summary as a table and what is largest.
-pub(super) fn peaks<'a, I: Iterator<Item = Row<'a>>>(
+pub(super) fn peaks<'a, I: Iterator<Item = SummaryRow<'a>>>(
     columns: &[String],
     rows: impl Fn() -> I,
-    look: Look,
+    look: TextStyle,
     width: usize,
 ) -> String {
     let survey = Survey::new(columns, &rows);
     let heads = heads(columns);
     let mut text = String::new();
     if let Some(&first) = peaks_among(columns).first() {
-        let peak = Head::of(&columns[first]);
+        let peak = ColumnHead::of(&columns[first]);
         text += &match &survey.along {
             Some(along) => wrapped(
                 &format!(
@@ -63,18 +63,18 @@ pub(super) fn peaks<'a, I: Iterator<Item = Row<'a>>>(
 }
 
 /// Values of the axes that vary, as the names of rows; heads a word a line.
-fn names(axes: &[usize], heads: &[Head], rows: &[Row<'_>]) -> Vec<Names> {
+fn names(axes: &[usize], heads: &[ColumnHead], rows: &[SummaryRow<'_>]) -> Vec<RowNames> {
     let column = |&i: &usize| {
         let head = &heads[i];
         let words = head.name.split(' ').map(str::to_owned);
-        let told = |row: &Row<'_>| {
+        let told = |row: &SummaryRow<'_>| {
             if row[i].is_nothing() {
                 String::new()
             } else {
                 head.told(&row[i])
             }
         };
-        Names {
+        RowNames {
             head: words.chain(head.unit.map(|unit| format!("[{unit}]"))).collect(),
             rows: rows.iter().map(|row| axis(&row[i])).collect(),
             told: rows.iter().map(told).collect(),
@@ -84,22 +84,22 @@ fn names(axes: &[usize], heads: &[Head], rows: &[Row<'_>]) -> Vec<Names> {
 }
 
 /// The largest of its kind ends in a star; all others in a blank, so that their points stay under each other.
-fn entry(text: String, is_largest: bool) -> Entry {
+fn entry(text: String, is_largest: bool) -> TableEntry {
     let (mark, style) = if is_largest {
         ("*", NOTABLE)
     } else {
         (" ", Style::new())
     };
-    Entry {
+    TableEntry {
         text: text + mark,
         style,
     }
 }
 
-fn of_peak(name: &str, value: &Cell<'_>, is_largest: bool) -> Entry {
+fn of_peak(name: &str, value: &Cell<'_>, is_largest: bool) -> TableEntry {
     match value.number() {
         Some(x) => entry(labels::digits(name, x), is_largest),
-        None => Entry {
+        None => TableEntry {
             style: BAD,
             ..entry(FAILED.to_owned(), false)
         },
@@ -107,27 +107,27 @@ fn of_peak(name: &str, value: &Cell<'_>, is_largest: bool) -> Entry {
 }
 
 /// The first peak against an axis.
-fn against<'a, I: Iterator<Item = Row<'a>>>(
+fn against<'a, I: Iterator<Item = SummaryRow<'a>>>(
     survey: &Survey<'a>,
-    along: &Along<'a>,
+    along: &SurveyAxis<'a>,
     columns: &[String],
-    heads: &[Head],
+    heads: &[ColumnHead],
     rows: &impl Fn() -> I,
-    look: Look,
+    look: TextStyle,
     width: usize,
 ) -> String {
     let Some(peak) = survey.largest.first().map(|largest| largest.column) else {
         return "no job has a peak: all failed\n".to_owned();
     };
     let values = &along.values;
-    let mut grid = Grid {
+    let mut grid = TextTable {
         heads: values.iter().map(|value| vec![axis(value) + " "]).collect(),
         gap: 1,
-        ..Grid::default()
+        ..TextTable::default()
     };
     let collect = |most: usize| {
         let mut places: HashMap<u64, usize> = HashMap::new();
-        let (mut first, mut entries): (Vec<Row<'a>>, Vec<Vec<Entry>>) = Default::default();
+        let (mut first, mut entries): (Vec<SummaryRow<'a>>, Vec<Vec<TableEntry>>) = Default::default();
         for row in rows() {
             let next = places.len();
             let known = hash(&row, &survey.varying);
@@ -135,7 +135,7 @@ fn against<'a, I: Iterator<Item = Row<'a>>>(
                 Some(&place) => place,
                 None if next < most => {
                     places.insert(known, next);
-                    entries.push(vec![Entry::default(); values.len()]);
+                    entries.push(vec![TableEntry::default(); values.len()]);
                     first.push(row.clone());
                     next
                 }
@@ -156,14 +156,14 @@ fn against<'a, I: Iterator<Item = Row<'a>>>(
 }
 
 /// Cuts a table to as many rows as a person looks at in all its pieces; how many are left.
-fn fitting(grid: &mut Grid, width: usize) -> usize {
+fn fitting(grid: &mut TextTable, width: usize) -> usize {
     let most = (MOST_LINES / grid.pieces(width).max(1)).clamp(FEWEST_ROWS, MOST_ROWS);
     grid.rows.truncate(most);
     grid.names.iter_mut().for_each(|names| names.rows.truncate(most));
     grid.rows.len()
 }
 
-fn more(left: usize, of: &str, look: Look) -> String {
+fn more(left: usize, of: &str, look: TextStyle) -> String {
     match left {
         0 => String::new(),
         left => look.painted(FAINT, &format!("and {left} more {of}: see summary.csv")) + "\n",
@@ -171,19 +171,19 @@ fn more(left: usize, of: &str, look: Look) -> String {
 }
 
 /// All peaks of jobs: in their order, of more than a person looks at those with the largest deflections.
-fn list<'a, I: Iterator<Item = Row<'a>>>(
+fn list<'a, I: Iterator<Item = SummaryRow<'a>>>(
     survey: &Survey<'a>,
     columns: &[String],
-    heads: &[Head],
+    heads: &[ColumnHead],
     rows: &impl Fn() -> I,
-    look: Look,
+    look: TextStyle,
     width: usize,
 ) -> String {
     let peaks: Vec<usize> = peaks_among(columns);
     let Some(&first) = peaks.first() else {
         return "no rows\n".to_owned();
     };
-    let mut shown: Vec<Row<'a>> = Vec::new();
+    let mut shown: Vec<SummaryRow<'a>> = Vec::new();
     if survey.rows <= MOST_ROWS {
         shown = rows().collect();
     } else {
@@ -193,20 +193,20 @@ fn list<'a, I: Iterator<Item = Row<'a>>>(
             .collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let places: HashMap<usize, usize> = order.iter().take(MOST_ROWS).map(|o| o.1).zip(0..).collect();
-        let mut kept: Vec<(usize, Row<'a>)> = rows()
+        let mut kept: Vec<(usize, SummaryRow<'a>)> = rows()
             .enumerate()
             .filter_map(|(i, row)| places.get(&i).map(|&place| (place, row)))
             .collect();
         kept.sort_by_key(|(place, _)| *place);
         shown.extend(kept.into_iter().map(|(_, row)| row));
     }
-    let mut grid = Grid {
+    let mut grid = TextTable {
         gap: 1,
         names: names(&survey.varying, heads, &shown),
         heads: peaks
             .iter()
             .map(|&i| {
-                let Head { name, unit } = short(&columns[i]);
+                let ColumnHead { name, unit } = short(&columns[i]);
                 vec![name + " ", unit.map_or(String::new(), |unit| format!("[{unit}] "))]
             })
             .collect(),
@@ -230,12 +230,12 @@ fn list<'a, I: Iterator<Item = Row<'a>>>(
 }
 
 /// The head of a peak where all are peaks.
-fn short(column: &str) -> Head {
-    Head::of(column.trim_start_matches("peak_"))
+fn short(column: &str) -> ColumnHead {
+    ColumnHead::of(column.trim_start_matches("peak_"))
 }
 
 /// The largest of each peak and where it is.
-fn largest(survey: &Survey<'_>, columns: &[String], heads: &[Head], look: Look, width: usize) -> String {
+fn largest(survey: &Survey<'_>, columns: &[String], heads: &[ColumnHead], look: TextStyle, width: usize) -> String {
     let along = survey.along.iter().map(|along| along.axis);
     let axes: Vec<usize> = along.chain(survey.varying.iter().copied()).collect();
     let parts: Vec<(String, String, Vec<String>)> = survey
@@ -272,8 +272,8 @@ fn largest(survey: &Survey<'_>, columns: &[String], heads: &[Head], look: Look, 
 }
 
 /// Whether the peak of a row is the largest, above nothing and not the only one.
-fn is_largest(survey: &Survey<'_>, column: usize, row: &Row<'_>) -> bool {
-    let is_row = |of: &Row<'_>| of == row;
+fn is_largest(survey: &Survey<'_>, column: usize, row: &SummaryRow<'_>) -> bool {
+    let is_row = |of: &SummaryRow<'_>| of == row;
     survey.rows > 1
         && survey
             .largest

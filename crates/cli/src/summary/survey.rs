@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A row of a summary.
-pub(super) type Row<'a> = Vec<Cell<'a>>;
+pub(super) type SummaryRow<'a> = Vec<Cell<'a>>;
 
 /// Axes that one may look along, the best first.
 const ALONG: [&str; 3] = ["speed_m_s", "load_position", "load_x_m"];
@@ -25,7 +25,7 @@ pub(super) struct Survey<'a> {
     /// Places of the axes that have one value, and the value.
     pub constant: Vec<(usize, Cell<'static>)>,
     /// The axis to look along; none where rows have little in common.
-    pub along: Option<Along<'a>>,
+    pub along: Option<SurveyAxis<'a>>,
     /// Combinations of the varying axes but the one to look along.
     pub combinations: usize,
     /// Rows.
@@ -36,7 +36,7 @@ pub(super) struct Survey<'a> {
 
 /// An axis to look along.
 #[derive(Debug)]
-pub(super) struct Along<'a> {
+pub(super) struct SurveyAxis<'a> {
     /// Its place.
     pub axis: usize,
     /// Its values, increasing.
@@ -51,18 +51,18 @@ pub(super) struct Largest<'a> {
     /// The value.
     pub most: f64,
     /// Its row.
-    pub row: Row<'a>,
+    pub row: SummaryRow<'a>,
 }
 
 /// What all rows have in an axis.
-struct Axis<'a> {
+struct AxisValueSet<'a> {
     place: usize,
     seen: Seen,
     values: Vec<Cell<'a>>,
     too_many: bool,
 }
 
-impl<'a> Axis<'a> {
+impl<'a> AxisValueSet<'a> {
     fn new(place: usize) -> Self {
         Self {
             place,
@@ -92,16 +92,16 @@ fn order(a: &Cell<'_>, b: &Cell<'_>) -> Ordering {
 }
 
 /// What the first look finds.
-struct Look<'a> {
-    axes: Vec<Axis<'a>>,
+struct FirstPass<'a> {
+    axes: Vec<AxisValueSet<'a>>,
     largest: Vec<Largest<'a>>,
     rows: usize,
 }
 
-impl<'a> Look<'a> {
-    fn at(columns: &[String], rows: impl Iterator<Item = Row<'a>>) -> Self {
+impl<'a> FirstPass<'a> {
+    fn at(columns: &[String], rows: impl Iterator<Item = SummaryRow<'a>>) -> Self {
         let peaks = peaks_among(columns);
-        let axes = (0..columns.len()).filter(|i| !peaks.contains(i)).map(Axis::new);
+        let axes = (0..columns.len()).filter(|i| !peaks.contains(i)).map(AxisValueSet::new);
         let mut look = Self {
             axes: axes.collect(),
             largest: Vec::new(),
@@ -123,7 +123,7 @@ impl<'a> Look<'a> {
         look
     }
 
-    fn axis(&self, columns: &[String], name: &str) -> Option<&Axis<'a>> {
+    fn axis(&self, columns: &[String], name: &str) -> Option<&AxisValueSet<'a>> {
         self.axes.iter().find(|axis| columns[axis.place] == name)
     }
 
@@ -139,7 +139,7 @@ impl<'a> Look<'a> {
             .axis(columns, "load_position")
             .is_some_and(|axis| axis.seen.is_whole());
         let (mut varying, mut constant) = (Vec::new(), Vec::new());
-        for Axis { place, seen, .. } in &self.axes {
+        for AxisValueSet { place, seen, .. } in &self.axes {
             let varies = if linear && is_gap(*place) {
                 seen.has_several()
             } else {
@@ -156,12 +156,12 @@ impl<'a> Look<'a> {
     }
 
     /// The axis to look along: the first of those that have a value in every row, few of them.
-    fn along(&self, columns: &[String], varying: &[usize]) -> Option<Along<'a>> {
+    fn along(&self, columns: &[String], varying: &[usize]) -> Option<SurveyAxis<'a>> {
         let mut whole = ALONG
             .iter()
             .filter_map(|name| self.axis(columns, name))
             .filter(|axis| axis.seen.is_whole() && varying.contains(&axis.place));
-        whole.next().filter(|axis| !axis.too_many).map(|axis| Along {
+        whole.next().filter(|axis| !axis.too_many).map(|axis| SurveyAxis {
             axis: axis.place,
             values: axis.values.clone(),
         })
@@ -170,11 +170,11 @@ impl<'a> Look<'a> {
 
 impl<'a> Survey<'a> {
     /// Looks at all rows twice.
-    pub(super) fn new<I: Iterator<Item = Row<'a>>>(columns: &[String], rows: impl Fn() -> I) -> Self {
-        let look = Look::at(columns, rows());
+    pub(super) fn new<I: Iterator<Item = SummaryRow<'a>>>(columns: &[String], rows: impl Fn() -> I) -> Self {
+        let look = FirstPass::at(columns, rows());
         let (varying, constant) = look.parted(columns);
         let mut along = look.along(columns, &varying);
-        let others = |along: &Option<Along<'_>>| {
+        let others = |along: &Option<SurveyAxis<'_>>| {
             let along = along.as_ref().map(|along| along.axis);
             varying
                 .iter()
@@ -209,13 +209,13 @@ pub(super) fn peaks_among(columns: &[String]) -> Vec<usize> {
 }
 
 /// How many combinations of some axes there are.
-fn combinations<'a>(rows: impl Iterator<Item = Row<'a>>, axes: &[usize]) -> usize {
+fn combinations<'a>(rows: impl Iterator<Item = SummaryRow<'a>>, axes: &[usize]) -> usize {
     let hashes: HashSet<u64> = rows.map(|row| hash(&row, axes)).collect();
     hashes.len()
 }
 
 /// A number for the values of some axes.
-pub(super) fn hash(row: &Row<'_>, axes: &[usize]) -> u64 {
+pub(super) fn hash(row: &SummaryRow<'_>, axes: &[usize]) -> u64 {
     let mut hasher = DefaultHasher::new();
     axes.iter().for_each(|&i| row[i].hash(&mut hasher));
     hasher.finish()

@@ -1,14 +1,14 @@
 //! Tables of summaries with awkward axes, as they are read.
 
 use super::text;
-use crate::terminal::Look;
+use crate::terminal::TextStyle;
 use pontoon_plan::input::Cell;
 use serde_json::{Value, json};
 
 const COLUMNS: &str = "connection gap_tension_m gap_compression_m load_n speed_m_s peak_deflection_m peak_uplift_m peak_compression_n peak_tension_n";
 
 /// Of a file or pipe.
-const PLAIN: Look = Look {
+const PLAIN: TextStyle = TextStyle {
     colour: false,
     width: None,
 };
@@ -17,8 +17,8 @@ fn columns(names: &str) -> Vec<String> {
     names.split_whitespace().map(str::to_owned).collect()
 }
 
-fn narrow(width: usize) -> Look {
-    Look {
+fn narrow(width: usize) -> TextStyle {
+    TextStyle {
         width: Some(width),
         ..PLAIN
     }
@@ -31,7 +31,7 @@ fn row(axes: Value, deflection_m: Option<f64>) -> Vec<Value> {
     row
 }
 
-fn text_of(names: &str, rows: &[Vec<Value>], look: Look) -> String {
+fn text_of(names: &str, rows: &[Vec<Value>], look: TextStyle) -> String {
     text(
         &columns(names),
         || rows.iter().map(|row| row.iter().map(Cell::of).collect()),
@@ -39,7 +39,7 @@ fn text_of(names: &str, rows: &[Vec<Value>], look: Look) -> String {
     )
 }
 
-fn written(names: &str, rows: &[Vec<Value>], look: Look) -> String {
+fn written(names: &str, rows: &[Vec<Value>], look: TextStyle) -> String {
     let text = text_of(names, rows, look);
     if let Some(width) = look.width {
         let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
@@ -371,7 +371,7 @@ local    0.37000
 
 #[test]
 fn colours_are_where_they_are_shown_and_move_nothing() {
-    let look = Look {
+    let look = TextStyle {
         colour: true,
         width: Some(118),
     };
