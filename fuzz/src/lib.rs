@@ -174,7 +174,7 @@ fn written(file: &Path, bytes: &[u8]) {
 /// Bytes of a frame before its payload: mark, length, checksum, kind.
 const HEAD: usize = 16;
 
-/// The same bytes, each frame that lies whole in them with the checksum of what it holds.
+/// Bytes in which each frame that lies whole has the checksum of what it holds.
 fn mended(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     let mut at = 0;

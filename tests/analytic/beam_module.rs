@@ -66,8 +66,8 @@ fn midspan_deflects_as_a_beam() {
     }
 }
 
-/// The same span: `omega_n^2 = (EI (n pi/L)^4 + k) / m`, n = 1 and 2. Ten elements a module leave 4e-7 and 6e-6 by the order 4
-/// of the consistent mass, the posts (1e5) 5e-7 of the first. 1e-6 and 1e-5. Twins: E, mass.
+/// Frequencies of that span: `omega_n^2 = (EI (n pi/L)^4 + k) / m`, n = 1 and 2. Ten elements a module leave 4e-7 and 6e-6 by the
+/// order 4 of the consistent mass, the posts (1e5) 5e-7 of the first. 1e-6 and 1e-5. Twins: E, mass.
 #[test]
 fn span_sounds_as_a_beam() {
     let hz = |ei: f64, mass_kg_m: f64| {

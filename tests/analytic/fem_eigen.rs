@@ -148,7 +148,7 @@ fn clusters_of_thirty() {
     }
 }
 
-/// The same in every run: no time, no randomness.
+/// Modes are equal in every run: no time, no randomness.
 #[test]
 fn the_same_bits_twice() {
     let (k, m) = floating(12, 9);

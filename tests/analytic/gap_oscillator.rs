@@ -171,7 +171,7 @@ impl Pair {
         found
     }
 
-    /// The same by the engine, with beams and posts so stiff that they are rigid.
+    /// Histories by the engine, with beams and posts so stiff that they are rigid.
     fn engine(&self, h: f64) -> Histories {
         let mut module = BeamModule::slender(self.length_m, 2, EI, self.mass_kg_m, 1.0);
         module.depth_m = self.depth_m;

@@ -194,7 +194,7 @@ impl Stage {
         self.pontoon_with(words, Path::new(""))
     }
 
-    /// The same with a cache in a folder.
+    /// Runs the program in the folder with a cache in another.
     pub(crate) fn pontoon_with(&self, words: &[&str], cache: &Path) -> Output {
         let output = Command::new(env!("CARGO_BIN_EXE_pontoon"))
             .args(words)

@@ -320,7 +320,8 @@ fn linear_chains_agree() {
     compare(&small, 0.002, 1e-4, &CHANGES);
 }
 
-/// The same with gaps at 10 m/s. 1e-3: contacts are met within a step, each scheme in its own way (measured 3e-4, 1e-4).
+/// Five modules of the chain with gaps at 10 m/s. 1e-3: contacts are met within a step, each scheme in its own way (measured
+/// 3e-4, 1e-4).
 #[test]
 fn chains_with_gaps_agree() {
     let small = Chain {

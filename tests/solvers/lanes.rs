@@ -57,7 +57,7 @@ impl Answers {
         ]
     }
 
-    /// The same with the two connectors of each joint exchanged, `each` numbers a connector.
+    /// Exchanges the two connectors of each joint, `each` numbers a connector.
     fn mirrored(mut self, each: usize) -> Self {
         self.forces
             .chunks_mut(2 * each)
@@ -93,7 +93,7 @@ fn fu2005() -> &'static [Ready; 2] {
 /// Half a per cent and one per cent: what is asked for; the static condensation is exact and leaves 1e-11 here, the
 /// crossing 1e-4, so a tenth of that is held. Twin: the vehicle 5 % heavier.
 const EDGE_AND_ROLL: f64 = 5e-4;
-/// See [`EDGE_AND_ROLL`].
+/// Largest deviation of forces, by the reasons of [`EDGE_AND_ROLL`].
 const FORCES: f64 = 1e-3;
 
 fn hold(what: &str, right: &Answers, heavy: &Answers, expected: &Answers) {

@@ -59,7 +59,7 @@ impl Springs {
         SymmetricMatrix::from_entries(self.places, &entries).expect("a matrix")
     }
 
-    /// The same with one spring 5 % stiffer.
+    /// The chain with one spring 5 % stiffer.
     fn with_wrong_spring(&self, spring: usize) -> Self {
         let mut wrong = self.clone();
         wrong.springs[spring].0 *= 1.05;

@@ -228,7 +228,7 @@ pub fn holds(name: &str, reference: f64, band: RangeInclusive<f64>, which: &str,
     hold_each(name, &[(reference, band)], which, |f| vec![value(f)]);
 }
 
-/// The same of several values at once.
+/// Asserts of several values at once what [`holds`] asserts of one.
 pub fn hold_each(name: &str, cards: &[(f64, RangeInclusive<f64>)], which: &str, values: impl Fn(Factors) -> Vec<f64>) {
     let check = |factors: Factors, inside: bool| {
         for (i, (value, (reference, band))) in values(factors).iter().zip(cards).enumerate() {

@@ -59,29 +59,29 @@ fn read_design(place: &str) -> BridgeDesign {
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
 }
 
-/// The same bridge with something changed.
+/// A bridge with something changed.
 pub fn with(design: &BridgeDesign, change: impl FnOnce(&mut BridgeDesign)) -> BridgeDesign {
     let mut changed = design.clone();
     change(&mut changed);
     changed
 }
 
-/// The same bridge with p_b multiplied.
+/// A bridge with p_b multiplied.
 pub fn with_p_b(design: &BridgeDesign, factor: f64) -> BridgeDesign {
     with(design, |d| d.hydrostatic_stiffness_pa_m = Some(factor * d.p_b()))
 }
 
-/// The same bridge with m_a multiplied.
+/// A bridge with m_a multiplied.
 pub fn with_m_a(design: &BridgeDesign, factor: f64) -> BridgeDesign {
     with(design, |d| d.added_mass_kg_m = Some(factor * d.m_a()))
 }
 
-/// The same bridge with E multiplied.
+/// A bridge with E multiplied.
 pub fn with_e(design: &BridgeDesign, factor: f64) -> BridgeDesign {
     with(design, |d| d.module.material.youngs_modulus_pa *= factor)
 }
 
-/// The same bridge condensed otherwise.
+/// A bridge condensed otherwise.
 pub fn condensed(design: &BridgeDesign, fixed_master_modes: usize, bottom_masters: bool) -> BridgeDesign {
     with(design, |d| {
         d.condensation = Condensation {

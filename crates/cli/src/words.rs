@@ -16,7 +16,7 @@ pub(crate) fn result(text: &str) -> io::Result<()> {
     results(|out| out.write_all(text.as_bytes()))
 }
 
-/// The same for results that are written piece by piece.
+/// Writes results on standard output piece by piece; a reader that has left is no error.
 ///
 /// # Errors
 /// As above.

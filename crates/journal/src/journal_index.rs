@@ -272,7 +272,7 @@ impl JournalIndex {
         deaths
     }
 
-    /// The same without the last file: that of a process that is at work.
+    /// Processes that died with a job, those of the last file left out: its process is at work.
     pub fn deaths_before(&self, key: &RecordKey) -> usize {
         let before = &self.files[..self.files.len().saturating_sub(1)];
         before

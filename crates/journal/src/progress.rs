@@ -98,7 +98,7 @@ impl Standing {
         Some(standing.with_state(folder, &counts.study_blake3, counts.ended.as_deref()))
     }
 
-    /// The same with its state: how the last process ended, unless it is still at work or nothing is missing any more.
+    /// Adds the state: how the last process ended, unless it is still at work or nothing is missing any more.
     pub fn with_state(mut self, folder: &Path, study_blake3: &str, ended: Option<&str>) -> Self {
         self.running = Lock::is_held(folder);
         // a share leaves no tables; a whole run's are of the study that its manifest names

@@ -161,7 +161,7 @@ impl JournalWriter {
         self.sync()
     }
 
-    /// The same of a process that is to end at once: nothing is waited for, and nothing is told.
+    /// Says how a process came to an end that is to be at once: nothing is waited for, and nothing is told.
     pub fn end_at_once(&self, ending: &SessionEnd) {
         if let Ok(mut state) = self.shared.state.try_lock() {
             let mut bytes = Vec::new();

@@ -98,14 +98,14 @@ impl Failure {
         }
     }
 
-    /// The same failure with a number.
+    /// Adds a number.
     #[must_use]
     pub fn with(mut self, name: &str, number: f64) -> Self {
         self.numbers.push((name.to_owned(), number));
         self
     }
 
-    /// The same failure with words before and behind its own.
+    /// Puts words before and behind its own.
     #[must_use]
     pub fn said(self, before: &str, behind: &str) -> Self {
         Self {

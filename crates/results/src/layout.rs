@@ -89,7 +89,7 @@ impl Layout {
         self.columns(name, of, records).frame()
     }
 
-    /// The same as a table in memory.
+    /// The rows of some jobs as a table in memory.
     pub(super) fn table(&self, name: TableName, of: &[Job], records: &[JobRecord]) -> Table {
         Table::from_columns(self.columns(name, of, records))
     }

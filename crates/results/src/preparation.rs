@@ -70,9 +70,8 @@ pub struct BridgeReport {
     pub operator_modes: Option<usize>,
     /// Frequency of the highest `[Hz]`.
     pub operator_cutoff_hz: Option<f64>,
-    /// Error allowed, and what is left of it: the largest share by which the flexibility of a connector or deck node at 5 Hz
-    /// is off.
+    /// Error allowed: the largest share by which the flexibility of a connector or deck node at 5 Hz may be off.
     pub operator_tolerance: Option<f64>,
-    /// See `operator_tolerance`.
+    /// Error left: the largest share by which that flexibility is off.
     pub operator_error: Option<f64>,
 }

@@ -85,9 +85,9 @@ pub struct Summary {
     pub numerical_dissipation: Option<f64>,
     /// How far the operator's largest deflection is off, as a share of the reference solver's; of jobs solved again.
     pub verify_deflection: Option<f64>,
-    /// The same of the largest compression, as a share of the job's largest joint force.
+    /// How far the largest compression is off, as a share of the job's largest joint force.
     pub verify_compression: Option<f64>,
-    /// The same of the largest tension, on that scale.
+    /// How far the largest tension is off, as a share of that force.
     pub verify_tension: Option<f64>,
     /// Whether all are within their tolerances.
     pub verify_held: Option<bool>,

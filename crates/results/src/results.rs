@@ -71,7 +71,7 @@ impl Results {
         Self::read_some(folder, &TableName::ALL)
     }
 
-    /// The same with some tables alone in memory, that of jobs always; the others are there to be scanned.
+    /// Reads a folder of results with some tables alone in memory, that of jobs always; the others are there to be scanned.
     ///
     /// # Errors
     /// As above.

@@ -12,12 +12,11 @@ pub struct Verification {
     pub jobs: usize,
     /// Those beyond a tolerance, or without an answer of the reference solver.
     pub beyond: usize,
-    /// Largest deviations: of deflections as a share of the reference solver's, of compression and tension as a share of the
-    /// job's largest joint force.
+    /// Largest deviation of a deflection, as a share of the reference solver's.
     pub worst_deflection: f64,
-    /// See `worst_deflection`.
+    /// Largest deviation of a compression, as a share of the job's largest joint force.
     pub worst_compression: f64,
-    /// See `worst_deflection`.
+    /// Largest deviation of a tension, as a share of the job's largest joint force.
     pub worst_tension: f64,
 }
 

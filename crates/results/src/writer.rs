@@ -53,8 +53,8 @@ impl<'a> TableWriter<'a> {
         })
     }
 
-    /// The same of a study whose tables the folder holds already: nothing but the summary is written. None where they are not
-    /// what this program would write.
+    /// A writer of a study whose tables the folder holds already: nothing but the summary is written. None where they are
+    /// not what this program would write.
     pub fn of_whole(study: &Study, jobs: &'a [Job], folder: &Folder, provenance: &TableProvenance) -> Option<Self> {
         let layout = Layout::new(study, jobs);
         let names: Vec<String> = layout.tables().map(TableName::file).collect();

@@ -1,4 +1,4 @@
-//! The same command again: more jobs, another bridge, another form.
+//! A command given again: more jobs, another bridge, another form.
 
 use super::sweep::{command, finish, run, same_tables, sweep, tables};
 use crate::stage::{Stage, is_refused, stderr};

@@ -55,7 +55,7 @@ pub(crate) fn run(stage: &Stage, out: &str, more: &[&str]) -> Output {
         .unwrap()
 }
 
-/// The same with a fault on the way.
+/// Runs a sweep with a fault on the way.
 pub(crate) fn run_with(stage: &Stage, out: &str, fault: &str) -> Output {
     command(stage, &["run", "study.json", "--out", out, "--quiet"])
         .env("PONTOON_FAULT", fault)

@@ -27,7 +27,7 @@ pub(super) struct RowNames {
     pub head: Vec<String>,
     /// A name a row.
     pub rows: Vec<String>,
-    /// The same where it stands alone; nothing where it says nothing.
+    /// A name a row where it stands alone; nothing where it says nothing.
     pub told: Vec<String>,
 }
 

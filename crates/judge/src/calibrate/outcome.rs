@@ -61,7 +61,7 @@ pub struct Calibration {
     pub undetermined: Vec<String>,
     /// Sum of the squared residuals at the start, each by its weight.
     pub sum_of_squares_start: f64,
-    /// The same at the best point.
+    /// Sum of the squared residuals at the best point.
     pub sum_of_squares_best: f64,
     /// Candidates computed.
     pub evaluations: usize,

@@ -48,7 +48,7 @@ pub struct Tolerances {
 /// billionth of the unit (a roll that symmetry makes 0, the energy's residual).
 const DEFAULT_SHARE: f64 = 1e-6;
 
-/// See [`DEFAULT_SHARE`].
+/// Least tolerance without a file, in the unit of the column; its reason stands at [`DEFAULT_SHARE`].
 const DEFAULT_LEAST: f64 = 1e-9;
 
 impl Tolerances {

@@ -99,7 +99,7 @@ pub struct SampleSpec {
     /// Number of points.
     #[schemars(range(min = 1, max = 10_000_000))]
     pub count: usize,
-    /// The same seed gives the same points, another one others.
+    /// Equal seeds give equal points, another one others.
     pub seed: u64,
     /// The axes with their ranges.
     pub ranges: RangeMap,

@@ -39,7 +39,7 @@ pub(super) struct RandomSample {
 /// What an axis of a sample is drawn from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum SampledAxis {
-    /// The same for all points.
+    /// One value for all points.
     Constant(Cell<'static>),
     /// From the first to the second number.
     Range(f64, f64),
@@ -58,7 +58,7 @@ impl PointSource {
         }
     }
 
-    /// The same as a number that may be beyond counting.
+    /// Number of points, which may be beyond counting.
     pub(super) fn size(&self) -> f64 {
         match (self, self.count()) {
             (Self::Grid(axes), None) => axes.iter().map(|values| values.len() as f64).product(),

@@ -53,7 +53,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// The same value with a whole number written as one.
+    /// The value with a whole number written as one.
     #[must_use]
     pub fn canonical(self) -> Self {
         match self {
@@ -84,7 +84,7 @@ impl<'a> Cell<'a> {
         matches!(self, Self::Nothing)
     }
 
-    /// The same value, borrowed.
+    /// The value, borrowed.
     pub fn borrowed(&'a self) -> Self {
         match self {
             Self::Word(word) => Self::Word(Cow::Borrowed(word)),
@@ -92,7 +92,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// The same value, owned.
+    /// The value, owned.
     pub fn owned(&self) -> Cell<'static> {
         match self {
             Self::Nothing => Cell::Nothing,

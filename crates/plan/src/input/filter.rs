@@ -145,7 +145,7 @@ impl NoFilter {
         }
     }
 
-    /// The same as an error of a reader.
+    /// The reason as an error of a reader.
     pub(crate) fn of_reader<E: DeError>(self) -> E {
         match self {
             Self::UnknownKey(key, known) => E::unknown_field(&key, known),

@@ -93,7 +93,7 @@ impl FoundValue {
         }
     }
 
-    /// The same with what is to be said of it: `0.001, which makes 2e7 steps`.
+    /// Adds what is to be said of it: `0.001, which makes 2e7 steps`.
     #[must_use]
     pub fn which(self, words: impl Into<String>) -> Self {
         Self {
@@ -181,7 +181,7 @@ impl Refusal {
         Self::new(file, path, FoundValue::NOTHING, "")
     }
 
-    /// The same refusal of another kind.
+    /// Makes it a refusal of another kind.
     #[must_use]
     pub fn because(self, kind: RefusalKind) -> Self {
         Self { kind, ..self }

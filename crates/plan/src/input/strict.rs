@@ -351,7 +351,7 @@ fn whole(x: f64) -> Option<i64> {
     (x.fract() == 0.0 && x.abs() < 9.0e15).then_some(x as i64)
 }
 
-/// The same value with whole numbers written as whole numbers (`3.0` as `3`, `-0.0` as `0`), so that equal values have
+/// A value with whole numbers written as whole numbers (`3.0` as `3`, `-0.0` as `0`), so that equal values have
 /// equal texts.
 pub(crate) fn canonical(value: &Value) -> Value {
     match value {

@@ -76,7 +76,7 @@ impl Trouble {
         self
     }
 
-    /// The same of a key whose name is none of those that are known.
+    /// Makes it the trouble of a key whose name is none of those that are known.
     pub(super) fn of_key(self, key: &str) -> Self {
         Self {
             kind: RefusalKind::UnknownKey,

@@ -19,7 +19,7 @@ pub fn typed<T: DeserializeOwned>(file: &Path, prefix: &str, document: &Document
     T::deserialize(&mut CanonicalReader::new(document.text())).map_err(|trouble| trouble.refusal(file, prefix))
 }
 
-/// The same of a tree.
+/// Reads a tree of values as a type.
 ///
 /// # Errors
 /// As above.

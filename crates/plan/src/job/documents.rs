@@ -55,7 +55,7 @@ pub struct AnalysisEntry {
     pub id: usize,
     /// The analysis.
     pub analysis: Analysis,
-    /// The same as a document, defaults filled in.
+    /// The analysis as a document, defaults filled in.
     pub document: Value,
     /// Equal for analyses that are equal, whatever study they are of.
     pub key: Arc<str>,

@@ -135,7 +135,7 @@ impl Analysis {
         }
     }
 
-    /// The same as a study file would write it, every default written out.
+    /// The analysis as a study file would write it, every default written out.
     pub fn written(&self) -> AnalysisSpec {
         let nothing = AnalysisSpec {
             kind: self.kind(),

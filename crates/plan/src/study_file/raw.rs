@@ -84,7 +84,7 @@ impl HistoriesSpec {
         !(self.positions.is_empty() && self.joints.is_empty())
     }
 
-    /// The same as the mechanics takes it.
+    /// What is recorded, as the mechanics takes it.
     pub fn record(&self) -> Record {
         Record {
             positions: self.positions.clone(),

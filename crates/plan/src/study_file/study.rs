@@ -55,7 +55,7 @@ pub struct Study {
     pub vehicle: VehicleDesign,
     /// Its analysis before axes.
     pub analysis: Analysis,
-    /// The same as it is written, which is what axes change: a default is one of the kind and solver that they leave.
+    /// The analysis as it is written, which is what axes change: a default is one of the kind and solver that they leave.
     pub(crate) analysis_written: AnalysisSpec,
     /// What to keep of each job beyond its peaks.
     pub record: RecordSpec,

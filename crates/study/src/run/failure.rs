@@ -25,7 +25,7 @@ impl JobFailure {
         Failure::new(FailureKind::ProgramError, format!("program error: {what}")).into()
     }
 
-    /// The same failure with words before and behind its own.
+    /// Puts words before and behind its own.
     pub(super) fn said(self, before: &str, behind: &str) -> Self {
         Self {
             failure: self.failure.said(before, behind),

@@ -39,7 +39,7 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// The same, new records going to a writer.
+    /// Lets new records go to a writer.
     #[must_use]
     pub fn written_by(mut self, writer: &'a JournalWriter) -> Self {
         self.writer = Some(writer);

@@ -10,7 +10,7 @@ pub fn ended_now(how: &str) -> SessionEnd {
     ending(how.to_owned(), 0.0, 0.0)
 }
 
-/// The same with what it took.
+/// A process that comes to its own end now, how, and what it took.
 pub(super) fn ending(how: String, offline_s: f64, jobs_s: f64) -> SessionEnd {
     SessionEnd {
         finished: Moment::now().text(),

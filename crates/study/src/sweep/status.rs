@@ -20,13 +20,13 @@ use std::path::{Path, PathBuf};
 pub struct Standings {
     /// Each folder.
     pub folders: Vec<(PathBuf, Standing)>,
-    /// Sums over the folders: jobs asked for, recorded, failed, missing.
+    /// Jobs asked for, in all folders.
     pub jobs: usize,
-    /// See `jobs`.
+    /// Jobs recorded.
     pub done: usize,
-    /// See `jobs`.
+    /// Jobs that failed.
     pub failed: usize,
-    /// See `jobs`.
+    /// Jobs that are missing.
     pub missing: usize,
     /// Shares of which no folder was given; empty where none is a share.
     pub shards_missing: Vec<String>,

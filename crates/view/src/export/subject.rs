@@ -23,7 +23,7 @@ const MODES: usize = 20;
 pub(super) struct Subject {
     /// The bridge file or the folder of results.
     pub source: PathBuf,
-    /// The same in words.
+    /// The source in words.
     pub words: Value,
     /// The bridge.
     pub design: BridgeDesign,

@@ -160,7 +160,8 @@ fn exchange(new: &Path, old: &Path) -> io::Result<()> {
     take_turns(new, old)
 }
 
-/// The same in three steps. Who dies between them leaves the old folder under a name by which [`remove_dead`] finds it.
+/// Two folders take each other's place in three steps. Who dies between them leaves the old folder under a name by which
+/// [`remove_dead`] finds it.
 fn take_turns(new: &Path, old: &Path) -> io::Result<()> {
     // held as long as the steps last, so that nobody takes the old folder for a dead one's
     let lock = File::open(old)?;

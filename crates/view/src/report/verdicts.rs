@@ -30,7 +30,7 @@ pub struct VerdictLine {
     pub role: Role,
     /// What became of it.
     pub verdict: Verdict,
-    /// The same in words.
+    /// The verdict in words.
     pub word: &'static str,
     /// How that is to be taken.
     pub tone: Tone,
