@@ -9,7 +9,7 @@ use pontoon_results::{
     Failure, FailureKind, JobRecord, Manifest, ModeRow, Moment, Outcome, Results, Table, TableName, TableProvenance,
     TableWriter,
 };
-use pontoon_study::run::{Batch, Setting, Silent, Stop, run};
+use pontoon_study::run::{Batch, CancelToken, Setting, Silent, run};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -57,7 +57,7 @@ fn records(study: &Study, jobs: &[Job]) -> (Vec<JobRecord>, Outcome) {
         study,
         jobs,
         Setting::default(),
-        &Stop::default(),
+        &CancelToken::default(),
         &Silent,
         Some(&mut sink),
     )
@@ -217,7 +217,7 @@ fn batches_on_one_and_three_threads_write_the_same_bytes() {
                 batch,
                 ..Setting::default()
             },
-            &Stop::default(),
+            &CancelToken::default(),
             &Silent,
             Some(&mut sink),
         )

@@ -4,7 +4,7 @@
 
 use crate::words;
 use pontoon_journal::JournalWriter;
-use pontoon_study::run::{Stop, Tally, Why};
+use pontoon_study::run::{CancelToken, Tally, Why};
 use pontoon_study::sweep::ended_now;
 use std::process::exit;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -16,7 +16,7 @@ const INTERRUPTED: i32 = 130;
 #[derive(Debug, Default)]
 pub(crate) struct Signals {
     /// The run is to stop.
-    pub stop: Stop,
+    pub stop: CancelToken,
     journal: Mutex<Weak<JournalWriter>>,
     tally: Mutex<Option<Tally>>,
 }

@@ -1,11 +1,11 @@
 //! A batch of jobs to its records, on the current pool.
 //!
-//! Knows how jobs become records: crossings by the operator in crews that share its lanes, everything else one by one. Does
+//! Knows how jobs become records: crossings by the operator in batches that share its lanes, everything else one by one. Does
 //! not know how a study is cut into batches nor what becomes of the records.
 
-use super::bench::Bench;
-use super::crossing::Solved;
+use super::crossing::JobResult;
 use super::failure::JobFailure;
+use super::shared_models::SharedModels;
 use super::{crossing, guard, modes, statics, verify};
 use pontoon_core::response::Record;
 use pontoon_journal::LONGEST;
@@ -15,14 +15,14 @@ use pontoon_results::{Failure, FailureKind, JobRecord};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Most crossings of a crew: eight for each of four lanes, so that few lanes stand empty when the last ones end.
-const CREW: usize = 32;
+/// Most crossings of a lane batch: eight for each of four lanes, so that few lanes stand empty when the last ones end.
+const LANE_BATCH: usize = 32;
 
-/// Crews that a thread should find, where there are jobs enough.
-const CREWS_A_THREAD: usize = 4;
+/// Lane batches that a thread should find, where there are jobs enough.
+const LANE_BATCHES_A_THREAD: usize = 4;
 
 /// What is told of jobs as they begin and end, from any thread and in any order.
-pub(super) trait Told: Sync {
+pub(super) trait JobObserver: Sync {
     /// Jobs are about to be solved together; whether they may.
     fn begin(&self, jobs: &[&Job]) -> bool;
     /// Their records are there.
@@ -30,9 +30,9 @@ pub(super) trait Told: Sync {
 }
 
 /// Nobody is told.
-pub(super) struct Untold;
+pub(super) struct NoObserver;
 
-impl Told for Untold {
+impl JobObserver for NoObserver {
     fn begin(&self, _: &[&Job]) -> bool {
         true
     }
@@ -42,93 +42,103 @@ impl Told for Untold {
 /// Solves jobs of several studies: a record for each job in their order, a failed job being a record too; none of jobs that
 /// might not begin. The records depend on the jobs alone, not on those beside them nor on the pool. Jobs go `apart` where
 /// none may share its process's fate with another.
-pub(super) fn solve(jobs: &[(&Study, &Job)], apart: bool, bench: &Bench, told: &dyn Told) -> Vec<JobRecord> {
-    let crews = crews(jobs, if apart { 1 } else { CREW });
-    let solved = crews.into_par_iter().with_max_len(1).flat_map_iter(|crew| {
-        let of_crew: Vec<&Job> = crew.iter().map(|&place| jobs[place].1).collect();
-        let records = if told.begin(&of_crew) {
-            let records = records(jobs, &crew, bench);
-            told.end(&of_crew, &records);
-            records
-        } else {
-            Vec::new()
-        };
-        crew.into_iter().zip(records).collect::<Vec<_>>()
-    });
+pub(super) fn solve(
+    jobs: &[(&Study, &Job)],
+    apart: bool,
+    models: &SharedModels,
+    told: &dyn JobObserver,
+) -> Vec<JobRecord> {
+    let lane_batches = lane_batches(jobs, if apart { 1 } else { LANE_BATCH });
+    let solved = lane_batches
+        .into_par_iter()
+        .with_max_len(1)
+        .flat_map_iter(|lane_batch| {
+            let of_batch: Vec<&Job> = lane_batch.iter().map(|&place| jobs[place].1).collect();
+            let records = if told.begin(&of_batch) {
+                let records = records(jobs, &lane_batch, models);
+                told.end(&of_batch, &records);
+                records
+            } else {
+                Vec::new()
+            };
+            lane_batch.into_iter().zip(records).collect::<Vec<_>>()
+        });
     let mut solved: Vec<(usize, JobRecord)> = solved.collect();
     solved.sort_by_key(|(place, _)| *place);
     solved.into_iter().map(|(_, record)| record).collect()
 }
 
-/// Places of jobs that are solved together: crossings that share a solver, the long ones first so that the lanes of a crew
+/// Places of jobs that are solved together: crossings that share a solver, the long ones first so that the lanes of a batch
 /// end together; any other job by itself.
-fn crews(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
-    let mut crews = Vec::new();
+fn lane_batches(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
+    let mut lane_batches = Vec::new();
     let mut operated: BTreeMap<_, Vec<usize>> = BTreeMap::new();
     for (place, (_, job)) in jobs.iter().enumerate() {
         let crossing = job.as_crossing();
-        match crossing.as_ref().and_then(Bench::crew_key) {
+        match crossing.as_ref().and_then(SharedModels::lane_batch_key) {
             Some(key) => operated.entry(key).or_default().push(place),
-            None => crews.push(vec![place]),
+            None => lane_batches.push(vec![place]),
         }
     }
     for mut places in operated.into_values() {
         places.sort_by_key(|&place| std::cmp::Reverse(jobs[place].1.steps()));
-        let most = places.len().div_ceil(CREWS_A_THREAD * rayon::current_num_threads());
-        crews.extend(places.chunks(most.clamp(1, largest)).map(<[usize]>::to_vec));
+        let most = places
+            .len()
+            .div_ceil(LANE_BATCHES_A_THREAD * rayon::current_num_threads());
+        lane_batches.extend(places.chunks(most.clamp(1, largest)).map(<[usize]>::to_vec));
     }
-    crews
+    lane_batches
 }
 
 /// The records of the jobs at some places: crossings by the operator that share a solver, or one job of another kind.
-fn records(jobs: &[(&Study, &Job)], places: &[usize], bench: &Bench) -> Vec<JobRecord> {
+fn records(jobs: &[(&Study, &Job)], places: &[usize], models: &SharedModels) -> Vec<JobRecord> {
     let of: Vec<(&Study, &Job)> = places.iter().map(|&place| jobs[place]).collect();
-    let crew: Vec<(CrossingJob<'_>, Record)> = of
+    let lane_batch: Vec<(CrossingJob<'_>, Record)> = of
         .iter()
         .filter(|(_, job)| job.by_operator())
         .filter_map(|(study, job)| Some((job.as_crossing()?, histories(study))))
         .collect();
-    let solved: Vec<Solved> = if crew.len() == of.len() {
-        by_operator(&crew, bench)
+    let solved: Vec<JobResult> = if lane_batch.len() == of.len() {
+        by_operator(&lane_batch, models)
     } else {
         of.iter()
-            .map(|(study, job)| guard::guarded(|| alone(study, job, bench)))
+            .map(|(study, job)| guard::guarded(|| alone(study, job, models)))
             .collect()
     };
-    let finish = |((study, job), solved): (&(&Study, &Job), Solved)| finished(study, job, solved, bench);
+    let finish = |((study, job), solved): (&(&Study, &Job), JobResult)| finished(study, job, solved, models);
     of.iter().zip(solved).map(finish).collect()
 }
 
 /// Crossings that share a solver.
-fn by_operator(crew: &[(CrossingJob<'_>, Record)], bench: &Bench) -> Vec<Solved> {
-    let together = guard::guarded(|| Ok(crossing::solve_crew(crew, bench)));
+fn by_operator(lane_batch: &[(CrossingJob<'_>, Record)], models: &SharedModels) -> Vec<JobResult> {
+    let together = guard::guarded(|| Ok(crossing::solve_lane_batch(lane_batch, models)));
     // a panic is the failure of the job that it came from alone
     together.unwrap_or_else(|_| {
         let alone = |job: &(CrossingJob<'_>, Record)| {
             guard::guarded(|| {
-                let mut solved = crossing::solve_crew(std::slice::from_ref(job), bench);
+                let mut solved = crossing::solve_lane_batch(std::slice::from_ref(job), models);
                 solved.pop().unwrap_or_else(|| Err(JobFailure::of_program("no record")))
             })
         };
-        crew.iter().map(alone).collect()
+        lane_batch.iter().map(alone).collect()
     })
 }
 
 /// A job that shares nothing of its solution with others.
-fn alone(study: &Study, job: &Job, bench: &Bench) -> Solved {
+fn alone(study: &Study, job: &Job, models: &SharedModels) -> JobResult {
     match (job.task, job.as_crossing(), job.as_modes()) {
-        (Task::Crossing { .. }, Some(crossing), _) => crossing::solve(&crossing, histories(study), bench),
-        (Task::Static(load), ..) => statics::solve(job, load, bench),
-        (Task::Modes, _, Some(asked)) => modes::solve(job, asked, bench),
+        (Task::Crossing { .. }, Some(crossing), _) => crossing::solve(&crossing, histories(study), models),
+        (Task::Static(load), ..) => statics::solve(job, load, models),
+        (Task::Modes, _, Some(asked)) => modes::solve(job, asked, models),
         _ => Err(JobFailure::of_program("a task of another analysis")),
     }
 }
 
 /// The record of a job: solved once more where that may help, judged, without rows that no table will hold.
-fn finished(study: &Study, job: &Job, solved: Solved, bench: &Bench) -> JobRecord {
+fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) -> JobRecord {
     let solved = match (solved, job.as_crossing()) {
         (Err(failed), Some(crossing)) if failed.half_step_may_help => {
-            guard::guarded(|| crossing::again_at_half_step(&crossing, histories(study), bench, &failed))
+            guard::guarded(|| crossing::again_at_half_step(&crossing, histories(study), models, &failed))
         }
         (solved, _) => solved,
     };
@@ -139,7 +149,7 @@ fn finished(study: &Study, job: &Job, solved: Solved, bench: &Bench) -> JobRecor
         let failure = Failure::new(FailureKind::HistoriesTooLong, text).with("bytes", bytes as f64);
         record = JobRecord::failed(job, failure);
     }
-    verify::judge(job, &mut record, bench);
+    verify::judge(job, &mut record, models);
     // not kept until their batch is written
     if !study.record.positions {
         record.positions = Vec::new();

@@ -25,7 +25,7 @@ pub struct Cache {
 
 /// What came of a look into the cache.
 #[derive(Debug)]
-pub(super) enum Found {
+pub(super) enum CacheLookup {
     /// The operator.
     Whole(Box<BridgeOperator>),
     /// No file of that name.
@@ -67,19 +67,19 @@ impl Cache {
     }
 
     /// The operator of a name.
-    pub(super) fn read(&self, name: &str, bridge: &Bridge) -> Found {
+    pub(super) fn read(&self, name: &str, bridge: &Bridge) -> CacheLookup {
         let path = self.path(name);
         let Ok(bytes) = fs::read(&path) else {
-            return Found::Nothing;
+            return CacheLookup::Nothing;
         };
         match decode(name, &bytes).and_then(|parts| BridgeOperator::from_parts(bridge, &parts)) {
             Some(operator) => {
                 // used now; where that cannot be noted, it goes earlier than it might
                 let now = fs::File::options().append(true).open(&path);
                 let _ = now.and_then(|file| file.set_modified(std::time::SystemTime::now()));
-                Found::Whole(Box::new(operator))
+                CacheLookup::Whole(Box::new(operator))
             }
-            None => Found::Refused,
+            None => CacheLookup::Refused,
         }
     }
 

@@ -3,8 +3,8 @@
 //! Knows which number of a response fills which field of a record, and when a time step has been halved enough. Does not know
 //! columns, or how a crossing is stepped.
 
-use super::bench::Bench;
 use super::failure::JobFailure;
+use super::shared_models::SharedModels;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::response::{CrossingResponse, ForcePeaks, JointPeaks, Peak, PositionPeaks, Quantity, Record};
@@ -13,52 +13,52 @@ use pontoon_plan::job::{CrossingJob, Job};
 use pontoon_results::{ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// A job's record or why it failed.
-pub(super) type Solved = Result<JobRecord, JobFailure>;
+pub(super) type JobResult = Result<JobRecord, JobFailure>;
 
 /// Solves a crossing by the reference solver.
-pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, bench: &Bench) -> Solved {
-    let solver = bench.crossing(crossing)?;
+pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, models: &SharedModels) -> JobResult {
+    let solver = models.crossing(crossing)?;
     let response = solver.solve(crossing.vehicle(), &crossing.input(record))?;
-    recorded(crossing.job, response, bench)
+    recorded(crossing.job, response, models)
 }
 
 /// Solves a crossing that failed once more at half its time step.
 pub(super) fn again_at_half_step(
     crossing: &CrossingJob<'_>,
     record: Record,
-    bench: &Bench,
+    models: &SharedModels,
     failed: &JobFailure,
-) -> Solved {
+) -> JobResult {
     let (vehicle, input) = (crossing.vehicle(), crossing.input(record));
     let again = if crossing.operator_tolerance().is_some() {
-        let mut answers = bench.operated(crossing)?.solve_all(&[(vehicle, &input)], 1);
+        let mut answers = models.operated(crossing)?.solve_all(&[(vehicle, &input)], 1);
         answers.pop().ok_or_else(|| JobFailure::of_program("no answer"))?
     } else {
-        bench.crossing_at_half_step(crossing)?.solve(vehicle, &input)
+        models.crossing_at_half_step(crossing)?.solve(vehicle, &input)
     };
     let again = again.map_err(|error| {
         let behind = format!("; at half the time step: {error}");
         JobFailure::from(failed.failure.clone().said("", &behind))
     })?;
-    let mut record = recorded(crossing.job, again, bench)?;
+    let mut record = recorded(crossing.job, again, models)?;
     record.retried = Some(failed.failure.clone());
     Ok(record)
 }
 
 /// Solves crossings that share a solver by the operator.
-pub(super) fn solve_crew(crew: &[(CrossingJob<'_>, Record)], bench: &Bench) -> Vec<Solved> {
-    let Some((first, _)) = crew.first() else {
+pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models: &SharedModels) -> Vec<JobResult> {
+    let Some((first, _)) = lane_batch.first() else {
         return Vec::new();
     };
-    let solver = match bench.operated(first) {
+    let solver = match models.operated(first) {
         Ok(solver) => solver,
-        Err(failure) => return crew.iter().map(|_| Err(failure.clone())).collect(),
+        Err(failure) => return lane_batch.iter().map(|_| Err(failure.clone())).collect(),
     };
-    let inputs: Vec<Crossing> = crew
+    let inputs: Vec<Crossing> = lane_batch
         .iter()
         .map(|(crossing, record)| crossing.input(record.clone()))
         .collect();
-    let asked: Vec<(&Vehicle, &Crossing)> = crew
+    let asked: Vec<(&Vehicle, &Crossing)> = lane_batch
         .iter()
         .zip(&inputs)
         .map(|((crossing, _), input)| (crossing.vehicle(), input))
@@ -70,17 +70,17 @@ pub(super) fn solve_crew(crew: &[(CrossingJob<'_>, Record)], bench: &Bench) -> V
             solver.solve_all(&asked, 0).into_iter().map(plain).collect()
         }
     };
-    let record = |((crossing, _), answer): (&(CrossingJob<'_>, Record), Result<Answer, JobFailure>)| {
+    let record = |((crossing, _), answer): (&(CrossingJob<'_>, Record), Result<SteppedResponse, JobFailure>)| {
         let (response, time_step_s) = answer?;
-        let mut record = recorded(crossing.job, response, bench)?;
+        let mut record = recorded(crossing.job, response, models)?;
         record.summary.time_step_s = time_step_s;
         Ok(record)
     };
-    crew.iter().zip(answers).map(record).collect()
+    lane_batch.iter().zip(answers).map(record).collect()
 }
 
 /// A response and the time step that the program has found for it.
-type Answer = (CrossingResponse, Option<f64>);
+type SteppedResponse = (CrossingResponse, Option<f64>);
 
 /// Solves crossings at half the time step again and again, each until its peak force has settled: the last halving changed
 /// it by no more than half the tolerance and the one before by no more than the tolerance. One small change alone may be
@@ -89,8 +89,8 @@ fn refined(
     solver: &OperatorSolver,
     asked: &[(&Vehicle, &Crossing)],
     tolerance: f64,
-) -> Vec<Result<Answer, JobFailure>> {
-    let mut answers: Vec<Option<Result<Answer, JobFailure>>> = vec![None; asked.len()];
+) -> Vec<Result<SteppedResponse, JobFailure>> {
+    let mut answers: Vec<Option<Result<SteppedResponse, JobFailure>>> = vec![None; asked.len()];
     // peak force at the last step and by how much it had changed there
     let mut before = vec![(f64::NAN, f64::NAN); asked.len()];
     let mut open: Vec<usize> = (0..asked.len()).collect();
@@ -149,8 +149,8 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
     of_joint.fold(0.0, f64::max)
 }
 
-fn recorded(job: &Job, response: CrossingResponse, bench: &Bench) -> Solved {
-    let static_peaks_m = bench.creeping_peaks_m(job)?;
+fn recorded(job: &Job, response: CrossingResponse, models: &SharedModels) -> JobResult {
+    let static_peaks_m = models.creeping_peaks_m(job)?;
     Ok(rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice)))
 }
 

@@ -2,9 +2,9 @@
 //!
 //! Knows who ended it. Does not know exit statuses.
 
+use super::cancel::Why;
 use super::pool::PoolError;
 use super::progress::Tally;
-use super::stop::Why;
 use pontoon_journal::JournalError;
 use std::error::Error as StdError;
 use thiserror::Error;

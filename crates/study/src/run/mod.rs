@@ -2,60 +2,60 @@
 //!
 //! | module | charter |
 //! |---|---|
-//! | `bench`, `cache` | what jobs share, prepared once; operators on disk |
+//! | `shared_models`, `cache` | what jobs share, prepared once; operators on disk |
 //! | `cut`, `batch`, `pool` | which jobs are solved together, and on which threads |
 //! | `crossing`, `statics`, `modes`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
-//! | `verify`, `canary` | the reference solver as judge; a crossing whose answer is known |
+//! | `verify`, `self_test` | the reference solver as judge; a crossing whose answer is known |
 //! | `failure`, `guard` | an error of the mechanics as the failure that a record keeps; panics made failures |
-//! | `ledger` | records in the journal, and back |
-//! | `watch`, `progress`, `stop`, `probe` | who is told, who may stop it, how long it will take |
+//! | `resume_index` | records in the journal, and back |
+//! | `monitor`, `progress`, `cancel`, `probe` | who is told, who may stop it, how long it will take |
 //! | `error` | why a run did not come to its end |
 //!
 //! Knows threads and the clock. Does not know files of results: a record holds all rows of its job, whatever becomes of it,
 //! and is handed on as soon as its batch is solved.
 
 mod batch;
-mod bench;
 mod cache;
-pub mod canary;
+mod cancel;
 mod crossing;
 mod cut;
 mod error;
 mod failure;
 mod guard;
-mod ledger;
 mod modes;
+mod monitor;
 mod pool;
 mod probe;
 mod progress;
+mod resume_index;
 mod retry;
+pub mod self_test;
+mod shared_models;
 mod statics;
-mod stop;
 mod verify;
-mod watch;
 
-pub use bench::PreparedModules;
 pub use cache::Cache;
-pub use canary::CanaryError;
+pub use cancel::{CancelToken, Why};
 pub use cut::Batch;
 pub use error::RunError;
-pub use ledger::Ledger;
-pub(crate) use ledger::record_key;
 pub use pool::{PoolError, on_threads};
 pub use probe::{Measured, measure};
 pub use progress::{Progress, Silent, Tally};
+pub use resume_index::ResumeIndex;
+pub(crate) use resume_index::record_key;
 pub use retry::{RETRY_STEP_SHARE, half_step_may_help};
-pub use stop::{Stop, Why};
+pub use self_test::SelfTestError;
+pub use shared_models::PreparedModules;
 
-use batch::Untold;
-use bench::Bench;
+use batch::NoObserver;
+use monitor::Monitor;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
 use pontoon_results::{Failure, Failures, JobRecord, Outcome, Verification};
+use shared_models::SharedModels;
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::time::Instant;
-use watch::Watch;
 
 /// The instructions that crossings by the operator run on here.
 pub fn instruction_path() -> &'static str {
@@ -72,7 +72,7 @@ pub struct Setting<'a> {
     /// Where operators are kept from run to run; none: nowhere.
     pub cache: Option<Cache>,
     /// What is recorded of the jobs, and where new records go; none: nothing and nowhere.
-    pub ledger: Option<Ledger<'a>>,
+    pub resume_index: Option<ResumeIndex<'a>>,
     /// Jobs are solved one by one, so that it is known which of them a process dies with.
     pub apart: bool,
     /// Failed jobs beyond which the run stops; none: it goes on.
@@ -96,34 +96,34 @@ pub fn run<E: StdError + Send + 'static>(
     study: &Study,
     jobs: &[Job],
     setting: Setting<'_>,
-    stop: &Stop,
+    cancel: &CancelToken,
     progress: &dyn Progress,
     mut sink: Option<&mut Sink<'_, E>>,
 ) -> Result<Outcome, RunError<E>> {
     let threads = setting.threads;
     on_threads(threads, || {
         let start = Instant::now();
-        let watch = Watch::new(jobs.len(), &setting, stop, progress);
+        let monitor = Monitor::new(jobs.len(), &setting, cancel, progress);
         let missing: Vec<&Job> = (0..)
             .zip(jobs)
-            .filter(|(at, _)| !watch.knows(*at))
+            .filter(|(at, _)| !monitor.knows(*at))
             .map(|(_, job)| job)
             .collect();
-        let bench = Bench::prepare(
+        let models = SharedModels::prepare(
             &missing,
             &PreparedModules::default(),
             setting.cache.as_ref(),
-            stop,
+            cancel,
             progress,
         );
-        let preparation = bench.preparation(&missing);
+        let preparation = models.preparation(&missing);
         let offline_s = start.elapsed().as_secs_f64();
         if !missing.is_empty() {
-            watch.prepared(&preparation);
+            monitor.prepared(&preparation);
         }
         drop(missing);
         progress.stage("running jobs");
-        watch.begin_counting();
+        monitor.begin_counting();
         let (mut failures, mut verification) = (Failures::default(), Verification::default());
         let has_sink = sink.is_some();
         let (mut batches, mut solved, mut from) = (cut::cut(study, jobs, setting.batch), None, 0);
@@ -131,10 +131,10 @@ pub fn run<E: StdError + Send + 'static>(
             let (batch, before) = (batches.next(), solved.take());
             let (records, taken) = rayon::join(
                 || {
-                    let batch = batch.filter(|_| !stop.is_asked())?;
-                    let records = solve_missing(study, batch, from, &bench, &watch);
+                    let batch = batch.filter(|_| !cancel.is_asked())?;
+                    let records = solve_missing(study, batch, from, &models, &monitor);
                     Some(if has_sink {
-                        watch.with_known(batch, from, records)
+                        monitor.with_known(batch, from, records)
                     } else {
                         Ok(records)
                     })
@@ -145,7 +145,7 @@ pub fn run<E: StdError + Send + 'static>(
                 },
             );
             taken.map_err(RunError::Sink)?;
-            watch.outcome()?;
+            monitor.outcome()?;
             let Some(records) = records else { break };
             let records = records?;
             from += batch.map_or(0, <[Job]>::len);
@@ -153,14 +153,14 @@ pub fn run<E: StdError + Send + 'static>(
             verification.take(&records);
             solved = Some(records);
         }
-        watch.outcome()?;
+        monitor.outcome()?;
         if !has_sink {
             // nobody has read the records that were there before
-            failures.count += watch.failed_before();
+            failures.count += monitor.failed_before();
         }
         Ok(Outcome {
             jobs: jobs.len(),
-            ran: watch.ran(),
+            ran: monitor.ran(),
             failures,
             verification,
             preparation,
@@ -172,15 +172,21 @@ pub fn run<E: StdError + Send + 'static>(
 }
 
 /// Solves the jobs of a batch that are not recorded; the batch begins `from`.
-fn solve_missing(study: &Study, batch: &[Job], from: usize, bench: &Bench, watch: &Watch<'_>) -> Vec<JobRecord> {
-    let missing = (from..).zip(batch).filter(|(at, _)| !watch.knows(*at));
+fn solve_missing(
+    study: &Study,
+    batch: &[Job],
+    from: usize,
+    models: &SharedModels,
+    monitor: &Monitor<'_>,
+) -> Vec<JobRecord> {
+    let missing = (from..).zip(batch).filter(|(at, _)| !monitor.knows(*at));
     let (over, missing): (Vec<&Job>, Vec<&Job>) = missing
         .map(|(_, job)| job)
-        .partition(|job| watch.passes_over(job).is_some());
+        .partition(|job| monitor.passes_over(job).is_some());
     let missing: Vec<(&Study, &Job)> = missing.into_iter().map(|job| (study, job)).collect();
-    let mut records = batch::solve(&missing, watch.apart, bench, watch);
-    if !over.is_empty() && !watch.is_stopped() {
-        records.extend(watch.pass_over(&over));
+    let mut records = batch::solve(&missing, monitor.apart, models, monitor);
+    if !over.is_empty() && !monitor.is_stopped() {
+        records.extend(monitor.pass_over(&over));
         records.sort_by_key(|record| record.job);
     }
     records
@@ -190,11 +196,11 @@ fn solve_missing(study: &Study, batch: &[Job], from: usize, bench: &Bench, watch
 /// `known` are not prepared again. Leaves a record for each job in their order, and the modules.
 pub fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<JobRecord>, Prepared) {
     let alone: Vec<&Job> = jobs.iter().map(|(_, job)| *job).collect();
-    let bench = Bench::prepare(&alone, known, None, &Stop::default(), &Silent);
-    let records = batch::solve(jobs, false, &bench, &Untold);
+    let models = SharedModels::prepare(&alone, known, None, &CancelToken::default(), &Silent);
+    let records = batch::solve(jobs, false, &models, &NoObserver);
     let prepared = Prepared {
-        modules: bench.modules(),
-        condensations: bench.condensations(),
+        modules: models.modules(),
+        condensations: models.condensations(),
     };
     (records, prepared)
 }
@@ -212,13 +218,19 @@ pub fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: imp
             study
         });
     }
-    let bench = Bench::prepare(jobs, &PreparedModules::default(), cache, &Stop::default(), &Silent);
+    let models = SharedModels::prepare(
+        jobs,
+        &PreparedModules::default(),
+        cache,
+        &CancelToken::default(),
+        &Silent,
+    );
     for some in jobs.chunks(REPLAYED_TOGETHER) {
         let pairs: Vec<(&Study, &Job)> = some
             .iter()
             .filter_map(|job| Some((whole.get(&job.bridge.design.modules)?, *job)))
             .collect();
-        for (job, record) in some.iter().zip(batch::solve(&pairs, false, &bench, &Untold)) {
+        for (job, record) in some.iter().zip(batch::solve(&pairs, false, &models, &NoObserver)) {
             take(job, record);
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! Knows which mode fills which row. Does not know columns, or how modes are found.
 
-use super::bench::Bench;
 use super::failure::JobFailure;
+use super::shared_models::SharedModels;
 use crate::modes::rows;
 use pontoon_core::bridge::Ends;
 use pontoon_plan::job::Job;
@@ -11,12 +11,12 @@ use pontoon_plan::study_file::ModesAnalysis;
 use pontoon_results::{HistoryRows, JobRecord, Summary};
 
 /// Finds the modes of a job.
-pub(super) fn solve(job: &Job, asked: &ModesAnalysis, bench: &Bench) -> Result<JobRecord, JobFailure> {
+pub(super) fn solve(job: &Job, asked: &ModesAnalysis, models: &SharedModels) -> Result<JobRecord, JobFailure> {
     let ends = if asked.supports { Ends::Supported } else { Ends::Free };
-    let bridge = bench.bridge(job, ends)?;
+    let bridge = models.bridge(job, ends)?;
     let modes = rows(&bridge, asked.count)?;
     let summary = Summary {
-        structural_mass_kg: Some(bench.module_of(job)?.structural_mass_kg()),
+        structural_mass_kg: Some(models.module_of(job)?.structural_mass_kg()),
         ..Summary::default()
     };
     Ok(JobRecord {

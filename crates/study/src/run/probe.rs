@@ -3,11 +3,11 @@
 //! Knows the clock. Leaves no record: whatever becomes of the jobs, they run again when the study does.
 
 use super::PreparedModules;
-use super::batch::{Untold, solve};
-use super::bench::Bench;
+use super::batch::{NoObserver, solve};
 use super::cache::Cache;
+use super::cancel::CancelToken;
 use super::progress::Silent;
-use super::stop::Stop;
+use super::shared_models::SharedModels;
 use pontoon_plan::job::{Job, module_steps};
 use pontoon_plan::study_file::Study;
 use std::time::Instant;
@@ -35,21 +35,21 @@ pub struct Measured {
 /// thread. None where they are too long, or fail.
 pub fn measure(study: &Study, jobs: &[Job], cache: Option<&Cache>) -> Option<Measured> {
     let first = jobs.first()?;
-    let crew = |job: &Job| job.as_crossing().as_ref().and_then(Bench::crew_key);
-    let alike = |job: &&Job| crew(job) == crew(first);
+    let lane_batch = |job: &Job| job.as_crossing().as_ref().and_then(SharedModels::lane_batch_key);
+    let alike = |job: &&Job| lane_batch(job) == lane_batch(first);
     let mut tried: Vec<&Job> = jobs.iter().filter(alike).collect();
     tried.sort_by_key(|job| job.steps());
     tried.truncate(if first.by_operator() { TRIED } else { 1 });
     if tried.iter().any(|job| job.steps() > MOST_STEPS) {
         return None;
     }
-    let (stop, start) = (Stop::default(), Instant::now());
-    let bench = Bench::prepare(&tried, &PreparedModules::default(), cache, &stop, &Silent);
+    let (cancel, start) = (CancelToken::default(), Instant::now());
+    let models = SharedModels::prepare(&tried, &PreparedModules::default(), cache, &cancel, &Silent);
     let bridge_s = start.elapsed().as_secs_f64();
     let list: Vec<(&Study, &Job)> = tried.iter().map(|job| (study, *job)).collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()?;
     let start = Instant::now();
-    let records = pool.install(|| solve(&list, false, &bench, &Untold));
+    let records = pool.install(|| solve(&list, false, &models, &NoObserver));
     let job_s = start.elapsed().as_secs_f64() / tried.len() as f64;
     let failed = records.iter().any(|record| record.failure.is_some());
     (!failed).then(|| Measured {

@@ -2,15 +2,15 @@
 //!
 //! Knows which number of a response fills which field of a record. Does not know columns, or how a case is solved.
 
-use super::bench::{Bench, static_case};
 use super::failure::JobFailure;
+use super::shared_models::{SharedModels, static_case};
 use pontoon_core::response::StaticResponse;
 use pontoon_plan::job::{Job, StandingLoad};
 use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// Solves the static case of a job.
-pub(super) fn solve(job: &Job, load: StandingLoad, bench: &Bench) -> Result<JobRecord, JobFailure> {
-    let response = bench
+pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
+    let response = models
         .statics(job)?
         .solve(&job.vehicle.vehicle, &static_case(job, load.x_m))?;
     Ok(rows(job, &response))

@@ -48,7 +48,7 @@ fn batches(setting: Setting<'_>, (study, jobs): &(Study, Vec<Job>)) -> Vec<Vec<J
         taken.push(records);
         Ok::<(), std::io::Error>(())
     };
-    let outcome = run(study, jobs, setting, &Stop::default(), &Silent, Some(&mut sink)).unwrap();
+    let outcome = run(study, jobs, setting, &CancelToken::default(), &Silent, Some(&mut sink)).unwrap();
     assert_eq!((outcome.jobs, outcome.failures.count), (jobs.len(), 0));
     taken
 }
@@ -67,9 +67,9 @@ fn records_depend_neither_on_batches_nor_on_threads() {
 
 /// Tallies told.
 #[derive(Default)]
-struct Told(Mutex<Vec<usize>>);
+struct RecordedTallies(Mutex<Vec<usize>>);
 
-impl Progress for Told {
+impl Progress for RecordedTallies {
     fn stage(&self, _: &str) {}
     fn jobs(&self, tally: Tally) {
         self.0.lock().unwrap().push(tally.done);
@@ -80,7 +80,7 @@ impl Progress for Told {
 fn a_sink_that_fails_ends_the_run() {
     let (study, jobs) = seven();
     for threads in [1, 3] {
-        let (told, mut calls) = (Told::default(), 0);
+        let (told, mut calls) = (RecordedTallies::default(), 0);
         let mut sink = |_| {
             calls += 1;
             if calls == 2 {
@@ -89,7 +89,15 @@ fn a_sink_that_fails_ends_the_run() {
                 Ok(())
             }
         };
-        let error = run(&study, &jobs, by(threads, 1), &Stop::default(), &told, Some(&mut sink)).unwrap_err();
+        let error = run(
+            &study,
+            &jobs,
+            by(threads, 1),
+            &CancelToken::default(),
+            &told,
+            Some(&mut sink),
+        )
+        .unwrap_err();
         assert!(
             matches!(&error, RunError::Sink(e) if e.to_string() == "no space"),
             "{error}"

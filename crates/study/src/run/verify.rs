@@ -2,21 +2,21 @@
 //!
 //! Knows which jobs are solved again and what a deviation is. Does not know tables.
 
-use super::bench::Bench;
+use super::shared_models::SharedModels;
 use super::{crossing, guard};
 use pontoon_core::response::Record;
 use pontoon_plan::job::Job;
 use pontoon_results::{JobRecord, Summary};
 
 /// Solves a job again by the reference solver, where that is asked for, and notes how far the operator is off.
-pub(super) fn judge(job: &Job, record: &mut JobRecord, bench: &Bench) {
+pub(super) fn judge(job: &Job, record: &mut JobRecord, models: &SharedModels) {
     let asked = job
         .as_crossing()
         .and_then(|crossing| Some((crossing, crossing.verify()?)));
     let Some((crossing_job, verify)) = asked.filter(|_| record.failure.is_none()) else {
         return;
     };
-    let again = guard::guarded(|| crossing::solve(&crossing_job, Record::default(), bench));
+    let again = guard::guarded(|| crossing::solve(&crossing_job, Record::default(), models));
     let of = |summary: &Summary| {
         let all = [
             summary.peak_deflection_m,

@@ -2,8 +2,8 @@
 //!
 //! Knows the journal of a folder of results from outside, and tries a few jobs to learn what one costs here. Writes nothing.
 
-use super::bound::binding;
-use super::{SweepError, opened};
+use super::fingerprint::binding;
+use super::{SweepError, results_folder};
 use crate::run::{Cache, Measured, measure, record_key};
 use pontoon_journal::JournalIndex;
 use pontoon_plan::job::{Plan, Share};
@@ -18,7 +18,7 @@ pub struct Forecast {
     #[serde(flatten)]
     pub plan: Plan,
     /// What a folder of results holds of it; null where it has no journal.
-    pub found: Option<Found>,
+    pub found: Option<RecordedJobs>,
     /// Time that the jobs not recorded will take `[s]`; null where the few that were tried failed or are too long to try.
     pub expected_seconds: Option<f64>,
     /// Jobs that were tried for it.
@@ -29,7 +29,7 @@ pub struct Forecast {
 
 /// What a folder of results holds of a study.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
-pub struct Found {
+pub struct RecordedJobs {
     /// Jobs of the study that are recorded, failed ones included.
     pub done: usize,
     /// Failed.
@@ -47,7 +47,7 @@ pub struct Found {
 pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cache>) -> Result<Forecast, SweepError> {
     let book = JournalIndex::read(folder)?;
     let now = binding(study, None);
-    let refused = opened::bindings(&book)
+    let refused = results_folder::bindings(&book)
         .map(|then| then.differences(&now))
         .find(|told| !told.is_empty());
     let refused = refused.unwrap_or_default();
@@ -60,7 +60,7 @@ pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cac
         }
     })?;
     let missing = plan.jobs - done;
-    let found = (!book.files.is_empty()).then_some(Found {
+    let found = (!book.files.is_empty()).then_some(RecordedJobs {
         done,
         failed,
         missing,

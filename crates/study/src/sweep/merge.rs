@@ -4,13 +4,13 @@
 //! job. The merged folder is one that the whole study could have been run into: its journal holds the shards' files, and a
 //! study that has grown goes on from there.
 
-use super::bound::{binding, session};
-use super::deaths::hash_of as hash_of_study;
+use super::crash_suspects::hash_of as hash_of_study;
 use super::ending::ending;
-use super::opened::{check_folder, instruction_paths, preparations, sessions, tell_damage};
+use super::fingerprint::{binding, session};
+use super::results_folder::{check_folder, instruction_paths, preparations, sessions, tell_damage};
 use super::status::study_of_book;
 use super::{SweepError, SweepSetting, Swept, Watcher};
-use crate::run::{Ledger, Setting, Stop, record_key, run};
+use crate::run::{CancelToken, ResumeIndex, Setting, record_key, run};
 use pontoon_journal::place::{Folder, HiddenFile, hash_of};
 use pontoon_journal::{EXTENSION, FOLDER, JournalError, JournalIndex, JournalWriter, Lock, fault};
 use pontoon_plan::input::Refusal;
@@ -72,7 +72,7 @@ pub fn merge<'a>(
     merged: &'a Merged,
     folders: &[PathBuf],
     setting: &SweepSetting,
-    stop: &Stop,
+    cancel: &CancelToken,
     watcher: &dyn Watcher,
 ) -> Result<Swept<'a>, SweepError> {
     let Merged { study, jobs } = merged;
@@ -127,9 +127,13 @@ pub fn merge<'a>(
         copy_journal(source, &setting.out)?;
     }
     let book = JournalIndex::read(&setting.out)?;
-    let ledger = Ledger::new(&book, jobs);
-    if ledger.known() < jobs.len() {
-        let found = format!("{} of {} jobs after the shards were copied", ledger.known(), jobs.len());
+    let resume_index = ResumeIndex::new(&book, jobs);
+    if resume_index.known() < jobs.len() {
+        let found = format!(
+            "{} of {} jobs after the shards were copied",
+            resume_index.known(),
+            jobs.len()
+        );
         return Err(Refusal::new(&setting.out, "", found, "all jobs").into());
     }
     let provenance = TableProvenance {
@@ -141,10 +145,10 @@ pub fn merge<'a>(
     let run_setting = Setting {
         threads: setting.threads,
         batch: setting.batch,
-        ledger: Some(ledger),
+        resume_index: Some(resume_index),
         ..Setting::default()
     };
-    let mut outcome = run(study, jobs, run_setting, stop, watcher, Some(&mut sink)).map_err(SweepError::from)?;
+    let mut outcome = run(study, jobs, run_setting, cancel, watcher, Some(&mut sink)).map_err(SweepError::from)?;
     for before in preparations(&book) {
         outcome.preparation.add(before);
     }

@@ -5,45 +5,45 @@
 //!
 //! | module | charter |
 //! |---|---|
-//! | `aside` | old results moved out of the way, under their hash |
-//! | `bound` | what a study's records are bound to; a study from a journal alone |
-//! | `deaths` | jobs that processes died with |
+//! | `archive` | old results moved out of the way, under their hash |
+//! | `fingerprint` | what a study's records are bound to; a study from a journal alone |
+//! | `crash_suspects` | jobs that processes died with |
 //! | `ending` | how a process says that it came to its own end |
 //! | `forecast` | what a study will take, and what of it is done |
 //! | `merge` | shards put together |
-//! | `opened` | a folder of results taken: lock, journal, whether it is this study's |
-//! | `so_far` | what a journal holds of a study that is not done |
+//! | `results_folder` | a folder of results taken: lock, journal, whether it is this study's |
+//! | `partial_results` | what a journal holds of a study that is not done |
 //! | `solving` | what is missing, solved into the journal |
 //! | `status` | what is done, missing, failed; why a job ran or will run |
 
-mod aside;
-mod bound;
-mod deaths;
+mod archive;
+mod crash_suspects;
 mod ending;
+mod fingerprint;
 mod forecast;
 mod merge;
-mod opened;
-mod so_far;
+mod partial_results;
+mod results_folder;
 mod solving;
 mod status;
 
-pub use deaths::{Apart, ApartEnd, run_apart};
+pub use crash_suspects::{Apart, ApartEnd, run_apart};
 pub use ending::ended_now;
-pub use forecast::{Forecast, Found, forecast};
+pub use forecast::{Forecast, RecordedJobs, forecast};
 pub use merge::{Merged, merge};
-pub use so_far::{SoFar, so_far};
+pub use partial_results::{PartialResults, partial_results};
 pub use status::{Explanation, Standings, explain, standings};
 
-use crate::run::canary::CanaryError;
-use crate::run::{Batch, Cache, Ledger, PoolError, Progress, RunError, Stop, Why};
-use opened::Opened;
+use crate::run::self_test::SelfTestError;
+use crate::run::{Batch, Cache, CancelToken, PoolError, Progress, ResumeIndex, RunError, Why};
 use pontoon_journal::place::FolderError;
 use pontoon_journal::{JournalError, JournalWriter};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Shard};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{JobRecord, Manifest, Moment, Outcome, SummaryTable, TableProvenance, TableWriter};
-use solving::{Solved, Solving};
+use results_folder::ResultsFolder;
+use solving::{SolveOutcome, Solving};
 use std::path::PathBuf;
 use std::sync::Arc;
 use thiserror::Error;
@@ -88,7 +88,7 @@ pub enum SweepError {
     Pool(#[from] PoolError),
     /// This machine or build computes wrongly.
     #[error(transparent)]
-    Canary(#[from] CanaryError),
+    SelfTest(#[from] SelfTestError),
     /// Somebody asked it to stop; the same command goes on from there.
     #[error("interrupted: {done} of {jobs} jobs are recorded, the same command goes on from there")]
     Interrupted {
@@ -165,32 +165,32 @@ pub fn sweep<'a>(
     study: &Study,
     jobs: &'a [Job],
     setting: &SweepSetting,
-    stop: &Stop,
+    cancel: &CancelToken,
     watcher: &dyn Watcher,
 ) -> Result<Swept<'a>, SweepError> {
     let started = Moment::now();
-    let mut opened = Opened::take(study, setting, watcher)?;
+    let mut opened = ResultsFolder::take(study, setting, watcher)?;
     let share = |shard: Shard| shard.deal(jobs).into_iter().map(|at| jobs[at].clone()).collect();
     let own: Option<Vec<Job>> = setting.shard.map(share);
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);
-    let passed_over = deaths::settle(&mut opened, study, asked, stop, watcher)?;
-    let ledger = Ledger::new(&opened.book, asked);
-    opened::tell_damage(&opened.book, |what| match ledger.known() < asked.len() {
+    let passed_over = crash_suspects::settle(&mut opened, study, asked, cancel, watcher)?;
+    let resume_index = ResumeIndex::new(&opened.book, asked);
+    results_folder::tell_damage(&opened.book, |what| match resume_index.known() < asked.len() {
         true => watcher.warn(what),
         false => watcher.note(what),
     });
-    let paths = opened.instruction_paths(ledger.known() < asked.len());
+    let paths = opened.instruction_paths(resume_index.known() < asked.len());
     let solving = Solving {
         study,
         jobs: asked,
         setting,
-        stop,
+        cancel,
         watcher,
         opened: &opened,
         passed_over,
     };
     if own.is_some() {
-        let solved = solving.solve(ledger, None)?;
+        let solved = solving.solve(resume_index, None)?;
         solved.end()?;
         return Ok(Swept {
             outcome: solved.outcome,
@@ -202,7 +202,7 @@ pub fn sweep<'a>(
         commit: setting.commit.clone(),
         instruction_paths: paths,
     };
-    let done = ledger.known() == asked.len();
+    let done = resume_index.known() == asked.len();
     let whole = done
         .then(|| TableWriter::of_whole(study, jobs, &opened.folder, &provenance))
         .flatten();
@@ -211,7 +211,7 @@ pub fn sweep<'a>(
         None => TableWriter::begin(study, jobs, &opened.folder, &provenance)?,
     };
     let mut sink = |records: Vec<JobRecord>| tables.append(&records);
-    let mut solved = solving.solve(ledger, Some(&mut sink))?;
+    let mut solved = solving.solve(resume_index, Some(&mut sink))?;
     // records before tables: whatever becomes of the tables, no job runs again
     if let Some(writer) = &solved.writer {
         writer.sync()?;
@@ -223,7 +223,7 @@ pub fn sweep<'a>(
     manifest.sessions = opened.sessions();
     let summary = tables.finish(manifest)?;
     solved.end()?;
-    let Solved { outcome, .. } = solved;
+    let SolveOutcome { outcome, .. } = solved;
     Ok(Swept {
         outcome,
         summary: Some(summary),

@@ -2,12 +2,12 @@
 //!
 //! Knows when a journal is begun and how it ends, and that a machine proves itself first. Does not know tables.
 
-use super::bound::session;
-use super::deaths::PassedOver;
+use super::crash_suspects::PassedOver;
 use super::ending::ending;
-use super::opened::Opened;
+use super::fingerprint::session;
+use super::results_folder::ResultsFolder;
 use super::{SweepError, SweepSetting, Watcher};
-use crate::run::{Ledger, Setting, Sink, Stop, canary, run};
+use crate::run::{CancelToken, ResumeIndex, Setting, Sink, run, self_test};
 use pontoon_journal::JournalWriter;
 use pontoon_journal::place::FolderError;
 use pontoon_plan::job::Job;
@@ -21,14 +21,14 @@ pub(super) struct Solving<'a> {
     /// Jobs asked for.
     pub jobs: &'a [Job],
     pub setting: &'a SweepSetting,
-    pub stop: &'a Stop,
+    pub cancel: &'a CancelToken,
     pub watcher: &'a dyn Watcher,
-    pub opened: &'a Opened,
+    pub opened: &'a ResultsFolder,
     pub passed_over: PassedOver,
 }
 
 /// What solving left.
-pub(super) struct Solved {
+pub(super) struct SolveOutcome {
     pub outcome: Outcome,
     /// The journal's file of this process; none where nothing was missing.
     pub writer: Option<Arc<JournalWriter>>,
@@ -38,13 +38,13 @@ impl Solving<'_> {
     /// Solves what is missing; all records pass the sink.
     pub(super) fn solve(
         self,
-        ledger: Ledger<'_>,
+        resume_index: ResumeIndex<'_>,
         sink: Option<&mut Sink<'_, FolderError>>,
-    ) -> Result<Solved, SweepError> {
-        let (known, failed) = (ledger.known(), ledger.failed());
+    ) -> Result<SolveOutcome, SweepError> {
+        let (known, failed) = (resume_index.known(), resume_index.failed());
         let missing = known < self.jobs.len();
         if missing {
-            canary::sing()?;
+            self_test::run()?;
         }
         // a study that has shrunk, and a share without jobs, have their word in the journal too
         let writer = if missing || !self.opened.is_of(self.study) {
@@ -57,22 +57,22 @@ impl Solving<'_> {
         } else {
             None
         };
-        let ledger = match &writer {
-            Some(writer) => ledger.written_by(writer),
-            None => ledger,
+        let resume_index = match &writer {
+            Some(writer) => resume_index.written_by(writer),
+            None => resume_index,
         };
         let setting = Setting {
             threads: self.setting.threads,
             batch: self.setting.batch,
             cache: self.setting.cache.clone(),
-            ledger: Some(ledger),
+            resume_index: Some(resume_index),
             apart: false,
             most_failures: self.setting.most_failures,
             passed_over: self.passed_over,
         };
-        let ran = run(self.study, self.jobs, setting, self.stop, self.watcher, sink).map_err(SweepError::from);
+        let ran = run(self.study, self.jobs, setting, self.cancel, self.watcher, sink).map_err(SweepError::from);
         match ran {
-            Ok(outcome) => Ok(Solved { outcome, writer }),
+            Ok(outcome) => Ok(SolveOutcome { outcome, writer }),
             Err(error) => {
                 if let Some(writer) = &writer {
                     let how = match &error {
@@ -88,7 +88,7 @@ impl Solving<'_> {
     }
 }
 
-impl Solved {
+impl SolveOutcome {
     /// Ends the journal's file.
     pub(super) fn end(&self) -> Result<(), SweepError> {
         if let Some(writer) = &self.writer {

@@ -3,9 +3,9 @@
 //! Knows journals from outside, while others write them. Writes nothing.
 
 use super::SweepError;
-use super::bound::{check_program, study_of};
-use super::opened::check_folder;
-use crate::run::{Ledger, record_key};
+use super::fingerprint::{check_program, study_of};
+use super::results_folder::check_folder;
+use crate::run::{ResumeIndex, record_key};
 use pontoon_journal::{Binding, JournalIndex, Lock, Session, Standing};
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs, Shard};
@@ -79,7 +79,7 @@ fn counted(folder: &Path) -> Result<Standing, SweepError> {
     let share = |shard: Shard| shard.deal(&jobs).into_iter().map(|at| jobs[at].clone()).collect();
     let own: Option<Vec<Job>> = shard.map(share);
     let asked = own.as_deref().unwrap_or(&jobs);
-    let ledger = Ledger::new(&book, asked);
+    let resume_index = ResumeIndex::new(&book, asked);
     let ended = book
         .files
         .iter()
@@ -92,9 +92,9 @@ fn counted(folder: &Path) -> Result<Standing, SweepError> {
         study: study.name.clone(),
         shard: binding.shard.clone(),
         jobs: asked.len(),
-        done: ledger.known(),
-        failed: ledger.failed(),
-        missing: asked.len() - ledger.known(),
+        done: resume_index.known(),
+        failed: resume_index.failed(),
+        missing: asked.len() - resume_index.known(),
         running: false,
         state: String::new(),
     };
@@ -196,8 +196,8 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
     match book.find(&key) {
         Some(entry) => {
             check_program(&book)?;
-            let ledger = Ledger::new(&book, std::slice::from_ref(job));
-            let record = ledger.record(0, job)?;
+            let resume_index = ResumeIndex::new(&book, std::slice::from_ref(job));
+            let record = resume_index.record(0, job)?;
             let written = book.file_of(entry.place);
             told.state = if entry.failed { "failed" } else { "ok" };
             told.failure = record.and_then(|record| record.failure);

@@ -7,7 +7,7 @@ use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{Results, ResultsError, TableName};
-use pontoon_study::sweep::{SoFar, SweepError, so_far};
+use pontoon_study::sweep::{PartialResults, SweepError, partial_results};
 use serde_json::Value;
 use std::path::Path;
 
@@ -38,7 +38,7 @@ impl OpenedResults {
     pub fn open(folder: &Path, whole: bool) -> Result<Self, ResultsError> {
         match Results::read_some(folder, if whole { &TableName::ALL } else { &NEEDED }) {
             Ok(results) => Ok(Self::of_results(results)),
-            Err(ResultsError::Refused(refused)) => match so_far(folder) {
+            Err(ResultsError::Refused(refused)) => match partial_results(folder) {
                 Ok(found) => Ok(Self::of_journal(folder, found)),
                 Err(SweepError::Refused(_)) => Err(refused.into()),
                 Err(error) => Err(damaged(folder, error.to_string())),
@@ -90,8 +90,8 @@ impl OpenedResults {
         }
     }
 
-    fn of_journal(folder: &Path, found: SoFar) -> Self {
-        let SoFar {
+    fn of_journal(folder: &Path, found: PartialResults) -> Self {
+        let PartialResults {
             study,
             jobs,
             records,

@@ -8,7 +8,7 @@ use pontoon_results::{JobRecord, Preparation};
 
 /// The journal as a run of some jobs sees it.
 #[derive(Debug)]
-pub struct Ledger<'a> {
+pub struct ResumeIndex<'a> {
     book: &'a JournalIndex,
     /// Of each job, by its place among those of the run, the record that it has; nothing where none has one.
     known: Vec<Option<RecordLocation>>,
@@ -17,7 +17,7 @@ pub struct Ledger<'a> {
     failed: usize,
 }
 
-impl<'a> Ledger<'a> {
+impl<'a> ResumeIndex<'a> {
     /// The records that `jobs` have in a book.
     pub fn new(book: &'a JournalIndex, jobs: &[Job]) -> Self {
         let mut failed = 0;

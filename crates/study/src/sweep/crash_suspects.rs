@@ -5,11 +5,11 @@
 //! whose process died three times is passed over. A kill from outside ends the process that asks, not the one that solves,
 //! and is counted against no job.
 
-use super::bound::{binding, session};
 use super::ending::ending;
-use super::opened::Opened;
+use super::fingerprint::{binding, session};
+use super::results_folder::ResultsFolder;
 use super::{SweepError, SweepSetting, Watcher};
-use crate::run::{Ledger, RunError, Setting, Silent, Stop, record_key, run};
+use crate::run::{CancelToken, ResumeIndex, RunError, Setting, Silent, record_key, run};
 use pontoon_journal::place::FolderError;
 use pontoon_journal::{JournalIndex, JournalWriter, RecordKey};
 use pontoon_plan::input::Refusal;
@@ -46,10 +46,10 @@ pub enum ApartEnd {
 
 /// Finds out about jobs that processes died with, and tells which ones are passed over.
 pub(super) fn settle(
-    opened: &mut Opened,
+    opened: &mut ResultsFolder,
     study: &Study,
     jobs: &[Job],
-    stop: &Stop,
+    cancel: &CancelToken,
     watcher: &dyn Watcher,
 ) -> Result<PassedOver, SweepError> {
     let (mut over, mut killed, mut before) = (PassedOver::new(), BTreeSet::new(), Vec::new());
@@ -58,7 +58,7 @@ pub(super) fn settle(
             .filter(|job| !over.contains_key(&job.number))
             .collect();
         let numbers: Vec<usize> = suspects.iter().map(|job| job.number).collect();
-        if numbers.is_empty() || numbers == before || stop.is_asked() {
+        if numbers.is_empty() || numbers == before || cancel.is_asked() {
             return Ok(over);
         }
         let many = numbers.len();
@@ -112,7 +112,7 @@ pub fn run_apart(
     jobs: &[Job],
     (of, numbers): (&str, &[usize]),
     setting: &SweepSetting,
-    stop: &Stop,
+    cancel: &CancelToken,
 ) -> Result<(), SweepError> {
     if hash_of(study) != of {
         let allowed = "the study of the process that asks";
@@ -124,18 +124,23 @@ pub fn run_apart(
         .cloned()
         .collect();
     let book = JournalIndex::read(&setting.out)?;
-    let ledger = Ledger::new(&book, &own);
-    let asked = session(study, setting, 1, own.len(), ledger.known(), true);
-    let writer = JournalWriter::begin(&setting.out, &binding(study, setting.shard), &asked, ledger.failed())?;
+    let resume_index = ResumeIndex::new(&book, &own);
+    let asked = session(study, setting, 1, own.len(), resume_index.known(), true);
+    let writer = JournalWriter::begin(
+        &setting.out,
+        &binding(study, setting.shard),
+        &asked,
+        resume_index.failed(),
+    )?;
     let setting = Setting {
         threads: 1,
         batch: setting.batch,
         cache: setting.cache.clone(),
-        ledger: Some(ledger.written_by(&writer)),
+        resume_index: Some(resume_index.written_by(&writer)),
         apart: true,
         ..Setting::default()
     };
-    let ran = run(study, &own, setting, stop, &Silent, None).map_err(|e: RunError<FolderError>| SweepError::from(e));
+    let ran = run(study, &own, setting, cancel, &Silent, None).map_err(|e: RunError<FolderError>| SweepError::from(e));
     let how = ran.as_ref().map_or_else(ToString::to_string, |_| "complete".to_owned());
     writer.end(&ending(how, 0.0, 0.0))?;
     ran.map(|_| ())

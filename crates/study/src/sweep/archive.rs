@@ -13,7 +13,7 @@ const ASIDE: &str = "aside";
 
 /// Moves the results of a folder to `aside/HASH`, the journal last: until then the folder is what it was, and the next run
 /// with the same wish goes on moving. Tells where to; nothing where there is nothing to move.
-pub(super) fn set_aside(folder: &Path, book: Option<&JournalIndex>) -> Result<Option<PathBuf>, SweepError> {
+pub(super) fn archive_results(folder: &Path, book: Option<&JournalIndex>) -> Result<Option<PathBuf>, SweepError> {
     let mut list = OwnFiles::in_folder(folder);
     let journal = folder.join(FOLDER);
     if journal.exists() {

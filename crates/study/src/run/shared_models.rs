@@ -2,12 +2,12 @@
 //!
 //! Knows which jobs share what, by keys made of the jobs' own numbers. Does not know what a job does with it.
 
-use super::cache::{Cache, Found};
+use super::cache::{Cache, CacheLookup};
+use super::cancel::CancelToken;
 use super::failure::JobFailure;
 use super::guard::guarded;
 use super::progress::Progress;
 use super::retry::RETRY_STEP_SHARE;
-use super::stop::Stop;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
@@ -21,13 +21,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A thing that jobs share, or why it could not be made.
-type Shared<T> = Result<Arc<T>, JobFailure>;
+type SharedResult<T> = Result<Arc<T>, JobFailure>;
 type ModuleKey = (Model, Arc<str>);
 type BridgeKey = (Model, Arc<str>);
 type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
 type CrossingKey = (DampingKey, [u64; 2], [usize; 2]);
 /// Crossings of one key are solved side by side.
-pub(super) type CrewKey = (CrossingKey, u64, Option<u64>);
+pub(super) type LaneBatchKey = (CrossingKey, u64, Option<u64>);
 type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, u64);
 
 /// What an operator depends on: a bridge, and how far its flexibility may be off.
@@ -58,19 +58,19 @@ struct Damping {
 
 /// Modules prepared, to be handed on to a later run that needs some of them again.
 #[derive(Debug, Clone, Default)]
-pub struct PreparedModules(BTreeMap<ModuleKey, Shared<PreparedModule>>);
+pub struct PreparedModules(BTreeMap<ModuleKey, SharedResult<PreparedModule>>);
 
 /// All that the jobs of a run share.
 #[derive(Debug)]
-pub(super) struct Bench {
-    modules: BTreeMap<ModuleKey, Shared<PreparedModule>>,
-    bridges: BTreeMap<BridgeKey, Shared<Bridge>>,
-    damping: BTreeMap<DampingKey, Shared<Damping>>,
-    operators: BTreeMap<OperatorKey, Shared<BridgeOperator>>,
-    operated: BTreeMap<CrewKey, Shared<OperatorSolver>>,
-    crossings: BTreeMap<CrossingKey, Shared<CrossingSolver>>,
-    statics: BTreeMap<BridgeKey, Shared<StaticSolver>>,
-    creeping: BTreeMap<CreepingKey, Shared<Vec<f64>>>,
+pub(super) struct SharedModels {
+    modules: BTreeMap<ModuleKey, SharedResult<PreparedModule>>,
+    bridges: BTreeMap<BridgeKey, SharedResult<Bridge>>,
+    damping: BTreeMap<DampingKey, SharedResult<Damping>>,
+    operators: BTreeMap<OperatorKey, SharedResult<BridgeOperator>>,
+    operated: BTreeMap<LaneBatchKey, SharedResult<OperatorSolver>>,
+    crossings: BTreeMap<CrossingKey, SharedResult<CrossingSolver>>,
+    statics: BTreeMap<BridgeKey, SharedResult<StaticSolver>>,
+    creeping: BTreeMap<CreepingKey, SharedResult<Vec<f64>>>,
     condensations: AtomicUsize,
     operators_made: OperatorsMade,
 }
@@ -83,17 +83,17 @@ struct OperatorsMade {
     refused: AtomicUsize,
 }
 
-impl Bench {
+impl SharedModels {
     /// Prepares everything that `all` jobs need, each thing once, on the current pool; modules that are `known` are taken
     /// from there. What is not begun when a stop is asked for is not prepared.
     pub(super) fn prepare(
         all: &[&Job],
         known: &PreparedModules,
         cache: Option<&Cache>,
-        stop: &Stop,
+        cancel: &CancelToken,
         progress: &dyn Progress,
     ) -> Self {
-        let mut bench = Self {
+        let mut models = Self {
             modules: BTreeMap::new(),
             bridges: BTreeMap::new(),
             damping: BTreeMap::new(),
@@ -109,47 +109,47 @@ impl Bench {
         progress.stage("modules: finite elements, condensation");
         let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
         let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
-        bench.modules = each(stop, &new, |job| Some(module_key(job)), |job| bench.module(job));
+        models.modules = each(cancel, &new, |job| Some(module_key(job)), |job| models.module(job));
         let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
-        bench
+        models
             .modules
             .extend(taken.map(|(key, module)| (key.clone(), module.clone())));
         progress.stage("bridges: assembly");
         let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
         let bridge = |job: &&Job| Some(bridge_key(job));
-        bench.bridges = each(stop, &loaded, bridge, |job| bench.bridge(job, Ends::Supported));
+        models.bridges = each(cancel, &loaded, bridge, |job| models.bridge(job, Ends::Supported));
         progress.stage("damping: bending modes of the free bridge");
-        bench.damping = each(
-            stop,
+        models.damping = each(
+            cancel,
             &crossings,
             |job| Some(damping_key(job)),
-            |job| bench.damping_of(job),
+            |job| models.damping_of(job),
         );
         progress.stage("solvers: factors");
         let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
-        bench.statics = each(stop, &held, bridge, |job| {
-            Ok(StaticSolver::new(&shared(&bench.bridges, &bridge_key(job))?)?)
+        models.statics = each(cancel, &held, bridge, |job| {
+            Ok(StaticSolver::new(&shared(&models.bridges, &bridge_key(job))?)?)
         });
         let integrated =
             |crossing: &&CrossingJob<'_>| crossing.operator_tolerance().is_none() || crossing.verify().is_some();
         let judged: Vec<CrossingJob<'_>> = crossings.iter().filter(integrated).copied().collect();
-        bench.crossings = each(
-            stop,
+        models.crossings = each(
+            cancel,
             &judged,
             |job| Some(crossing_key(job)),
-            |job| bench.crossing_solver(job),
+            |job| models.crossing_solver(job),
         );
         progress.stage("operators: modes and what they leave out");
-        bench.operators = each(stop, &crossings, operator_key, |job| bench.operator(job, cache));
-        bench.operated = each(stop, &crossings, Self::crew_key, |job| bench.operator_solver(job));
+        models.operators = each(cancel, &crossings, operator_key, |job| models.operator(job, cache));
+        models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| models.operator_solver(job));
         progress.stage("static peaks of creeping loads");
         let creeping: Vec<&Job> = crossings
             .iter()
             .map(|crossing| crossing.job)
             .filter(|job| is_held(job))
             .collect();
-        bench.creeping = bench.creeping_peaks(stop, &creeping);
-        bench
+        models.creeping = models.creeping_peaks(cancel, &creeping);
+        models
     }
 
     fn module(&self, job: &Job) -> Result<PreparedModule, JobFailure> {
@@ -161,7 +161,7 @@ impl Bench {
     }
 
     /// The module of a job.
-    pub(super) fn module_of(&self, job: &Job) -> Shared<PreparedModule> {
+    pub(super) fn module_of(&self, job: &Job) -> SharedResult<PreparedModule> {
         shared(&self.modules, &module_key(job))
     }
 
@@ -191,13 +191,13 @@ impl Bench {
         };
         let (bridge, made) = (shared(&self.bridges, &key.bridge)?, &self.operators_made);
         let name = key.name();
-        match cache.map_or(Found::Nothing, |cache| cache.read(&name, &bridge)) {
-            Found::Whole(operator) => {
+        match cache.map_or(CacheLookup::Nothing, |cache| cache.read(&name, &bridge)) {
+            CacheLookup::Whole(operator) => {
                 made.from_cache.fetch_add(1, Ordering::Relaxed);
                 return Ok(*operator);
             }
-            Found::Refused => made.refused.fetch_add(1, Ordering::Relaxed),
-            Found::Nothing => 0,
+            CacheLookup::Refused => made.refused.fetch_add(1, Ordering::Relaxed),
+            CacheLookup::Nothing => 0,
         };
         made.built.fetch_add(1, Ordering::Relaxed);
         let operator = BridgeOperator::new(&bridge, tolerance)?;
@@ -233,21 +233,21 @@ impl Bench {
         Ok(OperatorSolver::new(&bridge, &operator, &self.settings(crossing)?))
     }
 
-    fn operator_of(&self, crossing: &CrossingJob<'_>) -> Shared<BridgeOperator> {
+    fn operator_of(&self, crossing: &CrossingJob<'_>) -> SharedResult<BridgeOperator> {
         let key = operator_key(crossing).ok_or_else(not_prepared)?;
         shared(&self.operators, &key)
     }
 
     /// Crossings of one key are solved side by side; none of the reference solver's, which are solved one by one.
-    pub(super) fn crew_key(crossing: &CrossingJob<'_>) -> Option<CrewKey> {
+    pub(super) fn lane_batch_key(crossing: &CrossingJob<'_>) -> Option<LaneBatchKey> {
         let auto = crossing.analysis.time_step.tolerance().map(f64::to_bits);
         let tolerance = crossing.operator_tolerance()?.to_bits();
         Some((crossing_key(crossing), tolerance, auto))
     }
 
     /// The operator's solver of a crossing.
-    pub(super) fn operated(&self, crossing: &CrossingJob<'_>) -> Shared<OperatorSolver> {
-        shared(&self.operated, &Self::crew_key(crossing).ok_or_else(not_prepared)?)
+    pub(super) fn operated(&self, crossing: &CrossingJob<'_>) -> SharedResult<OperatorSolver> {
+        shared(&self.operated, &Self::lane_batch_key(crossing).ok_or_else(not_prepared)?)
     }
 
     fn crossing_solver(&self, crossing: &CrossingJob<'_>) -> Result<CrossingSolver, JobFailure> {
@@ -270,7 +270,7 @@ impl Bench {
 
     /// The static peaks of creeping loads; cases of one vehicle on one bridge share what it does at its places, which is let
     /// go before the next vehicle's.
-    fn creeping_peaks(&self, stop: &Stop, jobs: &[&Job]) -> BTreeMap<CreepingKey, Shared<Vec<f64>>> {
+    fn creeping_peaks(&self, cancel: &CancelToken, jobs: &[&Job]) -> BTreeMap<CreepingKey, SharedResult<Vec<f64>>> {
         let mut vehicles: BTreeMap<(BridgeKey, Arc<str>), Vec<&Job>> = BTreeMap::new();
         for job in jobs {
             let key = (bridge_key(job), job.vehicle.key.clone());
@@ -279,7 +279,7 @@ impl Bench {
         let peaks = |((bridge, _), jobs): ((BridgeKey, _), Vec<&Job>)| {
             let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
             let key = |job: &&Job| Some(creeping_key(job));
-            each(stop, &jobs, key, |job| {
+            each(cancel, &jobs, key, |job| {
                 let load = load.as_ref().map_err(Clone::clone)?;
                 Ok(load.peaks_m(&static_case(job, 0.0))?)
             })
@@ -290,12 +290,12 @@ impl Bench {
     }
 
     /// The solver of a crossing.
-    pub(super) fn crossing(&self, crossing: &CrossingJob<'_>) -> Shared<CrossingSolver> {
+    pub(super) fn crossing(&self, crossing: &CrossingJob<'_>) -> SharedResult<CrossingSolver> {
         shared(&self.crossings, &crossing_key(crossing))
     }
 
     /// The solver of a static case.
-    pub(super) fn statics(&self, job: &Job) -> Shared<StaticSolver> {
+    pub(super) fn statics(&self, job: &Job) -> SharedResult<StaticSolver> {
         shared(&self.statics, &bridge_key(job))
     }
 
@@ -380,11 +380,11 @@ fn is_held(job: &Job) -> bool {
 
 /// Makes one thing for each distinct key, in parallel; the first job with a key stands for the others.
 fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
-    stop: &Stop,
+    cancel: &CancelToken,
     jobs: &[J],
     key: impl Fn(&J) -> Option<K>,
     make: impl Fn(&J) -> Result<T, JobFailure> + Sync,
-) -> BTreeMap<K, Shared<T>> {
+) -> BTreeMap<K, SharedResult<T>> {
     let mut first: BTreeMap<K, &J> = BTreeMap::new();
     for job in jobs {
         if let Some(key) = key(job) {
@@ -392,11 +392,11 @@ fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
         }
     }
     let list: Vec<(K, &J)> = first.into_iter().collect();
-    let made: Vec<(K, Shared<T>)> = list
+    let made: Vec<(K, SharedResult<T>)> = list
         .into_par_iter()
         .with_max_len(1)
         .map(|(key, job)| {
-            let made = if stop.is_asked() {
+            let made = if cancel.is_asked() {
                 Err(Failure::new(FailureKind::Stopped, "not prepared: the run was stopped").into())
             } else {
                 guarded(|| make(job))
@@ -407,7 +407,7 @@ fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
     made.into_iter().collect()
 }
 
-fn shared<K: Ord, T>(map: &BTreeMap<K, Shared<T>>, key: &K) -> Shared<T> {
+fn shared<K: Ord, T>(map: &BTreeMap<K, SharedResult<T>>, key: &K) -> SharedResult<T> {
     map.get(key).cloned().unwrap_or_else(|| Err(not_prepared()))
 }
 

@@ -3,10 +3,10 @@
 //! Knows journals from outside, while others write them. Writes nothing.
 
 use super::SweepError;
-use super::bound::check_program;
-use super::opened::check_folder;
+use super::fingerprint::check_program;
+use super::results_folder::check_folder;
 use super::status::study_of_book;
-use crate::run::Ledger;
+use crate::run::ResumeIndex;
 use pontoon_journal::{JournalIndex, Session};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
@@ -16,7 +16,7 @@ use std::path::Path;
 
 /// The recorded jobs of a study.
 #[derive(Debug, Clone)]
-pub struct SoFar {
+pub struct PartialResults {
     /// The study as the last process had it.
     pub study: Study,
     /// The jobs that are recorded, in their order.
@@ -36,22 +36,22 @@ pub struct SoFar {
 /// # Errors
 /// [`SweepError::Refused`] of a folder without a journal, or with one of a study that this program cannot read;
 /// [`SweepError::Journal`].
-pub fn so_far(folder: &Path) -> Result<SoFar, SweepError> {
+pub fn partial_results(folder: &Path) -> Result<PartialResults, SweepError> {
     check_folder(folder)?;
     let book = JournalIndex::read(folder)?;
     check_program(&book)?;
     let (study, binding, session) = study_of_book(&book, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
-    let ledger = Ledger::new(&book, &jobs);
-    let mut records = Vec::with_capacity(ledger.known());
+    let resume_index = ResumeIndex::new(&book, &jobs);
+    let mut records = Vec::with_capacity(resume_index.known());
     for (at, job) in jobs.iter().enumerate() {
-        records.extend(ledger.record(at, job)?);
+        records.extend(resume_index.record(at, job)?);
     }
     let of = jobs.len();
-    let known = jobs.into_iter().enumerate().filter(|(at, _)| ledger.knows(*at));
+    let known = jobs.into_iter().enumerate().filter(|(at, _)| resume_index.knows(*at));
     let known = known.map(|(_, job)| job).collect();
     let (shard, session) = (binding.shard.clone(), session.clone());
-    Ok(SoFar {
+    Ok(PartialResults {
         study,
         jobs: known,
         records,

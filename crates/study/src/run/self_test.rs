@@ -1,4 +1,4 @@
-//! A crossing whose answer is known, solved at the start of a sweep: a canary for the machine.
+//! A crossing whose answer is known, solved at the start of a sweep: a self-test of the machine.
 //!
 //! Knows one small bridge, one crossing of it and what both solvers answer where arithmetic is sound. Does not know studies:
 //! what it tells is about processor, compiler and libraries, and nothing about anybody's bridge.
@@ -34,7 +34,7 @@ const LANES: usize = 8;
 
 /// Why a sweep should not be begun on this machine.
 #[derive(Debug, Error)]
-pub enum CanaryError {
+pub enum SelfTestError {
     /// A number is not what it is known to be.
     #[error(
         "arithmetic is not sound here: of a crossing whose answer is known, {quantity} by the {solver}: expected \
@@ -42,7 +42,7 @@ pub enum CanaryError {
     )]
     Off {
         /// Which solver.
-        solver: Singer,
+        solver: TestedSolver,
         /// Which number.
         quantity: &'static str,
         /// What is known `[m, N, 1]`.
@@ -71,14 +71,14 @@ pub enum CanaryError {
 
 /// A solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Singer {
+pub enum TestedSolver {
     /// The bridge operator.
     Operator,
     /// The reference solver.
     Reference,
 }
 
-impl fmt::Display for Singer {
+impl fmt::Display for TestedSolver {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Operator => "operator",
@@ -89,7 +89,7 @@ impl fmt::Display for Singer {
 
 /// What is compared of an answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Song {
+struct SelfTestAnswer {
     deflection_m: f64,
     uplift_m: f64,
     compression_n: f64,
@@ -99,16 +99,16 @@ struct Song {
 
 /// The known answer of a solver, as it was found where the two agree within what the operator leaves out, 2e-3. Whoever
 /// changes mechanics on purpose writes down what the error then names.
-fn known(solver: Singer) -> Song {
+fn known(solver: TestedSolver) -> SelfTestAnswer {
     match solver {
-        Singer::Operator => Song {
+        TestedSolver::Operator => SelfTestAnswer {
             deflection_m: 0.097_162_533_555_537_67,
             uplift_m: 0.030_493_021_414_378_51,
             compression_n: 373_692.382_752_154_14,
             tension_n: 112_348.502_104_914_22,
             contact_switches: 20,
         },
-        Singer::Reference => Song {
+        TestedSolver::Reference => SelfTestAnswer {
             deflection_m: 0.097_156_327_905_228_75,
             uplift_m: 0.030_488_031_788_756_677,
             compression_n: 373_703.882_951_675_16,
@@ -122,33 +122,38 @@ fn known(solver: Singer) -> Song {
 /// some 23 ms.
 ///
 /// # Errors
-/// [`CanaryError::Off`] with the first number that is not as known; any other where there is no number at all.
-pub fn sing() -> Result<(), CanaryError> {
-    let mut sung = Piece::known()?.sung()?;
+/// [`SelfTestError::Off`] with the first number that is not as known; any other where there is no number at all.
+pub fn run() -> Result<(), SelfTestError> {
+    let mut answers = SelfTestCrossing::known()?.solved()?;
     if fault::at("canary").is_err() {
-        sung.iter_mut().for_each(|(_, song)| song.deflection_m *= 1.05);
+        answers.iter_mut().for_each(|(_, answer)| answer.deflection_m *= 1.05);
     }
-    sung.iter().try_for_each(|(solver, song)| judge(*solver, song))
+    answers.iter().try_for_each(|(solver, answer)| judge(*solver, answer))
 }
 
-fn judge(solver: Singer, song: &Song) -> Result<(), CanaryError> {
+fn judge(solver: TestedSolver, answer: &SelfTestAnswer) -> Result<(), SelfTestError> {
     let known = known(solver);
-    let switches = |song: &Song| song.contact_switches as f64;
+    let switches = |answer: &SelfTestAnswer| answer.contact_switches as f64;
     for (quantity, expected, found, tolerance) in [
-        ("peak deflection [m]", known.deflection_m, song.deflection_m, TOLERANCE),
-        ("peak uplift [m]", known.uplift_m, song.uplift_m, TOLERANCE),
+        (
+            "peak deflection [m]",
+            known.deflection_m,
+            answer.deflection_m,
+            TOLERANCE,
+        ),
+        ("peak uplift [m]", known.uplift_m, answer.uplift_m, TOLERANCE),
         (
             "peak compression [N]",
             known.compression_n,
-            song.compression_n,
+            answer.compression_n,
             TOLERANCE,
         ),
-        ("peak tension [N]", known.tension_n, song.tension_n, TOLERANCE),
-        ("contact switches", switches(&known), switches(song), 0.0),
+        ("peak tension [N]", known.tension_n, answer.tension_n, TOLERANCE),
+        ("contact switches", switches(&known), switches(answer), 0.0),
     ] {
         let holds = (found - expected).abs() <= tolerance * expected;
         if !holds {
-            return Err(CanaryError::Off {
+            return Err(SelfTestError::Off {
                 solver,
                 quantity,
                 expected,
@@ -162,23 +167,23 @@ fn judge(solver: Singer, song: &Song) -> Result<(), CanaryError> {
 
 /// The bridge and the numbers of the crossing that may be asked for otherwise.
 #[derive(Debug, Clone)]
-struct Piece {
+struct SelfTestCrossing {
     design: BridgeDesign,
     load_n: f64,
     time_step_s: f64,
 }
 
-impl Piece {
+impl SelfTestCrossing {
     fn known() -> Result<Self, serde_json::Error> {
         Ok(Self {
-            design: serde_json::from_str(include_str!("canary.json"))?,
+            design: serde_json::from_str(include_str!("self_test.json"))?,
             load_n: 90e3,
             time_step_s: 0.02,
         })
     }
 
     /// The answers of the operator's lanes and of the reference solver.
-    fn sung(&self) -> Result<Vec<(Singer, Song)>, CanaryError> {
+    fn solved(&self) -> Result<Vec<(TestedSolver, SelfTestAnswer)>, SelfTestError> {
         let design = &self.design;
         let module = PreparedModule::new(design, Model::SuperElement)?;
         let bridge = Arc::new(Bridge::new(design, &module, Ends::Supported)?);
@@ -212,17 +217,20 @@ impl Piece {
         };
         let operator = Arc::new(BridgeOperator::new(&bridge, 6e-4)?);
         let operated = OperatorSolver::new(&bridge, &operator, &settings);
-        let mut sung = Vec::new();
+        let mut answers = Vec::new();
         for response in operated.solve_all(&[(&vehicle, &crossing); LANES], 0) {
-            sung.push((Singer::Operator, Song::of(&response?)));
+            answers.push((TestedSolver::Operator, SelfTestAnswer::of(&response?)));
         }
         let reference = CrossingSolver::new(&bridge, &settings)?;
-        sung.push((Singer::Reference, Song::of(&reference.solve(&vehicle, &crossing)?)));
-        Ok(sung)
+        answers.push((
+            TestedSolver::Reference,
+            SelfTestAnswer::of(&reference.solve(&vehicle, &crossing)?),
+        ));
+        Ok(answers)
     }
 }
 
-impl Song {
+impl SelfTestAnswer {
     fn of(response: &CrossingResponse) -> Self {
         let joints = || response.joints.iter().map(|joint| joint.sum);
         Self {
@@ -239,28 +247,28 @@ impl Song {
 mod tests {
     use super::*;
 
-    fn changed(change: impl FnOnce(&mut Piece)) -> Vec<(Singer, Song)> {
-        let mut piece = Piece::known().unwrap();
+    fn changed(change: impl FnOnce(&mut SelfTestCrossing)) -> Vec<(TestedSolver, SelfTestAnswer)> {
+        let mut piece = SelfTestCrossing::known().unwrap();
         change(&mut piece);
-        piece.sung().unwrap()
+        piece.solved().unwrap()
     }
 
     /// The relative differences of two answers.
-    fn apart(a: &Song, b: &Song) -> [f64; 4] {
-        let numbers = |s: &Song| [s.deflection_m, s.uplift_m, s.compression_n, s.tension_n];
+    fn apart(a: &SelfTestAnswer, b: &SelfTestAnswer) -> [f64; 4] {
+        let numbers = |s: &SelfTestAnswer| [s.deflection_m, s.uplift_m, s.compression_n, s.tension_n];
         let (a, b) = (numbers(a), numbers(b));
         std::array::from_fn(|i| (a[i] / b[i] - 1.0).abs())
     }
 
     #[test]
-    fn it_sings() {
-        sing().unwrap();
+    fn answers_are_as_known() {
+        run().unwrap();
     }
 
     /// Each number of bridge and crossing that is 5 % wrong is heard by both solvers, in every lane.
     #[test]
     fn a_coefficient_5_percent_wrong_is_heard() {
-        for (name, sung) in [
+        for (name, answers) in [
             ("trusses", changed(|p| p.design.connectors.stiffness_n_m *= 1.05)),
             (
                 "water",
@@ -269,11 +277,11 @@ mod tests {
             ("load", changed(|p| p.load_n *= 1.05)),
             ("time step", changed(|p| p.time_step_s *= 1.05)),
         ] {
-            assert_eq!(sung.len(), LANES + 1, "{name}");
-            for (solver, song) in &sung {
-                let told = judge(*solver, song).unwrap_err();
+            assert_eq!(answers.len(), LANES + 1, "{name}");
+            for (solver, answer) in &answers {
+                let told = judge(*solver, answer).unwrap_err();
                 assert!(
-                    matches!(told, CanaryError::Off { solver: of, .. } if of == *solver),
+                    matches!(told, SelfTestError::Off { solver: of, .. } if of == *solver),
                     "{name}: {told}"
                 );
             }
@@ -286,21 +294,21 @@ mod tests {
     fn rounding_is_not_heard() {
         let with_e = |by: f64| changed(|p| p.design.module.material.youngs_modulus_pa *= 1.0 + by);
         for by in [-1e-13, 1e-13, 1e-12, 1e-11] {
-            for (solver, song) in &with_e(by) {
-                let moved = apart(song, &known(*solver));
+            for (solver, answer) in &with_e(by) {
+                let moved = apart(answer, &known(*solver));
                 assert!(moved.iter().all(|m| *m < 0.05 * TOLERANCE), "{solver}: {moved:?}");
-                judge(*solver, song).unwrap();
+                judge(*solver, answer).unwrap();
             }
         }
-        for (solver, song) in &with_e(1e-7) {
-            assert!(judge(*solver, song).is_err(), "{song:?}");
-            assert_eq!(song.contact_switches, known(*solver).contact_switches);
+        for (solver, answer) in &with_e(1e-7) {
+            assert!(judge(*solver, answer).is_err(), "{answer:?}");
+            assert_eq!(answer.contact_switches, known(*solver).contact_switches);
         }
     }
 
     #[test]
     fn solvers_differ_by_what_the_operator_leaves_out() {
-        let apart = apart(&known(Singer::Operator), &known(Singer::Reference));
+        let apart = apart(&known(TestedSolver::Operator), &known(TestedSolver::Reference));
         assert!(
             apart.iter().all(|by| *by < 2e-3) && apart.iter().any(|by| *by > TOLERANCE),
             "{apart:?}"
@@ -309,13 +317,13 @@ mod tests {
 
     #[test]
     fn the_error_names_what_was_off() {
-        let mut song = known(Singer::Operator);
-        song.tension_n *= 1.0 + 2e-9;
-        let told = judge(Singer::Operator, &song).unwrap_err().to_string();
+        let mut answer = known(TestedSolver::Operator);
+        answer.tension_n *= 1.0 + 2e-9;
+        let told = judge(TestedSolver::Operator, &answer).unwrap_err().to_string();
         for part in ["operator", "peak tension [N]", "tolerance 1e-9"] {
             assert!(told.contains(part), "{told}");
         }
-        song.tension_n = f64::NAN;
-        assert!(judge(Singer::Operator, &song).is_err());
+        answer.tension_n = f64::NAN;
+        assert!(judge(TestedSolver::Operator, &answer).is_err());
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Knows the lock, the journal and what makes a folder another study's. Does not run anything.
 
-use super::aside::set_aside;
-use super::bound::binding;
+use super::archive::archive_results;
+use super::fingerprint::binding;
 use super::{SweepError, SweepSetting, Watcher};
 use pontoon_journal::place::Folder;
 use pontoon_journal::{Binding, Damage, FOLDER, JournalIndex, Lock, Session, SessionEnd};
@@ -15,14 +15,14 @@ use std::path::Path;
 
 /// A folder of results that is this process's own.
 #[derive(Debug)]
-pub(super) struct Opened {
+pub(super) struct ResultsFolder {
     pub folder: Folder,
     pub book: JournalIndex,
     pub binding: Binding,
     _lock: Lock,
 }
 
-impl Opened {
+impl ResultsFolder {
     /// Takes the folder: makes it where it is missing, locks it, reads its journal, and refuses what is another study's.
     pub(super) fn take(study: &Study, setting: &SweepSetting, watcher: &dyn Watcher) -> Result<Self, SweepError> {
         check_folder(&setting.out)?;
@@ -34,7 +34,7 @@ impl Opened {
         let binding = binding(study, setting.shard);
         let mut book = JournalIndex::read(&setting.out);
         if setting.fresh {
-            if let Some(to) = set_aside(&setting.out, book.as_ref().ok())? {
+            if let Some(to) = archive_results(&setting.out, book.as_ref().ok())? {
                 watcher.note(&format!("older results are now in {}", to.display()));
             }
             book = JournalIndex::read(&setting.out);

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Asked of a run from any thread; the first to ask says why.
 #[derive(Debug, Default)]
-pub struct Stop(AtomicU8);
+pub struct CancelToken(AtomicU8);
 
 /// Why a run was stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Why {
     Journal,
 }
 
-impl Stop {
+impl CancelToken {
     /// Asks for a stop.
     pub fn ask(&self, why: Why) {
         let code = match why {

@@ -1,13 +1,13 @@
-//! A run's eyes: what is recorded, what is told of jobs as they begin and end, and what makes it stop.
+//! A run monitored: what is recorded, what is told of jobs as they begin and end, and what makes it stop.
 //!
-//! Knows the journal by way of the ledger and counts jobs. Does not know how jobs are solved.
+//! Knows the journal by way of the resume index and counts jobs. Does not know how jobs are solved.
 
 use super::Setting;
-use super::batch::Told;
+use super::batch::JobObserver;
+use super::cancel::{CancelToken, Why};
 use super::error::RunError;
-use super::ledger::Ledger;
 use super::progress::{Progress, Tally};
-use super::stop::{Stop, Why};
+use super::resume_index::ResumeIndex;
 use pontoon_journal::{JournalError, fault};
 use pontoon_plan::job::Job;
 use pontoon_results::{Failure, FailureKind, JobRecord, Preparation};
@@ -17,12 +17,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// What watches a run.
-pub(super) struct Watch<'a> {
-    ledger: Option<&'a Ledger<'a>>,
+pub(super) struct Monitor<'a> {
+    resume_index: Option<&'a ResumeIndex<'a>>,
     pub(super) apart: bool,
     passed_over: &'a BTreeMap<usize, Failure>,
     most_failures: Option<usize>,
-    stop: &'a Stop,
+    cancel: &'a CancelToken,
     progress: &'a dyn Progress,
     /// Jobs in all; done, recorded ones included; failed; run here.
     total: usize,
@@ -33,19 +33,24 @@ pub(super) struct Watch<'a> {
     broken: Mutex<Option<JournalError>>,
 }
 
-impl<'a> Watch<'a> {
-    pub(super) fn new(total: usize, setting: &'a Setting<'a>, stop: &'a Stop, progress: &'a dyn Progress) -> Self {
-        let ledger = setting.ledger.as_ref();
+impl<'a> Monitor<'a> {
+    pub(super) fn new(
+        total: usize,
+        setting: &'a Setting<'a>,
+        cancel: &'a CancelToken,
+        progress: &'a dyn Progress,
+    ) -> Self {
+        let resume_index = setting.resume_index.as_ref();
         Self {
-            ledger,
+            resume_index,
             apart: setting.apart,
             passed_over: &setting.passed_over,
             most_failures: setting.most_failures,
-            stop,
+            cancel,
             progress,
             total,
-            done: AtomicUsize::new(ledger.map_or(0, Ledger::known)),
-            failed: AtomicUsize::new(ledger.map_or(0, Ledger::failed)),
+            done: AtomicUsize::new(resume_index.map_or(0, ResumeIndex::known)),
+            failed: AtomicUsize::new(resume_index.map_or(0, ResumeIndex::failed)),
             ran: AtomicUsize::new(0),
             broken: Mutex::new(None),
         }
@@ -53,17 +58,20 @@ impl<'a> Watch<'a> {
 
     /// Whether the job at a place is recorded.
     pub(super) fn knows(&self, at: usize) -> bool {
-        self.ledger.is_some_and(|ledger| ledger.knows(at))
+        self.resume_index.is_some_and(|resume_index| resume_index.knows(at))
     }
 
     /// Recorded jobs that had failed.
     pub(super) fn failed_before(&self) -> usize {
-        self.ledger.map_or(0, Ledger::failed)
+        self.resume_index.map_or(0, ResumeIndex::failed)
     }
 
     /// Keeps what was prepared.
     pub(super) fn prepared(&self, preparation: &Preparation) {
-        self.note(self.ledger.map_or(Ok(()), |ledger| ledger.prepared(preparation)));
+        self.note(
+            self.resume_index
+                .map_or(Ok(()), |resume_index| resume_index.prepared(preparation)),
+        );
     }
 
     /// Tells how many jobs are done before any runs.
@@ -84,7 +92,7 @@ impl<'a> Watch<'a> {
 
     fn check_failures(&self, failed: usize) {
         if self.most_failures.is_some_and(|most| failed > most) {
-            self.stop.ask(Why::Failures);
+            self.cancel.ask(Why::Failures);
         }
     }
 
@@ -95,10 +103,12 @@ impl<'a> Watch<'a> {
         from: usize,
         solved: Vec<JobRecord>,
     ) -> Result<Vec<JobRecord>, JournalError> {
-        let Some(ledger) = self.ledger else { return Ok(solved) };
+        let Some(resume_index) = self.resume_index else {
+            return Ok(solved);
+        };
         let (mut all, mut solved) = (Vec::with_capacity(batch.len()), solved.into_iter());
         for (at, job) in (from..).zip(batch) {
-            match ledger.record(at, job)? {
+            match resume_index.record(at, job)? {
                 Some(known) => all.push(known),
                 // none where the run was stopped
                 None => all.extend(solved.next()),
@@ -131,7 +141,7 @@ impl<'a> Watch<'a> {
 
     /// Whether a stop is asked for.
     pub(super) fn is_stopped(&self) -> bool {
-        self.stop.is_asked()
+        self.cancel.is_asked()
     }
 
     /// Jobs run here.
@@ -141,7 +151,7 @@ impl<'a> Watch<'a> {
 
     fn note(&self, kept: Result<(), JournalError>) {
         if let Err(error) = kept {
-            self.stop.ask(Why::Journal);
+            self.cancel.ask(Why::Journal);
             self.broken
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
@@ -154,7 +164,7 @@ impl<'a> Watch<'a> {
         if let Some(error) = self.broken.lock().unwrap_or_else(PoisonError::into_inner).take() {
             return Err(RunError::Journal(error));
         }
-        match self.stop.why() {
+        match self.cancel.why() {
             None => Ok(()),
             Some(why) => Err(RunError::Stopped {
                 why,
@@ -164,13 +174,13 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl Told for Watch<'_> {
+impl JobObserver for Monitor<'_> {
     fn begin(&self, jobs: &[&Job]) -> bool {
-        if self.stop.is_asked() {
+        if self.cancel.is_asked() {
             return false;
         }
-        if let Some(ledger) = self.ledger {
-            self.note(ledger.started(jobs.iter().copied()));
+        if let Some(resume_index) = self.resume_index {
+            self.note(resume_index.started(jobs.iter().copied()));
         }
         for job in jobs {
             fault::at_job(job.number);
@@ -179,8 +189,8 @@ impl Told for Watch<'_> {
     }
 
     fn end(&self, jobs: &[&Job], records: &[JobRecord]) {
-        if let Some(ledger) = self.ledger {
-            self.note(ledger.keep(jobs.iter().copied().zip(records)));
+        if let Some(resume_index) = self.resume_index {
+            self.note(resume_index.keep(jobs.iter().copied().zip(records)));
         }
         let fails = records.iter().filter(|record| record.failure.is_some()).count();
         let failed = self.failed.fetch_add(fails, Ordering::Relaxed) + fails;
