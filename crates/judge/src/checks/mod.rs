@@ -110,7 +110,7 @@ kinds! {
     /// A mode, by the name of its shape, has a frequency.
     mode: Mode(ModeCheck),
     /// A column runs along a curve.
-    curve: CheckCurve(CurveCheck),
+    curve: Curve(CurveCheck),
     /// A quantity lies within the uncertainty of a measurement.
     measured: Measured(MeasuredCheck),
 }
