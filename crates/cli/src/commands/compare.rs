@@ -4,7 +4,7 @@ use crate::args::{Common, CompareArguments};
 use crate::ending::ExitStatus;
 use crate::{comparison, words};
 use anyhow::Result;
-use pontoon_judge::compare::{Tolerances, against_old, against_reference};
+use pontoon_judge::compare::{Tolerances, against_baseline, against_reference};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Refusal;
 use pontoon_results::Results;
@@ -15,7 +15,7 @@ pub(crate) fn compare(arguments: &CompareArguments, common: Common) -> Result<Ex
     let older = arguments.with.is_dir() && !arguments.with.join("reference.json").is_file();
     let compared = if older {
         let tolerances = arguments.tolerance.as_deref().map(Tolerances::open).transpose()?;
-        against_old(
+        against_baseline(
             &results,
             &Results::read(&arguments.with)?,
             &tolerances.unwrap_or_default(),

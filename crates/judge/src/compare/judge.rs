@@ -2,7 +2,7 @@
 //!
 //! Knows cases and roles. Does not know what any kind of check asks, nor how a quantity is found.
 
-use super::line::{Case, CaseColumns, CheckResult, Verdict};
+use super::check_result::{Case, CaseColumns, CheckResult, Verdict};
 use crate::checks::{Check, Role};
 use crate::quantity::{CheckInput, Evaluator, NoValue};
 use crate::reference::Reference;

@@ -2,14 +2,14 @@
 //!
 //! Knows what a check asks of tables and what becomes of it. Does not know how a comparison is written down.
 
+mod baseline;
+mod check_result;
 mod judge;
-mod line;
-mod old;
 mod tolerances;
 
+pub use baseline::against_baseline;
+pub use check_result::{Case, CaseColumns, CheckResult, Comparison, Verdict};
 pub(crate) use judge::ReferenceJudge;
-pub use line::{Case, CaseColumns, CheckResult, Comparison, Verdict};
-pub use old::against_old;
 pub use tolerances::Tolerances;
 
 use crate::reference::Reference;

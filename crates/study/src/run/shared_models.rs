@@ -141,7 +141,9 @@ impl SharedModels {
         );
         progress.stage("operators: modes and what they leave out");
         models.operators = each(cancel, &crossings, operator_key, |job| models.operator(job, cache));
-        models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| models.operator_solver(job));
+        models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| {
+            models.operator_solver(job)
+        });
         progress.stage("static peaks of creeping loads");
         let creeping: Vec<&Job> = crossings
             .iter()
@@ -247,7 +249,10 @@ impl SharedModels {
 
     /// The operator's solver of a crossing.
     pub(super) fn operated(&self, crossing: &CrossingJob<'_>) -> SharedResult<OperatorSolver> {
-        shared(&self.operated, &Self::lane_batch_key(crossing).ok_or_else(not_prepared)?)
+        shared(
+            &self.operated,
+            &Self::lane_batch_key(crossing).ok_or_else(not_prepared)?,
+        )
     }
 
     fn crossing_solver(&self, crossing: &CrossingJob<'_>) -> Result<CrossingSolver, JobFailure> {

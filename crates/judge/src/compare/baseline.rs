@@ -2,7 +2,7 @@
 //!
 //! Knows which rows of two runs are the same. Does not know why they may differ.
 
-use super::line::{Case, CaseColumns, CheckResult, Comparison, DIGITS, Verdict};
+use super::check_result::{Case, CaseColumns, CheckResult, Comparison, DIGITS, Verdict};
 use super::tolerances::Tolerances;
 use crate::checks::Role;
 use crate::quantity::Tolerance;
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 ///
 /// # Errors
 /// [`Refusal`] where the two have different axes, or the tolerances name what is no column.
-pub fn against_old(new: &Results, old: &Results, tolerances: &Tolerances) -> Result<Comparison, Refusal> {
+pub fn against_baseline(new: &Results, old: &Results, tolerances: &Tolerances) -> Result<Comparison, Refusal> {
     let axes = new.axes();
     let old_axes = old.axes();
     if let Some(axis) = axes
