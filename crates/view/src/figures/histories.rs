@@ -2,11 +2,11 @@
 //!
 //! Knows the table of histories. Does not know which jobs belong together.
 
-use super::family::families;
 use super::figure::{Figure, FigureLine, FigureMeasure, FigureMoment, FigurePanel, MomentKind};
+use super::figure_context::{FigureContext, MarkRequest};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
-use super::sheet::{MarkRequest, Sheet};
+use super::series_group::series_groups;
 use crate::thinning::thinned;
 use pontoon_judge::quantity::moments_of;
 use pontoon_results::{Table, TableName};
@@ -22,13 +22,13 @@ type Recorded = HashMap<(u64, Channel), Range<usize>>;
 /// Arrivals closer than this are one `[s]`: a hundredth of a time step.
 const SAME_ARRIVAL_S: f64 = 1e-4;
 
-/// Figures of recorded histories: each channel by each family.
-pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
-    let Some(table) = sheet.results.table(TableName::Histories) else {
+/// Figures of recorded histories: each channel by each group.
+pub(super) fn histories(context: &mut FigureContext<'_>) -> Vec<Figure> {
+    let Some(table) = context.results.table(TableName::Histories) else {
         return Vec::new();
     };
-    let (channels, recorded) = recorded(sheet, table);
-    let families = families(sheet, Some("speed_m_s"));
+    let (channels, recorded) = recorded(context, table);
+    let series_groups = series_groups(context, Some("speed_m_s"));
     let mut figures = Vec::new();
     for (quantity, position) in channels {
         let (stem, what, y) = match quantity.as_str() {
@@ -36,21 +36,26 @@ pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
             "force_n" => ("force", "Force of the joint at position", FigureMeasure::FORCE),
             _ => continue,
         };
-        for family in &families {
-            let name = family.name(&format!("{stem}-{position}"));
-            let (split, left_out) = by_speed(sheet, family, &name);
+        for series_group in &series_groups {
+            let name = series_group.name(&format!("{stem}-{position}"));
+            let (split, left_out) = by_speed(context, series_group, &name);
             let channel = (quantity.clone(), position);
-            let of = |split: &Split| panel(sheet, table, split, &channel, y, &recorded);
+            let of = |split: &Split| panel(context, table, split, &channel, y, &recorded);
             let panels: Vec<FigurePanel> = split.iter().map(of).filter(|panel| !panel.lines.is_empty()).collect();
             if panels.is_empty() {
                 continue;
             }
             figures.push(Figure {
-                caption: caption(sheet, family, &format!("{what} {position} against time"), &panels),
+                caption: caption(
+                    context,
+                    series_group,
+                    &format!("{what} {position} against time"),
+                    &panels,
+                ),
                 name,
-                legend: family.legend(),
+                legend: series_group.legend(),
                 panels,
-                left_out: family.left_out.clone().into_iter().chain(left_out).collect(),
+                left_out: series_group.left_out.clone().into_iter().chain(left_out).collect(),
             });
         }
     }
@@ -58,7 +63,7 @@ pub(super) fn histories(sheet: &mut Sheet<'_>) -> Vec<Figure> {
 }
 
 /// What was recorded, in the order of the table.
-fn recorded(sheet: &Sheet<'_>, table: &Table) -> (Vec<Channel>, Recorded) {
+fn recorded(context: &FigureContext<'_>, table: &Table) -> (Vec<Channel>, Recorded) {
     let columns = (
         table.numbers("job"),
         table.word_cells("quantity"),
@@ -68,7 +73,7 @@ fn recorded(sheet: &Sheet<'_>, table: &Table) -> (Vec<Channel>, Recorded) {
     let (Some(job), Some(quantity), Some(position)) = columns else {
         return (channels, found);
     };
-    let jobs: BTreeSet<u64> = sheet.rows.iter().map(|row| sheet.job(*row)).collect();
+    let jobs: BTreeSet<u64> = context.rows.iter().map(|row| context.job(*row)).collect();
     let mut start = 0;
     while start < table.rows() {
         let same = |row: &usize| {
@@ -90,7 +95,7 @@ fn recorded(sheet: &Sheet<'_>, table: &Table) -> (Vec<Channel>, Recorded) {
 }
 
 fn panel(
-    sheet: &Sheet<'_>,
+    context: &FigureContext<'_>,
     table: &Table,
     split: &Split,
     channel: &Channel,
@@ -99,7 +104,7 @@ fn panel(
 ) -> FigurePanel {
     let mut lines = Vec::new();
     for line in &split.lines {
-        let job = sheet.job(line.row);
+        let job = context.job(line.row);
         if let Some(rows) = recorded.get(&(job, channel.clone())) {
             lines.push(FigureLine {
                 label: line.label.clone(),
@@ -124,8 +129,8 @@ fn panel(
         title: split.title.clone(),
         x: FigureMeasure::TIME.axis(),
         y: y.axis(),
-        marks: sheet.marks_of(&rows, &asked),
-        moments: arrival(sheet, &rows, channel.1),
+        marks: context.marks_of(&rows, &asked),
+        moments: arrival(context, &rows, channel.1),
         lines,
     }
 }
@@ -145,9 +150,9 @@ fn points(table: &Table, rows: &Range<usize>, y: FigureMeasure) -> Vec<[f64; 2]>
 }
 
 /// When the vehicle's centre is at a position, where it is so for all jobs at once.
-fn arrival(sheet: &Sheet<'_>, rows: &[usize], position: u32) -> Vec<FigureMoment> {
+fn arrival(context: &FigureContext<'_>, rows: &[usize], position: u32) -> Vec<FigureMoment> {
     let at = |row: &usize| {
-        moments_of(sheet.results, *row, position as usize)
+        moments_of(context.results, *row, position as usize)
             .ok()
             .map(|moments| moments.arrival_s)
     };

@@ -4,9 +4,9 @@
 //! |---|---|
 //! | `marks` | points of a reference that are drawn beside results |
 //! | `figure` | a figure as numbers: panels of lines, marks and moments, with units |
-//! | `sheet` | what is known of the jobs before any figure |
-//! | `family` | jobs that differ in one axis, to be lines of one figure |
-//! | `panels` | a family split by speed; captions |
+//! | `figure_context` | what is known of the jobs before any figure |
+//! | `series_group` | jobs that differ in one axis, to be lines of one figure |
+//! | `panels` | a group split by speed; captions |
 //! | `profiles` | along the bridge: deflected lines, envelopes |
 //! | `histories` | against time |
 //! | `speeds` | peaks against speed |
@@ -15,25 +15,25 @@
 //! Knows which curves belong together, their units and their legends. Does not know how a figure is drawn or where it
 //! is written.
 
-mod family;
 mod figure;
+mod figure_context;
 mod histories;
 mod marks;
 mod modes;
 mod panels;
 mod profiles;
-mod sheet;
+mod series_group;
 mod speeds;
 
 pub use figure::{Figure, FigureAxis, FigureLine, FigureMoment, FigurePanel, PlottedMark};
 pub use marks::{Chart, Origin, ReferenceMark, marks};
 
+use figure_context::FigureContext;
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Refusal;
 use pontoon_plan::study_file::Kind;
 use pontoon_results::Results;
 use serde::Serialize;
-use sheet::Sheet;
 
 /// Figures of one study.
 const MOST_FIGURES: usize = 40;
@@ -68,8 +68,8 @@ impl Figures {
             }
             None => Vec::new(),
         };
-        let mut sheet = Sheet::new(results, marks);
-        if sheet.rows.is_empty() {
+        let mut context = FigureContext::new(results, marks);
+        if context.rows.is_empty() {
             let found = match results.jobs().rows() {
                 0 => "no jobs".to_owned(),
                 1 => "one job, which failed".to_owned(),
@@ -83,12 +83,12 @@ impl Figures {
             ));
         }
         let mut figures = match results.kind() {
-            Kind::Static => profiles::deflected(&mut sheet),
-            Kind::Modes => modes::frequencies(&mut sheet, reference),
+            Kind::Static => profiles::deflected(&mut context),
+            Kind::Modes => modes::frequencies(&mut context, reference),
             Kind::Crossing => {
-                let mut figures = histories::histories(&mut sheet);
-                figures.extend(speeds::speeds(&mut sheet));
-                figures.extend(profiles::envelopes(&mut sheet));
+                let mut figures = histories::histories(&mut context);
+                figures.extend(speeds::speeds(&mut context));
+                figures.extend(profiles::envelopes(&mut context));
                 figures
             }
         };
@@ -98,16 +98,16 @@ impl Figures {
                 .iter()
                 .map(|figure| figure.name.as_str())
                 .collect();
-            sheet
+            context
                 .left_out
                 .push(format!("{} figures: {}", names.len(), names.join(", ")));
             figures.truncate(MOST_FIGURES);
         }
-        let mut left_out = sheet.left_out.clone();
+        let mut left_out = context.left_out.clone();
         left_out.extend(figures.iter().flat_map(|figure| figure.left_out.iter().cloned()));
-        left_out.extend(undrawn(&sheet, &figures));
-        let mut said = std::collections::BTreeSet::new();
-        left_out.retain(|line| said.insert(line.clone()));
+        left_out.extend(undrawn(&context, &figures));
+        let mut seen = std::collections::BTreeSet::new();
+        left_out.retain(|line| seen.insert(line.clone()));
         distinct(&mut figures);
         Ok(Self {
             study: results.name.clone(),
@@ -119,7 +119,7 @@ impl Figures {
 }
 
 /// Measurements that no figure holds.
-fn undrawn(sheet: &Sheet<'_>, figures: &[Figure]) -> Vec<String> {
+fn undrawn(context: &FigureContext<'_>, figures: &[Figure]) -> Vec<String> {
     let drawn = |id: &str| {
         let mut marks = figures
             .iter()
@@ -127,7 +127,7 @@ fn undrawn(sheet: &Sheet<'_>, figures: &[Figure]) -> Vec<String> {
             .flat_map(|panel| &panel.marks);
         marks.any(|mark| mark.id == id)
     };
-    let measured = sheet
+    let measured = context
         .marks
         .iter()
         .filter(|mark| mark.origin == Origin::Measured && !drawn(&mark.id));

@@ -2,11 +2,11 @@
 //!
 //! Knows the table of modes and the checks of modes. Does not know shapes.
 
-use super::family::{Family, FamilyLine, families};
 use super::figure::{Figure, FigureAxis, FigureLine, FigureMeasure, FigurePanel, PlottedMark};
+use super::figure_context::{FigureContext, rows_by_job};
 use super::marks::Origin;
 use super::panels::caption;
-use super::sheet::{Sheet, rows_by_job};
+use super::series_group::{GroupedLine, SeriesGroup, series_groups};
 use pontoon_judge::checks::Expectation;
 use pontoon_judge::reference::Reference;
 use pontoon_results::{Table, TableName};
@@ -17,23 +17,26 @@ const MODEL: &str = "analysis.model";
 /// Shapes that one figure holds.
 const MOST_SHAPES: usize = 40;
 
-/// Frequencies of each family of models.
-pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) -> Vec<Figure> {
-    let Some(table) = sheet.results.table(TableName::Modes) else {
+/// Frequencies of each group of models.
+pub(super) fn frequencies(context: &mut FigureContext<'_>, reference: Option<&Reference>) -> Vec<Figure> {
+    let Some(table) = context.results.table(TableName::Modes) else {
         return Vec::new();
     };
-    let mut families = families(sheet, None);
+    let mut series_groups = series_groups(context, None);
     // models are what one compares; bridges with other numbers of modules have other shapes
-    if families.iter().any(|family| family.by.as_deref() == Some(MODEL)) {
-        families.retain(|family| family.by.as_deref() == Some(MODEL));
+    if series_groups
+        .iter()
+        .any(|series_group| series_group.by.as_deref() == Some(MODEL))
+    {
+        series_groups.retain(|series_group| series_group.by.as_deref() == Some(MODEL));
     }
     let of_job = rows_by_job(table);
     let mut figures = Vec::new();
-    for family in &families {
-        let mut left_out: Vec<String> = family.left_out.clone().into_iter().collect();
-        let name = family.name("frequencies");
-        let of_line = |line: &FamilyLine| of_job.get(&sheet.job(line.rows[0])).cloned().unwrap_or_default();
-        let mut shapes = shapes(table, family, &of_line);
+    for series_group in &series_groups {
+        let mut left_out: Vec<String> = series_group.left_out.clone().into_iter().collect();
+        let name = series_group.name("frequencies");
+        let of_line = |line: &GroupedLine| of_job.get(&context.job(line.rows[0])).cloned().unwrap_or_default();
+        let mut shapes = shapes(table, series_group, &of_line);
         if shapes.len() > MOST_SHAPES {
             left_out.push(format!(
                 "{name}: {} of {} shapes",
@@ -49,11 +52,11 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
                 place(table.cell("shape", row).word()?)?,
             ])
         };
-        let line = |line: &FamilyLine| FigureLine {
+        let line = |line: &GroupedLine| FigureLine {
             label: line.label.clone(),
             style: line.style,
             joined: false,
-            jobs: vec![sheet.job(line.rows[0])],
+            jobs: vec![context.job(line.rows[0])],
             points: of_line(line).into_iter().filter_map(point).collect(),
         };
         let panel = FigurePanel {
@@ -65,21 +68,21 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
                 down: true,
                 words: shapes.clone(),
             },
-            lines: family.lines.iter().map(line).collect(),
+            lines: series_group.lines.iter().map(line).collect(),
             marks: reference
-                .map(|reference| marks(sheet, reference, family, &place))
+                .map(|reference| marks(context, reference, series_group, &place))
                 .unwrap_or_default(),
             moments: Vec::new(),
         };
         figures.push(Figure {
             caption: caption(
-                sheet,
-                family,
+                context,
+                series_group,
                 "Natural frequencies by the name of the shape",
                 std::slice::from_ref(&panel),
             ),
             name,
-            legend: family.legend(),
+            legend: series_group.legend(),
             panels: vec![panel],
             left_out,
         });
@@ -87,10 +90,10 @@ pub(super) fn frequencies(sheet: &mut Sheet<'_>, reference: Option<&Reference>) 
     figures
 }
 
-/// The shapes of a family in the order of the lowest frequency that any line has of them.
-fn shapes(table: &Table, family: &Family, of_line: &dyn Fn(&FamilyLine) -> Vec<usize>) -> Vec<String> {
+/// The shapes of a group in the order of the lowest frequency that any line has of them.
+fn shapes(table: &Table, series_group: &SeriesGroup, of_line: &dyn Fn(&GroupedLine) -> Vec<usize>) -> Vec<String> {
     let mut shapes: Vec<(f64, String)> = Vec::new();
-    for row in family.lines.iter().flat_map(of_line) {
+    for row in series_group.lines.iter().flat_map(of_line) {
         let (Some(frequency_hz), Some(shape)) = (
             table.number("frequency_hz", row),
             table.cell("shape", row).word().map(str::to_owned),
@@ -106,14 +109,14 @@ fn shapes(table: &Table, family: &Family, of_line: &dyn Fn(&FamilyLine) -> Vec<u
     shapes.into_iter().map(|(_, shape)| shape).collect()
 }
 
-/// What a reference has of the shapes, each number once, where it is said of one of the family's jobs.
+/// What a reference has of the shapes, each number once, where it is said of one of the group's jobs.
 fn marks(
-    sheet: &Sheet<'_>,
+    context: &FigureContext<'_>,
     reference: &Reference,
-    family: &Family,
+    series_group: &SeriesGroup,
     place: &dyn Fn(&str) -> Option<f64>,
 ) -> Vec<PlottedMark> {
-    let jobs = sheet.results.jobs();
+    let jobs = context.results.jobs();
     let mut marks: Vec<PlottedMark> = Vec::new();
     for check in &reference.checks {
         let Expectation::Mode { shape, frequency_hz } = check.expectation() else {
@@ -126,7 +129,7 @@ fn marks(
                 .iter()
                 .all(|(column, allowed)| allowed.allows(&jobs.cell(column, *row)))
         };
-        let Some(place) = place(shape).filter(|_| family.rows().iter().any(fits)) else {
+        let Some(place) = place(shape).filter(|_| series_group.rows().iter().any(fits)) else {
             continue;
         };
         let point = [frequency_hz, place];

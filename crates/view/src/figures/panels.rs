@@ -1,10 +1,10 @@
-//! A family split into panels, one a speed, and what is written under a figure.
+//! A group of series split into panels, one a speed, and what is written under a figure.
 //!
-//! Knows families and speeds. Does not know tables.
+//! Knows groups and speeds. Does not know tables.
 
-use super::family::Family;
 use super::figure::{FigurePanel, MomentKind};
-use super::sheet::{Sheet, listed};
+use super::figure_context::{FigureContext, listed};
+use super::series_group::SeriesGroup;
 use crate::thinning::spread;
 use pontoon_results::labels::{self, SHOWN};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Panels of a figure.
 const MOST_PANELS: usize = 6;
 
-/// The part of a family that one panel shows: one job a line.
+/// The part of a group that one panel shows: one job a line.
 pub(super) struct Split {
     pub title: String,
     pub lines: Vec<SplitLine>,
@@ -27,12 +27,16 @@ pub(super) struct SplitLine {
 
 /// A panel a speed, at most [`MOST_PANELS`], evenly spread over the speeds; and what none holds, in words, to be said where
 /// the figure of that `name` is drawn.
-pub(super) fn by_speed(sheet: &Sheet<'_>, family: &Family, name: &str) -> (Vec<Split>, Option<String>) {
+pub(super) fn by_speed(
+    context: &FigureContext<'_>,
+    series_group: &SeriesGroup,
+    name: &str,
+) -> (Vec<Split>, Option<String>) {
     let mut speeds: Vec<(f64, Vec<SplitLine>)> = Vec::new();
     let mut place: BTreeMap<u64, usize> = BTreeMap::new();
-    for line in &family.lines {
+    for line in &series_group.lines {
         for row in &line.rows {
-            let Some(speed_m_s) = sheet.number("speed_m_s", *row) else {
+            let Some(speed_m_s) = context.number("speed_m_s", *row) else {
                 continue;
             };
             let i = *place.entry(speed_m_s.to_bits()).or_insert_with(|| {
@@ -69,25 +73,30 @@ pub(super) fn by_speed(sheet: &Sheet<'_>, family: &Family, name: &str) -> (Vec<S
 }
 
 /// What a paper would write under a figure: what is drawn, for what, under which conditions, what panels and marks are.
-pub(super) fn caption(sheet: &Sheet<'_>, family: &Family, what: &str, panels: &[FigurePanel]) -> String {
+pub(super) fn caption(
+    context: &FigureContext<'_>,
+    series_group: &SeriesGroup,
+    what: &str,
+    panels: &[FigurePanel],
+) -> String {
     let mut text = what.to_owned();
-    let linear = family.lines.iter().any(|line| line.style == 0);
-    if let Some(by) = &family.by {
-        let others = family.lines.iter().filter(|line| line.style > 0);
+    let linear = series_group.lines.iter().any(|line| line.style == 0);
+    if let Some(by) = &series_group.by {
+        let others = series_group.lines.iter().filter(|line| line.style > 0);
         let values: Vec<String> = others.map(|line| line.label.clone()).collect();
         text += &format!(", for a {} of {}", labels::label(by), listed(&values));
         if linear {
             text += " and for the linear connection";
         }
     }
-    let mut told: Vec<&str> = family.by.as_deref().into_iter().collect();
+    let mut told: Vec<&str> = series_group.by.as_deref().into_iter().collect();
     if panels.len() > 1 {
         told.push("speed_m_s");
     }
     if linear {
         told.push("connection");
     }
-    let alike = sheet.alike(&family.rows(), &told);
+    let alike = context.alike(&series_group.rows(), &told);
     if !alike.is_empty() {
         text += &format!("; {}", alike.join(", "));
     }
@@ -118,13 +127,13 @@ fn of_moments(panels: &[FigurePanel]) -> &'static str {
 fn of_marks(panels: &[FigurePanel]) -> String {
     let mut marks: Vec<String> = Vec::new();
     for mark in panels.iter().flat_map(|panel| &panel.marks) {
-        let said = if mark.label == mark.id {
+        let mark_label = if mark.label == mark.id {
             mark.id.clone()
         } else {
             format!("{} ({})", mark.label, mark.id)
         };
-        if !marks.contains(&said) {
-            marks.push(said);
+        if !marks.contains(&mark_label) {
+            marks.push(mark_label);
         }
     }
     match marks.as_slice() {

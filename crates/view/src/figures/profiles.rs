@@ -2,32 +2,32 @@
 //!
 //! Knows the table of positions. Does not know which jobs belong together.
 
-use super::family::{Family, families};
 use super::figure::{Figure, FigureLine, FigureMeasure, FigureMoment, FigurePanel, MomentKind};
+use super::figure_context::{FigureContext, MarkRequest, rows_by_job};
 use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
-use super::sheet::{MarkRequest, Sheet, rows_by_job};
+use super::series_group::{SeriesGroup, series_groups};
 use pontoon_results::{Table, TableName};
 use std::collections::{BTreeSet, HashMap};
 
 /// The deflected lines of a static study.
-pub(super) fn deflected(sheet: &mut Sheet<'_>) -> Vec<Figure> {
-    let Some(table) = sheet.results.table(TableName::Positions) else {
-        sheet
+pub(super) fn deflected(context: &mut FigureContext<'_>) -> Vec<Figure> {
+    let Some(table) = context.results.table(TableName::Positions) else {
+        context
             .left_out
             .push("deflection along the bridge: the study left no table of positions".to_owned());
         return Vec::new();
     };
-    let families = families(sheet, None);
+    let series_groups = series_groups(context, None);
     let of_job = rows_by_job(table);
-    let figure = |family: &Family| {
-        let rows = family.rows();
-        let lines = family.lines.iter().map(|line| FigureLine {
+    let figure = |series_group: &SeriesGroup| {
+        let rows = series_group.rows();
+        let lines = series_group.lines.iter().map(|line| FigureLine {
             label: line.label.clone(),
             style: line.style,
             joined: true,
-            jobs: vec![sheet.job(line.rows[0])],
-            points: points(table, of_job.get(&sheet.job(line.rows[0])), "deflection_m", 1.0),
+            jobs: vec![context.job(line.rows[0])],
+            points: points(table, of_job.get(&context.job(line.rows[0])), "deflection_m", 1.0),
         });
         let lines = lines.collect();
         let asked = MarkRequest {
@@ -43,58 +43,63 @@ pub(super) fn deflected(sheet: &mut Sheet<'_>) -> Vec<Figure> {
             title: String::new(),
             x: FigureMeasure::ALONG.axis(),
             y: FigureMeasure::DEFLECTION.axis(),
-            marks: sheet.marks_of(&rows, &asked),
-            moments: load_of(sheet, table, &rows, &of_job),
+            marks: context.marks_of(&rows, &asked),
+            moments: load_of(context, table, &rows, &of_job),
             lines,
         };
         Figure {
-            name: family.name("deflection-along-bridge"),
+            name: series_group.name("deflection-along-bridge"),
             caption: caption(
-                sheet,
-                family,
+                context,
+                series_group,
                 "Deflection along the bridge under the standing vehicle",
                 std::slice::from_ref(&panel),
             ),
-            legend: family.legend(),
+            legend: series_group.legend(),
             panels: vec![panel],
-            left_out: family.left_out.clone().into_iter().collect(),
+            left_out: series_group.left_out.clone().into_iter().collect(),
         }
     };
-    families.iter().map(figure).collect()
+    series_groups.iter().map(figure).collect()
 }
 
 /// The envelopes of a study of crossings: largest deflection and, above the unloaded bridge, largest uplift.
-pub(super) fn envelopes(sheet: &mut Sheet<'_>) -> Vec<Figure> {
-    let Some(table) = sheet.results.table(TableName::Positions) else {
+pub(super) fn envelopes(context: &mut FigureContext<'_>) -> Vec<Figure> {
+    let Some(table) = context.results.table(TableName::Positions) else {
         return Vec::new();
     };
-    let families = families(sheet, Some("speed_m_s"));
+    let series_groups = series_groups(context, Some("speed_m_s"));
     let of_job = rows_by_job(table);
     let mut figures = Vec::new();
-    for family in &families {
-        let name = family.name("envelope-along-bridge");
-        let (split, left_out) = by_speed(sheet, family, &name);
+    for series_group in &series_groups {
+        let name = series_group.name("envelope-along-bridge");
+        let (split, left_out) = by_speed(context, series_group, &name);
         let panels: Vec<FigurePanel> = split
             .iter()
-            .map(|split| envelope(sheet, table, &of_job, split))
+            .map(|split| envelope(context, table, &of_job, split))
             .collect();
         figures.push(Figure {
             caption: caption(
-                sheet,
-                family,
+                context,
+                series_group,
                 "Largest deflection (downward) and largest uplift (upward) along the bridge during the crossing",
                 &panels,
             ),
             name,
-            legend: family.legend(),
+            legend: series_group.legend(),
             panels,
-            left_out: family.left_out.clone().into_iter().chain(left_out).collect(),
+            left_out: series_group.left_out.clone().into_iter().chain(left_out).collect(),
         });
     }
     figures
 }
 
-fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>, split: &Split) -> FigurePanel {
+fn envelope(
+    context: &FigureContext<'_>,
+    table: &Table,
+    of_job: &HashMap<u64, Vec<usize>>,
+    split: &Split,
+) -> FigurePanel {
     let rows: Vec<usize> = split.lines.iter().map(|line| line.row).collect();
     let sides = [("peak_deflection_m", 1.0), ("peak_uplift_m", -1.0)];
     let line = |(column, sign): (&str, f64)| {
@@ -103,8 +108,8 @@ fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>,
             label: line.label.clone(),
             style: line.style,
             joined: true,
-            jobs: vec![sheet.job(line.row)],
-            points: points(table, of_job.get(&sheet.job(line.row)), &column, sign),
+            jobs: vec![context.job(line.row)],
+            points: points(table, of_job.get(&context.job(line.row)), &column, sign),
         })
     };
     let marks = |(column, sign): (&str, f64)| {
@@ -117,7 +122,7 @@ fn envelope(sheet: &Sheet<'_>, table: &Table, of_job: &HashMap<u64, Vec<usize>>,
             y: FigureMeasure::DEFLECTION,
             sign,
         };
-        sheet.marks_of(&rows, &asked)
+        context.marks_of(&rows, &asked)
     };
     FigurePanel {
         title: split.title.clone(),
@@ -140,11 +145,16 @@ fn points(table: &Table, rows: Option<&Vec<usize>>, column: &str, sign: f64) -> 
 }
 
 /// Where the vehicle stands, where it does so at one place.
-fn load_of(sheet: &Sheet<'_>, table: &Table, rows: &[usize], of_job: &HashMap<u64, Vec<usize>>) -> Vec<FigureMoment> {
+fn load_of(
+    context: &FigureContext<'_>,
+    table: &Table,
+    rows: &[usize],
+    of_job: &HashMap<u64, Vec<usize>>,
+) -> Vec<FigureMoment> {
     let at = |row: &usize| {
-        sheet.number("load_x_m", *row).or_else(|| {
-            let position = sheet.number("load_position", *row)?;
-            let mut own = of_job.get(&sheet.job(*row))?.iter();
+        context.number("load_x_m", *row).or_else(|| {
+            let position = context.number("load_position", *row)?;
+            let mut own = of_job.get(&context.job(*row))?.iter();
             table.number(
                 "x_m",
                 *own.find(|own| table.number("position", **own) == Some(position))?,

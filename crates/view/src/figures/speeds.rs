@@ -2,11 +2,11 @@
 //!
 //! Knows the table of jobs. Does not know which jobs belong together.
 
-use super::family::{Family, FamilyLine, families};
 use super::figure::{Figure, FigureLine, FigureMeasure, FigurePanel};
+use super::figure_context::{FigureContext, MarkRequest};
 use super::marks::Chart;
 use super::panels::caption;
-use super::sheet::{MarkRequest, Sheet};
+use super::series_group::{GroupedLine, SeriesGroup, series_groups};
 use crate::thinning::spread;
 use pontoon_results::{Column, SpeedFigure, TableName};
 
@@ -36,60 +36,69 @@ fn columns(figure: SpeedFigure) -> impl Iterator<Item = (&'static str, FigureMea
 }
 
 /// Peaks against speed, a line each value of an axis; of jobs that have nothing alike a point each.
-pub(super) fn speeds(sheet: &mut Sheet<'_>) -> Vec<Figure> {
-    if !sheet.varying.iter().any(|axis| axis == "speed_m_s") {
+pub(super) fn speeds(context: &mut FigureContext<'_>) -> Vec<Figure> {
+    if !context.varying.iter().any(|axis| axis == "speed_m_s") {
         return Vec::new();
     }
-    let mut families = families(sheet, Some("speed_m_s"));
-    families.retain(|family| family.lines.iter().any(|line| line.rows.len() > 1));
-    let joined = !families.is_empty();
+    let mut series_groups = series_groups(context, Some("speed_m_s"));
+    series_groups.retain(|series_group| series_group.lines.iter().any(|line| line.rows.len() > 1));
+    let joined = !series_groups.is_empty();
     if !joined {
-        families.push(points(sheet));
+        series_groups.push(points(context));
     }
     let mut figures = Vec::new();
-    for family in &families {
+    for series_group in &series_groups {
         for figure in SpeedFigure::ALL {
             let (stem, what) = words(figure);
             let panels: Vec<FigurePanel> = columns(figure)
-                .map(|(column, y)| panel(sheet, family, column, y, joined))
+                .map(|(column, y)| panel(context, series_group, column, y, joined))
                 .collect();
             figures.push(Figure {
-                name: family.name(stem),
-                caption: caption_of(sheet, family, what),
-                legend: family.legend(),
+                name: series_group.name(stem),
+                caption: caption_of(context, series_group, what),
+                legend: series_group.legend(),
                 panels,
-                left_out: family.left_out.clone().into_iter().collect(),
+                left_out: series_group.left_out.clone().into_iter().collect(),
             });
         }
     }
     figures
 }
 
-fn caption_of(sheet: &Sheet<'_>, family: &Family, what: &str) -> String {
-    caption(sheet, family, what, &[])
+fn caption_of(context: &FigureContext<'_>, series_group: &SeriesGroup, what: &str) -> String {
+    caption(context, series_group, what, &[])
 }
 
 /// All jobs as points.
-fn points(sheet: &Sheet<'_>) -> Family {
-    let (all, chosen) = (sheet.rows.len(), spread(sheet.rows.len(), MOST_POINTS));
+fn points(context: &FigureContext<'_>) -> SeriesGroup {
+    let (all, chosen) = (context.rows.len(), spread(context.rows.len(), MOST_POINTS));
     let left_out = (chosen.len() < all).then(|| format!("peaks against speed: {} of {all} jobs", all - chosen.len()));
-    Family {
+    SeriesGroup {
         by: None,
         suffix: String::new(),
-        lines: vec![FamilyLine {
+        lines: vec![GroupedLine {
             label: "a job".to_owned(),
             style: 1,
-            rows: chosen.into_iter().map(|i| sheet.rows[i]).collect(),
+            rows: chosen.into_iter().map(|i| context.rows[i]).collect(),
         }],
         left_out,
     }
 }
 
-fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: FigureMeasure, joined: bool) -> FigurePanel {
-    let line = |line: &FamilyLine| {
+fn panel(
+    context: &FigureContext<'_>,
+    series_group: &SeriesGroup,
+    column: &str,
+    y: FigureMeasure,
+    joined: bool,
+) -> FigurePanel {
+    let line = |line: &GroupedLine| {
         let point = |row: &usize| {
-            let point = [sheet.number("speed_m_s", *row)?, sheet.number(column, *row)? * y.factor];
-            Some((point, sheet.job(*row)))
+            let point = [
+                context.number("speed_m_s", *row)?,
+                context.number(column, *row)? * y.factor,
+            ];
+            Some((point, context.job(*row)))
         };
         let mut points: Vec<([f64; 2], u64)> = line.rows.iter().filter_map(point).collect();
         points.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]).then(a.1.cmp(&b.1)));
@@ -114,8 +123,8 @@ fn panel(sheet: &Sheet<'_>, family: &Family, column: &str, y: FigureMeasure, joi
         title: String::new(),
         x: FigureMeasure::SPEED.axis(),
         y: y.axis(),
-        lines: family.lines.iter().map(line).collect(),
-        marks: sheet.marks_of(&family.rows(), &asked),
+        lines: series_group.lines.iter().map(line).collect(),
+        marks: context.marks_of(&series_group.rows(), &asked),
         moments: Vec::new(),
     }
 }

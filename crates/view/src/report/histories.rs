@@ -67,13 +67,13 @@ impl Gathered {
 pub(super) fn histories(
     results: &Results,
     wanted: &HashSet<u32>,
-    said: &dyn Fn(usize) -> String,
+    row_label: &dyn Fn(usize) -> String,
 ) -> Result<(Vec<HistoryLine>, usize), ResultsError> {
     let (mut lines, mut count, mut now) = (Vec::new(), 0, Gathered::default());
     let mut flush = |now: &Gathered| {
         if !now.value.is_empty() && lines.len() < MOST {
             let row = results.row_of_job(u64::from(now.job));
-            lines.push(now.line(row.map(said).unwrap_or_default()));
+            lines.push(now.line(row.map(row_label).unwrap_or_default()));
         }
     };
     let columns = ["job", "time_s", "quantity", "position", "value"];

@@ -9,33 +9,33 @@
 //! | `settings` | what a study was run with, in words |
 //! | `axes` | axes and their bins |
 //! | `cells` | all jobs in aggregate |
-//! | `cards` | the largest of each measure; why jobs failed |
+//! | `headline` | the largest of each measure; why jobs failed |
 //! | `rows` | jobs that are listed, their profiles, the envelope of all |
 //! | `histories` | recorded histories, thinned |
-//! | `plays` | crossings solved once more, to be played |
+//! | `playback` | crossings solved once more, to be played |
 //! | `shapes` | mode shapes |
 //! | `verdicts` | a comparison |
 //! | `packed` | numbers as bytes |
 
 mod axes;
-mod cards;
 mod cells;
+mod headline;
 mod histories;
 mod open;
 mod packed;
-mod plays;
+mod playback;
 mod rows;
 mod settings;
 mod shapes;
 mod verdicts;
 
 pub use axes::{AxisKind, PageAxis};
-pub use cards::{FailureNote, PageCard};
 pub use cells::{PageCells, PageMeasure};
+pub use headline::{FailureNote, PageCard};
 pub use histories::HistoryLine;
 pub use open::OpenedResults;
 pub use packed::{Packed, Scaled};
-pub use plays::{AxlePatch, Play};
+pub use playback::{AxlePatch, Play};
 pub use rows::{ColumnData, JobRows, PageEnvelope, PageProfile, RowColumn, WordList};
 pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};
@@ -267,12 +267,12 @@ impl Report {
         let jobs = results.jobs();
         let names = axes_shown(&results);
         let (axes, of_words) = axes_of(jobs, &names, &mut notes);
-        let said = |row: usize| cards::axes_in_words(jobs, &of_words, row);
+        let row_label = |row: usize| headline::axes_in_words(jobs, &of_words, row);
         let measures = cells::measures(jobs);
         let chosen = rows::chosen(&results, &measures);
         let (rows, envelope) = JobRows::new(&results, &names, &measures, &chosen, &mut notes)?;
         let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(&results, row)).collect();
-        let (histories, recorded) = histories::histories(&results, &wanted, &said)?;
+        let (histories, recorded) = histories::histories(&results, &wanted, &row_label)?;
         if histories.len() < recorded {
             let shown = histories.len();
             notes.push(format!("{shown} of {recorded} recorded histories are shown."));
@@ -280,14 +280,14 @@ impl Report {
         let played = match &study {
             Some(study) if !all.is_empty() => {
                 let of = (measures.as_slice(), chosen.0.as_slice());
-                plays::plays(study, &all, &results, of, setting.plays, setting.cache.as_ref())
+                playback::plays(study, &all, &results, of, setting.plays, setting.cache.as_ref())
             }
-            _ => plays::Played::default(),
+            _ => playback::Played::default(),
         };
         notes.extend(played.notes);
-        let (modes, without) = shapes::mode_sets(&all, &results, &said, setting.modes);
+        let (modes, without) = shapes::mode_sets(&all, &results, &row_label, setting.modes);
         notes.extend(without);
-        let (failures, causes) = cards::failures(&results);
+        let (failures, causes) = headline::failures(&results);
         if failures.len() < causes {
             notes.push(format!("{} of {causes} causes of failures are listed.", failures.len()));
         }
@@ -302,7 +302,7 @@ impl Report {
             bridge: all.first().map(BridgeNote::of),
             jobs: JobCounts::new(&results, missing),
             cells: PageCells::new(&results, &axes, &measures),
-            cards: cards::cards(&results, &measures, &said),
+            cards: headline::cards(&results, &measures, &row_label),
             failures,
             marks: marks.into_iter().map(PageMark::from).collect(),
             envelope,
@@ -310,7 +310,7 @@ impl Report {
             histories,
             plays: played.plays,
             modes,
-            mode_table: shapes::mode_table(&results, &said),
+            mode_table: shapes::mode_table(&results, &row_label),
             verdicts: compared.map(Verdicts::new),
             provenance,
             notes,
@@ -366,12 +366,12 @@ fn undrawn(marks: &[ReferenceMark], jobs: &Table) -> Vec<String> {
     };
     let alone = |mark: &&ReferenceMark| mark.chart == Chart::Speed && mark.table != TableName::Jobs;
     let nobodys = |mark: &&ReferenceMark| !alone(mark) && !(0..jobs.rows()).any(|row| mark.belongs_to(jobs, row));
-    let said =
+    let note_of =
         |list: Vec<&ReferenceMark>, why: &str| (!list.is_empty()).then(|| format!("Not drawn, {why}: {}.", ids(list)));
-    let of_one = said(
+    let of_one = note_of(
         marks.iter().filter(alone).collect(),
         "as charts against speed show the largest of the bridge",
     );
-    let of_none = said(marks.iter().filter(nobodys).collect(), "as no job has their axes");
+    let of_none = note_of(marks.iter().filter(nobodys).collect(), "as no job has their axes");
     of_one.into_iter().chain(of_none).collect()
 }

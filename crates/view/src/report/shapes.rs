@@ -65,7 +65,7 @@ pub struct ModeLine {
 pub(super) fn mode_sets(
     all: &[Job],
     results: &Results,
-    said: &dyn Fn(usize) -> String,
+    row_label: &dyn Fn(usize) -> String,
     most: usize,
 ) -> (Vec<ModeSet>, Vec<String>) {
     let (mut sets, mut notes) = (Vec::new(), Vec::new());
@@ -84,7 +84,7 @@ pub(super) fn mode_sets(
             "on its supports"
         };
         let row = results.row_of_job(job.number as u64);
-        let label = match row.map(said).filter(|axes| of_modes && !axes.is_empty()) {
+        let label = match row.map(row_label).filter(|axes| of_modes && !axes.is_empty()) {
             Some(axes) => format!("{held}: {axes}"),
             None => held.to_owned(),
         };
@@ -118,7 +118,7 @@ fn found(job: &Job, ends: Ends, model: ModelSpec, count: usize) -> Result<Vec<Mo
 }
 
 /// The table of modes, as far as a page lists it.
-pub(super) fn mode_table(results: &Results, said: &dyn Fn(usize) -> String) -> Vec<ModeLine> {
+pub(super) fn mode_table(results: &Results, row_label: &dyn Fn(usize) -> String) -> Vec<ModeLine> {
     let Some(table) = results.table(TableName::Modes) else {
         return Vec::new();
     };
@@ -127,7 +127,7 @@ pub(super) fn mode_table(results: &Results, said: &dyn Fn(usize) -> String) -> V
         let job = whole("job");
         Some(ModeLine {
             job,
-            axes: results.row_of_job(u64::from(job)).map(said).unwrap_or_default(),
+            axes: results.row_of_job(u64::from(job)).map(row_label).unwrap_or_default(),
             number: whole("number"),
             frequency_hz: table.number("frequency_hz", row)?,
             shape: table.cell("shape", row).text(),

@@ -9,7 +9,7 @@ use pontoon_results::{Results, Seen, Table, TableName, labels};
 use std::collections::{BTreeMap, HashMap};
 
 /// Jobs to be drawn.
-pub(super) struct Sheet<'a> {
+pub(super) struct FigureContext<'a> {
     pub results: &'a Results,
     /// Rows of the jobs that did not fail.
     pub rows: Vec<usize>,
@@ -30,7 +30,7 @@ pub(super) struct Sheet<'a> {
 /// What expected marks are called in a legend; which checks they are of stands in the caption's file.
 const EXPECTED: &str = "reference value";
 
-impl<'a> Sheet<'a> {
+impl<'a> FigureContext<'a> {
     pub(super) fn new(results: &'a Results, marks: Vec<ReferenceMark>) -> Self {
         let jobs = results.jobs();
         let rows: Vec<usize> = (0..jobs.rows()).filter(|row| !results.is_failed(*row)).collect();
@@ -98,7 +98,7 @@ impl<'a> Sheet<'a> {
     pub(super) fn alike(&self, rows: &[usize], told: &[&str]) -> Vec<String> {
         let of = |axis: &String| {
             let seen = Seen::of(rows.iter().map(|row| self.cell(axis, *row)));
-            seen.only().map(|cell| said(axis, cell))
+            seen.only().map(|cell| axis_label(axis, cell))
         };
         // of a load at a position its place is said
         let placed = rows.iter().any(|row| self.number("load_position", *row).is_some());
@@ -157,7 +157,7 @@ pub(super) struct MarkRequest<'a> {
 }
 
 /// An axis with its value in words.
-pub(super) fn said(axis: &str, value: &Cell<'_>) -> String {
+pub(super) fn axis_label(axis: &str, value: &Cell<'_>) -> String {
     match axis {
         "connection" => format!("{} connection", labels::value(axis, value)),
         _ => format!("{} {}", labels::label(axis), labels::value(axis, value)),
@@ -185,7 +185,13 @@ mod tests {
             [listed(&words), listed(&words[..1]), listed(&[])],
             ["a, b and c", "a", ""]
         );
-        assert_eq!(said("gap_tension_m", &Cell::of(&json!(0.028))), "tension gap 28 mm");
-        assert_eq!(said("connection", &Cell::of(&json!("linear"))), "linear connection");
+        assert_eq!(
+            axis_label("gap_tension_m", &Cell::of(&json!(0.028))),
+            "tension gap 28 mm"
+        );
+        assert_eq!(
+            axis_label("connection", &Cell::of(&json!("linear"))),
+            "linear connection"
+        );
     }
 }

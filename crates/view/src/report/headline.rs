@@ -44,7 +44,7 @@ pub struct FailureNote {
 }
 
 /// The cards of a table of jobs.
-pub(super) fn cards(results: &Results, measures: &[PageMeasure], said: &dyn Fn(usize) -> String) -> Vec<PageCard> {
+pub(super) fn cards(results: &Results, measures: &[PageMeasure], row_label: &dyn Fn(usize) -> String) -> Vec<PageCard> {
     let card = |column: &'static Column| {
         let of = column.card?;
         let measure = measures.iter().find(|measure| measure.name == column.name)?;
@@ -62,7 +62,7 @@ pub(super) fn cards(results: &Results, measures: &[PageMeasure], said: &dyn Fn(u
             unit: measure.unit,
             place: [at, when].into_iter().flatten().collect::<Vec<_>>().join(" "),
             job: (value != 0.0).then(|| super::job(results, row)),
-            axes: if value == 0.0 { String::new() } else { said(row) },
+            axes: if value == 0.0 { String::new() } else { row_label(row) },
         })
     };
     Column::measures().filter_map(card).collect()
@@ -111,11 +111,11 @@ pub(super) fn failures(results: &Results) -> (Vec<FailureNote>, usize) {
 pub(super) fn axes_in_words(jobs: &Table, names: &[String], row: usize) -> String {
     let of = |name: &String| {
         let cell = jobs.cell(name, row);
-        let said = labels::value(name, &cell);
+        let value_label = labels::value(name, &cell);
         match name.as_str() {
             _ if cell.is_nothing() => None,
-            "connection" | "speed_m_s" | "load_n" => Some(said),
-            _ => Some(format!("{} {said}", labels::label(name))),
+            "connection" | "speed_m_s" | "load_n" => Some(value_label),
+            _ => Some(format!("{} {value_label}", labels::label(name))),
         }
     };
     names.iter().filter_map(of).collect::<Vec<_>>().join(", ")

@@ -1,9 +1,9 @@
-//! Families of jobs: those that differ in one axis, to be lines of one figure.
+//! Groups of jobs: those that differ in one axis, to be lines of one figure.
 //!
 //! Knows that with the linear connection the gaps have no meaning, so that one linear line is compared with every gap. Does
 //! not know what is drawn.
 
-use super::sheet::{Sheet, said};
+use super::figure_context::{FigureContext, axis_label};
 use crate::thinning::spread;
 use pontoon_plan::input::Cell;
 use pontoon_results::labels::{self, SHOWN};
@@ -19,31 +19,31 @@ const MOST_LINES: usize = 6;
 /// written take some.
 const LONGEST_NAME: usize = 200;
 
-/// Families by one axis that become figures.
-const MOST_FAMILIES: usize = 6;
+/// Groups by one axis that become figures.
+const MOST_GROUPS: usize = 6;
 
 /// Jobs that are lines of one figure.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Family {
-    /// The axis in which they differ; none where the family is all jobs.
+pub(super) struct SeriesGroup {
+    /// The axis in which they differ; none where the group is all jobs.
     pub by: Option<String>,
-    /// What sets it apart from other families by that axis, as a name of files has it; empty of the only one.
+    /// What sets it apart from other groups by that axis, as a name of files has it; empty of the only one.
     pub suffix: String,
     /// The lines.
-    pub lines: Vec<FamilyLine>,
-    /// What no line holds, in words; to be said where the family is drawn.
+    pub lines: Vec<GroupedLine>,
+    /// What no line holds, in words; to be said where the group is drawn.
     pub left_out: Option<String>,
 }
 
 /// A line: one job, or where the figure runs along an axis, one job a value of it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct FamilyLine {
+pub(super) struct GroupedLine {
     pub label: String,
     pub style: usize,
     pub rows: Vec<usize>,
 }
 
-impl Family {
+impl SeriesGroup {
     /// What the labels are values of.
     pub(super) fn legend(&self) -> String {
         self.by.as_deref().map(labels::label).unwrap_or_default()
@@ -77,10 +77,10 @@ pub(super) fn plain(word: &str) -> String {
     text.trim_start_matches('.').to_owned()
 }
 
-/// The families of a sheet whose figures run along an axis; none of single lines. Last, where they are few and no family
+/// The groups of a context whose figures run along an axis; none of single lines. Last, where they are few and no group
 /// is all of them, all jobs.
-pub(super) fn families(sheet: &mut Sheet<'_>, along: Option<&str>) -> Vec<Family> {
-    let varying: Vec<String> = sheet
+pub(super) fn series_groups(context: &mut FigureContext<'_>, along: Option<&str>) -> Vec<SeriesGroup> {
+    let varying: Vec<String> = context
         .varying
         .iter()
         .filter(|axis| Some(axis.as_str()) != along)
@@ -89,10 +89,10 @@ pub(super) fn families(sheet: &mut Sheet<'_>, along: Option<&str>) -> Vec<Family
     let gaps_vary = varying.iter().any(|axis| GAPS.contains(&axis.as_str()));
     let mut found = Vec::new();
     for by in varying.iter().filter(|axis| *axis != "connection" || !gaps_vary) {
-        let (of_axis, count) = by_axis(sheet, &varying, by, along);
+        let (of_axis, count) = by_axis(context, &varying, by, along);
         if count > of_axis.len() {
             let others = varying.iter().filter(|axis| *axis != by);
-            sheet.left_out.push(format!(
+            context.left_out.push(format!(
                 "by {}: {} of {count} families, one for each {}",
                 labels::label(by),
                 count - of_axis.len(),
@@ -101,17 +101,17 @@ pub(super) fn families(sheet: &mut Sheet<'_>, along: Option<&str>) -> Vec<Family
         }
         found.extend(of_axis);
     }
-    let all = sheet.grouped(&sheet.rows, &varying.iter().collect::<Vec<_>>());
+    let all = context.grouped(&context.rows, &varying.iter().collect::<Vec<_>>());
     if all.len() > MOST_LINES {
         if found.is_empty() {
-            sheet.left_out.push(format!(
+            context.left_out.push(format!(
                 "{} combinations of {}, no two of which differ in one axis alone",
                 all.len(),
                 labels(varying.iter())
             ));
         }
-    } else if !found.iter().any(|family| family.lines.len() == all.len()) {
-        found.push(all_jobs(sheet, &varying, all));
+    } else if !found.iter().any(|series_group| series_group.lines.len() == all.len()) {
+        found.push(all_jobs(context, &varying, all));
     }
     found
 }
@@ -121,28 +121,33 @@ fn labels<'s>(axes: impl Iterator<Item = &'s String>) -> String {
     axes.map(|axis| labels::label(axis)).collect::<Vec<_>>().join(", ")
 }
 
-/// The first families that differ in one axis alone, and how many there are.
-fn by_axis(sheet: &Sheet<'_>, varying: &[String], by: &str, along: Option<&str>) -> (Vec<Family>, usize) {
+/// The first groups that differ in one axis alone, and how many there are.
+fn by_axis(
+    context: &FigureContext<'_>,
+    varying: &[String],
+    by: &str,
+    along: Option<&str>,
+) -> (Vec<SeriesGroup>, usize) {
     let by = by.to_owned();
     let others: Vec<&String> = varying.iter().filter(|axis| **axis != by).collect();
-    let has = |row: &usize| sheet.code(&by, *row).is_some();
-    let rows: Vec<usize> = sheet.rows.iter().copied().filter(has).collect();
+    let has = |row: &usize| context.code(&by, *row).is_some();
+    let rows: Vec<usize> = context.rows.iter().copied().filter(has).collect();
     // the rows of each group by their value
     let mut groups: Vec<Vec<Vec<usize>>> = Vec::new();
-    // only what differs between families is part of their names
+    // only what differs between groups is part of their names
     let mut differs = vec![false; others.len()];
     let (mut count, mut like) = (0, None);
-    for rows in sheet.grouped(&rows, &others) {
-        let values = sheet.grouped(&rows, &[&by]);
-        if values.len() < 2 || !meet(sheet, &values, along) {
+    for rows in context.grouped(&rows, &others) {
+        let values = context.grouped(&rows, &[&by]);
+        if values.len() < 2 || !meet(context, &values, along) {
             continue;
         }
         let first = *like.get_or_insert(rows[0]);
         for (axis, differs) in others.iter().zip(&mut differs) {
-            *differs |= sheet.code(axis, rows[0]) != sheet.code(axis, first);
+            *differs |= context.code(axis, rows[0]) != context.code(axis, first);
         }
         count += 1;
-        if groups.len() < MOST_FAMILIES {
+        if groups.len() < MOST_GROUPS {
             groups.push(values);
         }
     }
@@ -152,35 +157,41 @@ fn by_axis(sheet: &Sheet<'_>, varying: &[String], by: &str, along: Option<&str>)
         .zip(differs)
         .filter_map(|(axis, differs)| differs.then_some(axis))
         .collect();
-    let family = |values| family(sheet, &by, &others, &named, values);
-    (groups.into_iter().map(family).collect(), count)
+    let series_group = |values| series_group(context, &by, &others, &named, values);
+    (groups.into_iter().map(series_group).collect(), count)
 }
 
-/// A family by an axis: rows by their value, and the axes that are part of its name.
-fn family(sheet: &Sheet<'_>, by: &str, others: &[&String], named: &[&String], mut values: Vec<Vec<usize>>) -> Family {
+/// A group by an axis: rows by their value, and the axes that are part of its name.
+fn series_group(
+    context: &FigureContext<'_>,
+    by: &str,
+    others: &[&String],
+    named: &[&String],
+    mut values: Vec<Vec<usize>>,
+) -> SeriesGroup {
     let first = values[0][0];
-    let value = |rows: &Vec<usize>| sheet.number(by, rows[0]);
+    let value = |rows: &Vec<usize>| context.number(by, rows[0]);
     if values.iter().all(|rows| value(rows).is_some()) {
         values.sort_by(|a, b| value(a).unwrap_or_default().total_cmp(&value(b).unwrap_or_default()));
     }
     let suffix = named
         .iter()
-        .map(|axis| format!("-{}-{}", plain(axis), plain(&text(&sheet.cell(axis, first)))));
+        .map(|axis| format!("-{}-{}", plain(axis), plain(&text(&context.cell(axis, first)))));
     let mut lines = Vec::new();
     if GAPS.contains(&by) {
-        lines.extend(linear_line(sheet, others, first));
+        lines.extend(linear_line(context, others, first));
     }
     let chosen = spread(values.len(), MOST_LINES);
     let left_out = (chosen.len() < values.len()).then(|| {
         let left = values.len() - chosen.len();
         format!("by {}: {left} of {} values", labels::label(by), values.len())
     });
-    lines.extend(chosen.into_iter().enumerate().map(|(i, place)| FamilyLine {
-        label: labels::value(by, &sheet.cell(by, values[place][0])),
+    lines.extend(chosen.into_iter().enumerate().map(|(i, place)| GroupedLine {
+        label: labels::value(by, &context.cell(by, values[place][0])),
         style: i + 1,
         rows: std::mem::take(&mut values[place]),
     }));
-    Family {
+    SeriesGroup {
         by: Some(by.to_owned()),
         suffix: suffix.collect(),
         lines,
@@ -189,18 +200,18 @@ fn family(sheet: &Sheet<'_>, by: &str, others: &[&String], named: &[&String], mu
 }
 
 /// Whether at some place along an axis there are jobs of more than one value, so that there is something to compare.
-fn meet(sheet: &Sheet<'_>, values: &[Vec<usize>], along: Option<&str>) -> bool {
+fn meet(context: &FigureContext<'_>, values: &[Vec<usize>], along: Option<&str>) -> bool {
     let Some(along) = along else { return true };
     let mut of_value = HashMap::new();
     values.iter().enumerate().any(|(i, rows)| {
         rows.iter()
-            .filter_map(|row| sheet.code(along, *row))
+            .filter_map(|row| context.code(along, *row))
             .any(|place| *of_value.entry(place).or_insert(i) != i)
     })
 }
 
 /// The linear jobs that have what a row has in all axes but the gaps.
-fn linear_line(sheet: &Sheet<'_>, others: &[&String], like: usize) -> Option<FamilyLine> {
+fn linear_line(context: &FigureContext<'_>, others: &[&String], like: usize) -> Option<GroupedLine> {
     let compared: Vec<&String> = others
         .iter()
         .copied()
@@ -208,10 +219,10 @@ fn linear_line(sheet: &Sheet<'_>, others: &[&String], like: usize) -> Option<Fam
         .collect();
     let same = |row: &usize| {
         let mut compared = compared.iter();
-        sheet.is_linear(*row) && compared.all(|axis| sheet.code(axis, *row) == sheet.code(axis, like))
+        context.is_linear(*row) && compared.all(|axis| context.code(axis, *row) == context.code(axis, like))
     };
-    let rows: Vec<usize> = sheet.rows.iter().copied().filter(same).collect();
-    (!rows.is_empty()).then(|| FamilyLine {
+    let rows: Vec<usize> = context.rows.iter().copied().filter(same).collect();
+    (!rows.is_empty()).then(|| GroupedLine {
         label: "linear connection".to_owned(),
         style: 0,
         rows,
@@ -219,15 +230,15 @@ fn linear_line(sheet: &Sheet<'_>, others: &[&String], like: usize) -> Option<Fam
 }
 
 /// All jobs, a line each combination of the axes: `groups` are their rows.
-fn all_jobs(sheet: &Sheet<'_>, varying: &[String], groups: Vec<Vec<usize>>) -> Family {
-    let (linear, others): (Vec<_>, Vec<_>) = groups.into_iter().partition(|rows| sheet.is_linear(rows[0]));
+fn all_jobs(context: &FigureContext<'_>, varying: &[String], groups: Vec<Vec<usize>>) -> SeriesGroup {
+    let (linear, others): (Vec<_>, Vec<_>) = groups.into_iter().partition(|rows| context.is_linear(rows[0]));
     let several = !others.is_empty() && linear.len() == 1;
-    let line = |(i, rows): (usize, Vec<usize>)| FamilyLine {
-        label: label(sheet, varying, rows[0]),
+    let line = |(i, rows): (usize, Vec<usize>)| GroupedLine {
+        label: label(context, varying, rows[0]),
         style: if several { i } else { i + 1 },
         rows,
     };
-    Family {
+    SeriesGroup {
         by: None,
         suffix: String::new(),
         lines: linear.into_iter().chain(others).enumerate().map(line).collect(),
@@ -236,14 +247,14 @@ fn all_jobs(sheet: &Sheet<'_>, varying: &[String], groups: Vec<Vec<usize>>) -> F
 }
 
 /// A job in the words of the axes that vary.
-fn label(sheet: &Sheet<'_>, varying: &[String], row: usize) -> String {
-    let has = |axis: &str| varying.iter().any(|name| name == axis) && !sheet.cell(axis, row).is_nothing();
+fn label(context: &FigureContext<'_>, varying: &[String], row: usize) -> String {
+    let has = |axis: &str| varying.iter().any(|name| name == axis) && !context.cell(axis, row).is_nothing();
     let both = GAPS.iter().all(|gap| has(gap));
-    let mut said_of: Vec<String> = Vec::new();
+    let mut parts: Vec<String> = Vec::new();
     if both {
-        let [tension, compression] = GAPS.map(|gap| labels::value(gap, &sheet.cell(gap, row)));
+        let [tension, compression] = GAPS.map(|gap| labels::value(gap, &context.cell(gap, row)));
         let (tension, unit) = tension.rsplit_once(' ').unwrap_or((&tension, ""));
-        said_of.push(match compression.strip_suffix(unit) {
+        parts.push(match compression.strip_suffix(unit) {
             Some(number) => format!("gaps {tension} / {} {unit}", number.trim_end()),
             None => format!("gaps {tension} {unit} / {compression}"),
         });
@@ -253,18 +264,18 @@ fn label(sheet: &Sheet<'_>, varying: &[String], row: usize) -> String {
         .filter(|axis| has(axis) && !(both && GAPS.contains(&axis.as_str())))
     {
         match axis.as_str() {
-            "connection" if sheet.is_linear(row) || !GAPS.iter().any(|gap| has(gap)) => {
-                said_of.insert(0, said(axis, &sheet.cell(axis, row)));
+            "connection" if context.is_linear(row) || !GAPS.iter().any(|gap| has(gap)) => {
+                parts.insert(0, axis_label(axis, &context.cell(axis, row)));
             }
             "connection" => {}
-            "load_n" => said_of.push(labels::value(axis, &sheet.cell(axis, row))),
-            _ => said_of.push(said(axis, &sheet.cell(axis, row))),
+            "load_n" => parts.push(labels::value(axis, &context.cell(axis, row))),
+            _ => parts.push(axis_label(axis, &context.cell(axis, row))),
         }
     }
-    if said_of.is_empty() {
+    if parts.is_empty() {
         "calculated".to_owned()
     } else {
-        said_of.join(", ")
+        parts.join(", ")
     }
 }
 
