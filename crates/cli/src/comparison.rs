@@ -4,7 +4,7 @@
 
 use crate::args::Format;
 use crate::terminal::{BAD, FAINT, GOOD, HEAD, NOTABLE, TextStyle};
-use crate::words;
+use crate::text;
 use anstyle::Style;
 use anyhow::Result;
 use pontoon_judge::compare::{CheckResult, Comparison, Verdict};
@@ -48,37 +48,37 @@ const ORDER: [Verdict; 5] = [
 
 /// An aligned line a check with its verdict first, those of one verdict together, and the counts. Where lines are too long
 /// for a terminal, a check has several.
-pub(crate) fn text(compared: &Comparison, look: TextStyle) -> String {
+pub(crate) fn text(compared: &Comparison, text_style: TextStyle) -> String {
     let lines: Vec<&CheckResult> = ORDER
         .iter()
         .flat_map(|&verdict| compared.lines.iter().filter(move |line| line.verdict == verdict))
         .collect();
     let rows: Vec<Vec<String>> = lines.iter().map(|line| verdict_first(line)).collect();
     let heads = ["verdict", "check", "expected", "got", "deviation", "margin", "remark"].map(str::to_owned);
-    let table = words::table(&heads, &right(&heads, rows, &[4, 5]));
-    let fits = look
+    let table = text::table(&heads, &right(&heads, rows, &[4, 5]));
+    let fits = text_style
         .width
         .is_none_or(|width| table.lines().all(|line| line.width() <= width));
     let checks = if fits {
         let mut written = table.lines();
-        let head = look.painted(HEAD, written.next().unwrap_or_default()) + "\n";
+        let head = text_style.painted(HEAD, written.next().unwrap_or_default()) + "\n";
         let painted = written.zip(&lines).map(|(text, line)| {
             let (verdict, rest) = text.split_at(line.verdict.word().len().min(text.len()));
-            format!("{}{rest}\n", look.painted(style(line.verdict), verdict))
+            format!("{}{rest}\n", text_style.painted(style(line.verdict), verdict))
         });
         head + &painted.collect::<String>()
     } else {
         let longest = lines.iter().map(|line| line.verdict.word().len()).max().unwrap_or(0);
-        lines.iter().map(|line| several(line, longest, look)).collect()
+        lines.iter().map(|line| several(line, longest, text_style)).collect()
     };
     let Comparison { results, with, .. } = compared;
     let held = format!("{results} against {with}: {}", compared.tally());
-    let held = words::wrapped(&words::printable(&held), look.width.unwrap_or(usize::MAX), 2);
+    let held = text::wrapped(&text::printable(&held), text_style.width.unwrap_or(usize::MAX), 2);
     let short = format!("{} fall short", compared.count(Verdict::FallsShort));
     let held = if compared.good() {
         held
     } else {
-        held.replacen(&short, &look.painted(BAD, &short), 1)
+        held.replacen(&short, &text_style.painted(BAD, &short), 1)
     };
     format!("{checks}\n{held}")
 }
@@ -97,7 +97,7 @@ fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec
     let widths: Vec<usize> = (0..heads.len()).map(width).collect();
     let cell = |(i, text): (usize, String)| {
         if columns.contains(&i) {
-            Cell::Word(words::padded(&text, widths[i], true).into())
+            Cell::Word(text::padded(&text, widths[i], true).into())
         } else {
             Cell::Word(text.into())
         }
@@ -108,9 +108,9 @@ fn right(heads: &[String], rows: Vec<Vec<String>>, columns: &[usize]) -> Vec<Vec
 }
 
 /// A check over several lines, behind a verdict of at most `longest` characters.
-fn several(line: &CheckResult, longest: usize, look: TextStyle) -> String {
+fn several(line: &CheckResult, longest: usize, text_style: TextStyle) -> String {
     let [check, expected, got, deviation, margin, verdict, remark] = cells(line);
-    let width = look.width.unwrap_or(usize::MAX);
+    let width = text_style.width.unwrap_or(usize::MAX);
     let told = [
         ("expected", expected),
         ("got", got),
@@ -121,12 +121,12 @@ fn several(line: &CheckResult, longest: usize, look: TextStyle) -> String {
         .iter()
         .filter(|(_, value)| value != "-")
         .map(|(name, value)| format!("{name} {value}"));
-    let told: Vec<String> = told.chain(Some(remark)).map(|entry| words::printable(&entry)).collect();
+    let told: Vec<String> = told.chain(Some(remark)).map(|entry| text::printable(&entry)).collect();
     let indent = if 4 * (longest + 2) > width { 2 } else { longest + 2 };
     let verdict_wide = format!("{verdict:<longest$}  ");
-    let head = words::listed(&verdict_wide, Some(words::printable(&check)).iter(), width, indent);
-    let head = head.replacen(&verdict, &look.painted(style(line.verdict), &verdict), 1);
-    head + &words::listed(&" ".repeat(indent), told.iter(), width, indent)
+    let head = text::listed(&verdict_wide, Some(text::printable(&check)).iter(), width, indent);
+    let head = head.replacen(&verdict, &text_style.painted(style(line.verdict), &verdict), 1);
+    head + &text::listed(&" ".repeat(indent), told.iter(), width, indent)
 }
 
 fn style(verdict: Verdict) -> Style {
@@ -148,7 +148,7 @@ pub(crate) fn object(compared: &Comparison) -> Value {
 /// A table whose text cannot leave its cell.
 fn markdown(compared: &Comparison) -> String {
     let escaped = |text: &str| {
-        words::printable(text)
+        text::printable(text)
             .replace('\\', "\\\\")
             .replace('|', "\\|")
             .replace('<', "&lt;")
@@ -204,10 +204,10 @@ fn junit(compared: &Comparison) -> Result<String> {
 /// Says what has changed since the results, and which checks hold that were expected to fail.
 pub(crate) fn tell_changes(compared: &Comparison) {
     for note in &compared.notes {
-        words::note(&format!("changed: {note}"));
+        text::note(&format!("changed: {note}"));
     }
     for line in compared.lines.iter().filter(|line| line.verdict == Verdict::NowHolds) {
-        words::note(&format!(
+        text::note(&format!(
             "changed: '{}' was expected to fail and holds now ({})",
             line.id,
             line.got()

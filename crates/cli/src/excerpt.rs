@@ -18,7 +18,7 @@ const LONGEST_LABEL: usize = 72;
 const WIDTH: usize = 120;
 
 /// The place that a refusal is about, where it is one of a file that a person wrote. Ends in a line end.
-pub(crate) fn excerpt(refusal: &Refusal, look: TextStyle) -> Option<String> {
+pub(crate) fn excerpt(refusal: &Refusal, text_style: TextStyle) -> Option<String> {
     let text = text_of(&refusal.file)?;
     let mark = mark(&text, refusal)?;
     Some(shown(
@@ -26,7 +26,7 @@ pub(crate) fn excerpt(refusal: &Refusal, look: TextStyle) -> Option<String> {
         &text,
         &mark,
         &label(refusal, &mark.kind),
-        look,
+        text_style,
     ))
 }
 
@@ -71,7 +71,7 @@ fn label(refusal: &Refusal, kind: &MarkKind) -> String {
 }
 
 /// A place of a text.
-fn shown(file: &str, text: &str, mark: &Mark, label: &str, look: TextStyle) -> String {
+fn shown(file: &str, text: &str, mark: &Mark, label: &str, text_style: TextStyle) -> String {
     let first = match &mark.kind {
         MarkKind::Twice(first) => Some(first.clone()),
         _ => None,
@@ -90,13 +90,13 @@ fn shown(file: &str, text: &str, mark: &Mark, label: &str, look: TextStyle) -> S
     if let Some(first) = &first {
         snippet = snippet.annotation(AnnotationKind::Context.span(within(first)).label("first here"));
     }
-    let renderer = if look.colour {
+    let renderer = if text_style.colour {
         Renderer::styled()
     } else {
         Renderer::plain()
     };
     let renderer = renderer
-        .term_width(look.width.unwrap_or(WIDTH))
+        .term_width(text_style.width.unwrap_or(WIDTH))
         .decor_style(DecorStyle::Ascii);
     let report = &[Group::with_level(Level::ERROR).element(snippet)];
     let lines = renderer.render(report);

@@ -8,14 +8,14 @@
 //! | `commands` | a file a command: what it asks of the other crates and how it answers |
 //! | `commit` | the sources that the program was built from |
 //! | `comparison` | a comparison as text, JSON, Markdown, JUnit XML |
-//! | `ending` | how a command ended that could go on to its end |
+//! | `exit_status` | how a command ended that could go on to its end |
 //! | `excerpt` | the place of a file that a refusal is about, with its line and a mark under it |
 //! | `signals` | interrupts and questions from outside |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
 //! | `watching` | what is told of a sweep |
 //! | `summary` | what a run ends with: its summary as a person looks at it |
 //! | `terminal` | what the place is like where something is written: its width, whether it shows colours |
-//! | `words` | aligned tables, times, what goes where when a reader has left |
+//! | `text` | aligned tables, times, what goes where when a reader has left |
 //!
 //! Knows the exit status of every end: 0 all good; 1 done, but something fell short; 2 input refused; 3 could not go on; 130 interrupted. Does
 //! not know mechanics or files of results.
@@ -26,18 +26,18 @@ mod bar;
 mod commands;
 mod commit;
 mod comparison;
-mod ending;
 mod excerpt;
+mod exit_status;
 mod progress;
 mod signals;
 mod summary;
 mod terminal;
+mod text;
 mod watching;
-mod words;
 
 use args::{Arguments, Command, Format};
 use clap::{CommandFactory, Parser, error::ErrorKind};
-use ending::ExitStatus;
+use exit_status::ExitStatus;
 use pontoon_judge::calibrate::CalibrateError;
 use pontoon_plan::input::Refusal;
 use pontoon_results::ResultsError;
@@ -85,12 +85,12 @@ fn main() -> ExitCode {
 
 /// Says what is wrong: for people with the place in the file that was refused.
 fn tell(error: &anyhow::Error, format: Format) {
-    let look = TextStyle::of_notes();
-    let message = words::printable(&format!("{error:#}"));
-    words::note(&format!("{} {message}", look.painted(terminal::BAD, "pontoon:")));
+    let text_style = TextStyle::of_notes();
+    let message = text::printable(&format!("{error:#}"));
+    text::note(&format!("{} {message}", text_style.painted(terminal::BAD, "pontoon:")));
     let place = refusal_of(error).filter(|_| format != Format::Json);
-    if let Some(place) = place.and_then(|refused| excerpt::excerpt(refused, look)) {
-        words::note(place.trim_end());
+    if let Some(place) = place.and_then(|refused| excerpt::excerpt(refused, text_style)) {
+        text::note(place.trim_end());
     }
 }
 

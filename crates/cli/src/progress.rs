@@ -4,7 +4,7 @@
 
 use crate::bar::set_bar;
 use crate::terminal::TextStyle;
-use crate::words;
+use crate::text;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pontoon_study::run::{Progress, Tally};
 use std::io::IsTerminal;
@@ -91,7 +91,7 @@ impl Progress for ProgressDisplay {
         match self {
             Self::Not => {}
             Self::Bar(bar, _) => bar.set_message(what.to_owned()),
-            Self::Lines(_) => words::note(what),
+            Self::Lines(_) => text::note(what),
         }
     }
 
@@ -124,7 +124,7 @@ impl Progress for ProgressDisplay {
             _ if tally.ran == 0 && tally.done == 0 => {}
             _ if tally.ran == 0 || tally.done == tally.total || now.duration_since(pace.last) >= BETWEEN_LINES => {
                 pace.last = now;
-                words::note(&line(tally, seconds, None));
+                text::note(&line(tally, seconds, None));
             }
             _ => {}
         }
@@ -148,8 +148,8 @@ fn line(tally: Tally, seconds: f64, width: Option<usize>) -> String {
         Default::default()
     } else {
         let rate = ran as f64 / seconds.max(1e-9);
-        let left = words::duration(total.saturating_sub(done) as f64 / rate);
-        (format!(", {}", words::rate(rate)), format!(", {left} left"))
+        let left = text::duration(total.saturating_sub(done) as f64 / rate);
+        (format!(", {}", text::rate(rate)), format!(", {left} left"))
     };
     let said = |before: &str, rate: &str| format!("{done}/{total} jobs{before}, {failed} failed{rate}{left}");
     let fits = |said: &String| width.is_none_or(|width| said.width() < width);

@@ -2,7 +2,7 @@
 //!
 //! Knows what SIGINT, SIGTERM and SIGUSR1 ask of a run. Does not know how a run stops.
 
-use crate::words;
+use crate::text;
 use pontoon_journal::JournalWriter;
 use pontoon_study::run::{CancelToken, Tally, Why};
 use pontoon_study::sweep::ended_now;
@@ -29,12 +29,12 @@ impl Signals {
     #[cfg(unix)]
     pub(crate) fn listen() -> std::io::Result<Arc<Self>> {
         use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
-        let heard = Arc::new(Self::default());
-        let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
-        let own = Arc::clone(&heard);
+        let signals = Arc::new(Self::default());
+        let mut received = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
+        let own = Arc::clone(&signals);
         let mut interrupted = false;
         std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
-            for signal in signals.forever() {
+            for signal in received.forever() {
                 if signal == SIGUSR1 {
                     own.answer();
                 } else if interrupted {
@@ -43,11 +43,11 @@ impl Signals {
                 } else {
                     interrupted = true;
                     own.stop.ask(Why::Interrupted);
-                    words::note("interrupted: jobs under way are finished; once more stops at once");
+                    text::note("interrupted: jobs under way are finished; once more stops at once");
                 }
             }
         })?;
-        Ok(heard)
+        Ok(signals)
     }
 
     /// The journal that is being written.
@@ -80,7 +80,7 @@ impl Signals {
             Some(Err(error)) => error.to_string(),
         };
         let tally = *self.tally.lock().unwrap_or_else(PoisonError::into_inner);
-        words::note(&match tally {
+        text::note(&match tally {
             None => format!("preparing, {synced}"),
             Some(Tally {
                 done, failed, total, ..

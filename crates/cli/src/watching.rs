@@ -4,7 +4,7 @@
 
 use crate::progress::ProgressDisplay;
 use crate::signals::Signals;
-use crate::words;
+use crate::text;
 use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Progress, Tally};
 use pontoon_study::sweep::{Apart, ApartEnd, Watcher};
@@ -23,15 +23,15 @@ const KILLED: i32 = 9;
 /// Who is told of a sweep.
 pub(crate) struct Watching<'a> {
     shown: ProgressDisplay,
-    heard: &'a Signals,
+    signals: &'a Signals,
     /// Study and folder of results, for a process of its own.
     again: Option<(PathBuf, PathBuf)>,
 }
 
 impl<'a> Watching<'a> {
     /// Shows and counts.
-    pub(crate) fn new(shown: ProgressDisplay, heard: &'a Signals, again: Option<(PathBuf, PathBuf)>) -> Self {
-        Self { shown, heard, again }
+    pub(crate) fn new(shown: ProgressDisplay, signals: &'a Signals, again: Option<(PathBuf, PathBuf)>) -> Self {
+        Self { shown, signals, again }
     }
 
     /// Takes a bar away.
@@ -46,7 +46,7 @@ impl Progress for Watching<'_> {
     }
 
     fn jobs(&self, tally: Tally) {
-        self.heard.count(tally);
+        self.signals.count(tally);
         self.shown.jobs(tally);
     }
 }
@@ -54,16 +54,16 @@ impl Progress for Watching<'_> {
 impl Watcher for Watching<'_> {
     fn note(&self, what: &str) {
         if !matches!(self.shown, ProgressDisplay::Not) {
-            words::note(what);
+            text::note(what);
         }
     }
 
     fn warn(&self, what: &str) {
-        words::note(what);
+        text::note(what);
     }
 
     fn writing(&self, journal: &Arc<JournalWriter>) {
-        self.heard.writing(journal);
+        self.signals.writing(journal);
     }
 
     fn solve_apart(&self, study: &str, jobs: &[usize]) -> Option<Apart> {
@@ -85,7 +85,7 @@ impl Watcher for Watching<'_> {
             if let Some(ended) = child.try_wait().ok()? {
                 break ended;
             }
-            if self.heard.stop.is_asked() {
+            if self.signals.stop.is_asked() {
                 input = None;
             }
             std::thread::sleep(BETWEEN_LOOKS);

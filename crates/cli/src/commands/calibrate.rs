@@ -1,8 +1,8 @@
 //! `pontoon calibrate`: a bridge's numbers identified from references.
 
 use crate::args::{CalibrateArguments, Common, Format};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::{Context, Result};
 use pontoon_journal::place::Folder;
 use pontoon_judge::calibrate::{Calibration, CalibrationTask, FittedCheck, Identified, Parameters};
@@ -25,7 +25,7 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
     check_out(&arguments.out, &arguments.bridge)?;
     let told = |candidates: usize, least: f64| {
         if !common.quiet {
-            words::note(&format!("{candidates} candidates, least sum of squares {least:.4}"));
+            text::note(&format!("{candidates} candidates, least sum of squares {least:.4}"));
         }
     };
     let task = CalibrationTask::new(&bridge, &references, &parameters, &told)?;
@@ -36,9 +36,9 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
         .write(&name, |file| std::io::Write::write_all(file, written.as_bytes()))
         .context("bridge not written")?;
     for failed in &found.failed {
-        words::note(&format!("failed inside the bounds: {failed}"));
+        text::note(&format!("failed inside the bounds: {failed}"));
     }
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(found)),
         _ => text(&found, &arguments.out),
     })?;
@@ -133,7 +133,7 @@ fn checks(checks: &[FittedCheck]) -> String {
         ]
         .concat()
     };
-    words::table(
+    text::table(
         &columns(&["check", "expected", "before", "after", "off before", "off after"]),
         &checks.iter().map(row).collect::<Vec<_>>(),
     )
@@ -152,7 +152,7 @@ fn parameters(parameters: &[Identified]) -> String {
             Cell::Word(p.remark.clone().unwrap_or_default().into()),
         ]
     };
-    words::table(
+    text::table(
         &columns(&["parameter", "start", "found", "standard error", "bounds", "remark"]),
         &parameters.iter().map(row).collect::<Vec<_>>(),
     )
@@ -170,5 +170,5 @@ fn correlation(found: &Calibration) -> String {
         let name = Cell::Word(format!("({}) {}", i + 1, p.name).into());
         std::iter::once(name).chain(cells).collect()
     });
-    words::table(&heads, &rows.collect::<Vec<_>>())
+    text::table(&heads, &rows.collect::<Vec<_>>())
 }

@@ -1,8 +1,8 @@
 //! `pontoon compare`: results held against a reference or against older results.
 
 use crate::args::{Common, CompareArguments};
-use crate::ending::ExitStatus;
-use crate::{comparison, words};
+use crate::exit_status::ExitStatus;
+use crate::{comparison, text};
 use anyhow::Result;
 use pontoon_judge::compare::{Tolerances, against_baseline, against_reference};
 use pontoon_judge::reference::Reference;
@@ -27,7 +27,7 @@ pub(crate) fn compare(arguments: &CompareArguments, common: Common) -> Result<Ex
         }
         against_reference(&results, &Reference::open(&arguments.with)?)?
     };
-    words::result(&comparison::written(&compared, common.format)?)?;
+    text::result(&comparison::written(&compared, common.format)?)?;
     comparison::tell_changes(&compared);
     Ok(if compared.good() {
         ExitStatus::Good

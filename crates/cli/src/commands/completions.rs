@@ -1,8 +1,8 @@
 //! `pontoon completions`: what makes a shell complete the words of this program.
 
 use crate::args::{Arguments, CompletionsArguments};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::Result;
 use clap::{Arg, Command, CommandFactory};
 
@@ -15,7 +15,7 @@ pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<ExitStatus
         "pontoon",
         &mut script,
     );
-    words::results(|to| to.write_all(&script))?;
+    text::results(|to| to.write_all(&script))?;
     Ok(ExitStatus::Good)
 }
 

@@ -1,8 +1,8 @@
 //! `pontoon explain`: why a job ran or will run.
 
 use crate::args::{Common, ExplainArguments, Format};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::Result;
 use pontoon_study::sweep::{Explanation, explain as explain_job};
 use serde_json::json;
@@ -10,7 +10,7 @@ use serde_json::json;
 /// Explains a job.
 pub(crate) fn explain(arguments: &ExplainArguments, common: Common) -> Result<ExitStatus> {
     let told = explain_job(&arguments.folder, arguments.job)?;
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(told)),
         _ => text(&told),
     })?;
@@ -39,6 +39,6 @@ fn text(told: &Explanation) -> String {
     let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
     lines
         .iter()
-        .map(|(name, value)| format!("{name:<width$}  {}\n", words::printable(value)))
+        .map(|(name, value)| format!("{name:<width$}  {}\n", text::printable(value)))
         .collect()
 }

@@ -1,8 +1,8 @@
 //! `pontoon export`: mode shapes, static cases and crossings as VTK files.
 
 use crate::args::{Common, ConnectionArgument, ExportArguments, Format};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::Result;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_study::modes::BridgeError;
@@ -27,7 +27,7 @@ pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Exit
     };
     let note = |what: &str| {
         if !common.quiet {
-            words::note(what);
+            text::note(what);
         }
     };
     let exported = write(&arguments.source, &arguments.to, &request, &note).map_err(|error| match error {
@@ -36,7 +36,7 @@ pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Exit
         ExportError::Bridge(BridgeError::Design(refused)) => Refusal::of(&arguments.source, "", refused).into(),
         other => other.into(),
     })?;
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(exported)),
         _ => text(&exported, &arguments.to.display().to_string()),
     })?;
@@ -55,5 +55,5 @@ fn text(exported: &Exported, to: &str) -> String {
         ]
     };
     let rows: Vec<Vec<Cell<'_>>> = exported.parts.iter().map(row).collect();
-    format!("{}{} files in {to}\n", words::table(&columns, &rows), exported.files)
+    format!("{}{} files in {to}\n", text::table(&columns, &rows), exported.files)
 }

@@ -1,8 +1,8 @@
 //! `pontoon man`: manual pages, one a command.
 
 use crate::args::{Arguments, Common, Format, ManArguments};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::{Context, Result};
 use clap::builder::Resettable;
 use clap::{Command, CommandFactory};
@@ -27,7 +27,7 @@ pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<ExitStatus
             .context("page not written")?;
         names.push(name);
     }
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!({ "to": to.display().to_string(), "pages": names })),
         _ => format!("{} pages in {}\n", names.len(), to.display()),
     })?;

@@ -2,7 +2,7 @@
 
 use super::run::answer;
 use crate::args::{Common, MergeArguments};
-use crate::ending::ExitStatus;
+use crate::exit_status::ExitStatus;
 use crate::progress::ProgressDisplay;
 use crate::signals::Signals;
 use crate::watching::Watching;
@@ -11,7 +11,7 @@ use pontoon_study::sweep::{Merged, SweepSetting, merge as merge_shards};
 
 /// Puts shards together.
 pub(crate) fn merge(arguments: &MergeArguments, common: Common) -> Result<ExitStatus> {
-    let heard = Signals::listen()?;
+    let signals = Signals::listen()?;
     let merged = Merged::of(&arguments.folders)?;
     let setting = SweepSetting {
         out: arguments.out.clone(),
@@ -19,8 +19,8 @@ pub(crate) fn merge(arguments: &MergeArguments, common: Common) -> Result<ExitSt
         commit: crate::commit::COMMIT.map(str::to_owned),
         ..SweepSetting::default()
     };
-    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &heard, None);
-    let swept = merge_shards(&merged, &arguments.folders, &setting, &heard.stop, &watching);
+    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &signals, None);
+    let swept = merge_shards(&merged, &arguments.folders, &setting, &signals.stop, &watching);
     watching.finish();
     answer(&merged.study, &swept?, &arguments.out, None, common)
 }

@@ -1,9 +1,9 @@
 //! `pontoon modes`: natural frequencies with the name of each shape.
 
 use crate::args::{Common, Format, ModesArguments};
-use crate::ending::ExitStatus;
+use crate::exit_status::ExitStatus;
 use crate::terminal::TextStyle;
-use crate::words;
+use crate::text;
 use anyhow::Result;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::study_file::read_bridge;
@@ -27,7 +27,7 @@ pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<ExitSt
         }
         other => other.into(),
     })?;
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(found)),
         _ => {
             // there is one job: its number says nothing
@@ -44,7 +44,7 @@ pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<ExitSt
 
 /// The table with as many of its shares as a terminal has room for.
 fn fitting(columns: &[String], rows: &[Vec<Cell<'_>>]) -> String {
-    let table = |columns: &[String]| words::table(columns, rows);
+    let table = |columns: &[String]| text::table(columns, rows);
     let fits = |table: &String| {
         let width = TextStyle::of_results().width;
         width.is_none_or(|width| table.lines().all(|line| line.width() <= width))

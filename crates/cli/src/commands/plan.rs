@@ -1,9 +1,9 @@
 //! `pontoon plan`: what would run.
 
 use crate::args::{Common, Format, PlanArguments};
-use crate::ending::ExitStatus;
+use crate::exit_status::ExitStatus;
 use crate::terminal::{BAD, TextStyle};
-use crate::{axes, words};
+use crate::{axes, text};
 use anyhow::Result;
 use pontoon_plan::study_file::Study;
 use pontoon_study::run::Cache;
@@ -19,7 +19,7 @@ pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<ExitStat
     let default_out = || PathBuf::from("results").join(&study.name);
     let out = arguments.out.clone().unwrap_or_else(default_out);
     let forecast = forecast(&study, &out, threads, Cache::of_user().as_ref())?;
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(forecast)),
         _ => text(&study, &forecast, &out.display().to_string(), TextStyle::of_results()),
     })?;
@@ -30,9 +30,9 @@ pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<ExitStat
 const LONGEST: &str = "distinct bridges";
 
 /// What would run, what is there of it, what the rest takes.
-fn text(study: &Study, forecast: &Forecast, out: &str, look: TextStyle) -> String {
+fn text(study: &Study, forecast: &Forecast, out: &str, text_style: TextStyle) -> String {
     let plan = &forecast.plan;
-    let width = look.width.unwrap_or(usize::MAX);
+    let width = text_style.width.unwrap_or(usize::MAX);
     let axes: Vec<(String, String)> = axes::of(study)
         .into_iter()
         .map(|(name, told)| (format!("  {name}"), told))
@@ -42,34 +42,34 @@ fn text(study: &Study, forecast: &Forecast, out: &str, look: TextStyle) -> Strin
     let line = |name: &str, told: &str| {
         // beside each other where there is room
         let indent = if 2 * names > width { 4 } else { names };
-        words::wrapped(
-            &words::printable(&(words::padded(name, names, false) + told)),
+        text::wrapped(
+            &text::printable(&(text::padded(name, names, false) + told)),
             width,
             indent,
         )
     };
     let merged = match plan.points - plan.jobs {
         0 => String::new(),
-        merged => format!(" ({} equal points merged)", words::grouped(merged as u64)),
+        merged => format!(" ({} equal points merged)", text::grouped(merged as u64)),
     };
     let time = match forecast.expected_seconds {
         Some(seconds) => format!(
             "about {} on {} threads, {} jobs tried",
-            words::duration(seconds),
+            text::duration(seconds),
             forecast.threads,
             forecast.tried
         ),
         None => "not known: the jobs that were tried failed, or are too long to try".to_owned(),
     };
     let mut text = line("study", &plan.study);
-    text += &line("jobs", &(words::grouped(plan.jobs as u64) + &merged));
+    text += &line("jobs", &(text::grouped(plan.jobs as u64) + &merged));
     for (name, told) in &axes {
         text += &line(name, told);
     }
     text.push('\n');
-    text += &line(LONGEST, &words::grouped(plan.distinct_bridges as u64));
-    text += &line("condensations", &words::grouped(plan.condensations as u64));
-    text += &line("steps", &words::grouped(plan.steps));
+    text += &line(LONGEST, &text::grouped(plan.distinct_bridges as u64));
+    text += &line("condensations", &text::grouped(plan.condensations as u64));
+    text += &line("steps", &text::grouped(plan.steps));
     text.push('\n');
     if let Some(found) = &forecast.found {
         let failed = format!("{} failed", found.failed);
@@ -77,10 +77,10 @@ fn text(study: &Study, forecast: &Forecast, out: &str, look: TextStyle) -> Strin
         let told = line("done", &told);
         text += &match found.failed {
             0 => told,
-            _ => told.replacen(&failed, &look.painted(BAD, &failed), 1),
+            _ => told.replacen(&failed, &text_style.painted(BAD, &failed), 1),
         };
         for why in &found.refused {
-            text += &look.painted(BAD, &line("no use", why));
+            text += &text_style.painted(BAD, &line("no use", why));
         }
     }
     text + &line("expected time", &time)

@@ -1,8 +1,8 @@
 //! `pontoon report`: results as a page, and as figures for papers.
 
 use crate::args::{Common, Format, ReportArguments};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::Result;
 use pontoon_journal::place::{Folder, FolderError};
 use pontoon_judge::compare::{Comparison, against_reference};
@@ -52,14 +52,14 @@ fn draw(arguments: &ReportArguments, folder: &Path, common: Common) -> Result<Ex
         .iter()
         .map(|file| folder.join(file).display().to_string())
         .collect();
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!({ "files": paths, "left_out": made.left_out })),
         _ => paths.iter().map(|path| format!("{path}\n")).collect(),
     })?;
     if !common.quiet {
-        notes.iter().for_each(|note| words::note(note));
+        notes.iter().for_each(|note| text::note(note));
         for line in &made.left_out {
-            words::note(&format!("left out: {line}"));
+            text::note(&format!("left out: {line}"));
         }
     }
     let failed = (0..results.jobs().rows()).any(|row| results.is_failed(row));
@@ -88,12 +88,12 @@ fn page_of(arguments: &ReportArguments, common: Common) -> Result<ExitStatus> {
     };
     let report = Report::new(found, compared.as_ref(), marks.unwrap_or_default(), &setting)?;
     let bytes = write(&report, &out)?;
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", object(&report, compared.as_ref(), &out, bytes)),
         _ => text(&report, compared.as_ref(), &out, bytes),
     })?;
     if !common.quiet {
-        report.notes.iter().for_each(|note| words::note(note));
+        report.notes.iter().for_each(|note| text::note(note));
     }
     let good = compared.as_ref().is_none_or(Comparison::good) && report.jobs.failed == 0;
     Ok(if good { ExitStatus::Good } else { ExitStatus::Short })

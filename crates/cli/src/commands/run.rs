@@ -1,12 +1,12 @@
 //! `pontoon run`: a study to its tables.
 
 use crate::args::{Common, Format, RunArguments};
-use crate::ending::ExitStatus;
+use crate::exit_status::ExitStatus;
 use crate::progress::ProgressDisplay;
 use crate::signals::Signals;
 use crate::terminal::TextStyle;
 use crate::watching::Watching;
-use crate::{comparison, summary, words};
+use crate::{comparison, summary, text};
 use anyhow::Result;
 use pontoon_judge::compare::{Comparison, against_reference};
 use pontoon_judge::reference::Reference;
@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 /// Checks every job, runs what is missing, writes the tables, prints the summary and, where asked, holds the results against
 /// a reference.
 pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus> {
-    let heard = Signals::listen()?;
+    let signals = Signals::listen()?;
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
     if let Some(reference) = &reference {
@@ -35,12 +35,12 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus
     let setting = setting(arguments, &study);
     if let Some((of, numbers)) = &arguments.apart {
         end_with_standard_input();
-        run_apart(&study, &jobs, (of, numbers), &setting, &heard.stop)?;
+        run_apart(&study, &jobs, (of, numbers), &setting, &signals.stop)?;
         return Ok(ExitStatus::Good);
     }
     let again = Some((arguments.study.clone(), setting.out.clone()));
-    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &heard, again);
-    let swept = sweep(&study, &jobs, &setting, &heard.stop, &watching);
+    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &signals, again);
+    let swept = sweep(&study, &jobs, &setting, &signals.stop, &watching);
     watching.finish();
     answer(&study, &swept?, &setting.out, reference.as_ref(), common)
 }
@@ -86,12 +86,12 @@ pub(super) fn answer(
     let outcome = &swept.outcome;
     failures(&outcome.failures);
     if outcome.preparation.operators.replaced > 0 {
-        words::note("an operator in the cache was damaged or of another version: built again and replaced");
+        text::note("an operator in the cache was damaged or of another version: built again and replaced");
     }
     let beyond = outcome.verification.beyond;
     if beyond > 0 {
         let of = outcome.verification.jobs;
-        words::note(&format!(
+        text::note(&format!(
             "{beyond} of {of} jobs solved again are beyond a tolerance of analysis.verify: see the column verify_held of jobs.parquet"
         ));
     }
@@ -100,16 +100,16 @@ pub(super) fn answer(
         None => None,
     };
     match (common.format, &compared) {
-        (Format::Json, _) => words::results(|to| write_object(to, study, swept, out, compared.as_ref())),
+        (Format::Json, _) => text::results(|to| write_object(to, study, swept, out, compared.as_ref())),
         (Format::Markdown | Format::Junit, Some(compared)) => {
-            words::result(&comparison::written(compared, common.format)?)
+            text::result(&comparison::written(compared, common.format)?)
         }
-        (_, Some(compared)) => words::result(&format!(
+        (_, Some(compared)) => text::result(&format!(
             "{}\n{}",
             text(swept, out),
             comparison::text(compared, TextStyle::of_results())
         )),
-        (_, None) => words::result(&text(swept, out)),
+        (_, None) => text::result(&text(swept, out)),
     }?;
     if let Some(compared) = &compared {
         comparison::tell_changes(compared);
@@ -124,12 +124,12 @@ pub(super) fn answer(
 
 fn failures(failures: &Failures) {
     for (job, reason) in &failures.first {
-        words::note(&format!("job {job} failed: {reason}"));
+        text::note(&format!("job {job} failed: {reason}"));
     }
     if failures.count > failures.first.len() {
-        words::note(&format!("{} jobs failed; by cause:", failures.count));
+        text::note(&format!("{} jobs failed; by cause:", failures.count));
         for cause in &failures.causes {
-            words::note(&format!(
+            text::note(&format!(
                 "  {} of {}, as job {}: {}",
                 cause.count,
                 cause.kind.word(),
@@ -137,28 +137,28 @@ fn failures(failures: &Failures) {
                 cause.reason
             ));
         }
-        words::note("see the columns failure and reason of jobs.parquet");
+        text::note("see the columns failure and reason of jobs.parquet");
     }
 }
 
 fn text(swept: &Swept<'_>, out: &Path) -> String {
     let outcome = &swept.outcome;
-    let look = TextStyle::of_results();
+    let text_style = TextStyle::of_results();
     let recorded = match outcome.jobs - outcome.ran {
         0 => String::new(),
         known => format!(" ({known} recorded before)"),
     };
-    let counts = words::wrapped(
+    let counts = text::wrapped(
         &format!(
             "jobs {}{recorded}, failed {}; condensations {}, offline part {}, jobs {} on {} threads",
             outcome.jobs,
             outcome.failures.count,
             outcome.preparation.condensations,
-            words::duration(outcome.offline_s),
-            words::duration(outcome.jobs_s),
+            text::duration(outcome.offline_s),
+            text::duration(outcome.jobs_s),
             outcome.threads,
         ),
-        look.width.unwrap_or(usize::MAX),
+        text_style.width.unwrap_or(usize::MAX),
         2,
     );
     let Some(summary_table) = &swept.summary else {
@@ -168,7 +168,7 @@ fn text(swept: &Swept<'_>, out: &Path) -> String {
             out.display()
         );
     };
-    let table = summary::text(summary_table.columns(), || summary_table.rows(), look);
+    let table = summary::text(summary_table.columns(), || summary_table.rows(), text_style);
     format!("{table}\n{counts}results in {}\n", out.display())
 }
 

@@ -1,8 +1,8 @@
 //! `pontoon schema`: the JSON Schema of a file, and the columns of tables. Both are JSON in either format.
 
 use crate::args::{SchemaArguments, SchemaOf};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::Result;
 
 /// Writes a schema.
@@ -14,6 +14,6 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Result<ExitStatus> {
         SchemaOf::Tables => pontoon_results::registered(),
         SchemaOf::Reference => pontoon_judge::schema::reference(),
     };
-    words::result(&format!("{schema:#}\n"))?;
+    text::result(&format!("{schema:#}\n"))?;
     Ok(ExitStatus::Good)
 }

@@ -1,8 +1,8 @@
 //! `pontoon status`: how far runs have come.
 
 use crate::args::{Common, Format, StatusArguments};
-use crate::ending::ExitStatus;
-use crate::words;
+use crate::exit_status::ExitStatus;
+use crate::text;
 use anyhow::Result;
 use pontoon_plan::input::Cell;
 use pontoon_study::sweep::{Standings, standings};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// Says how far the runs of folders have come.
 pub(crate) fn status(arguments: &StatusArguments, common: Common) -> Result<ExitStatus> {
     let all = standings(&arguments.folders)?;
-    words::result(&match common.format {
+    text::result(&match common.format {
         Format::Json => format!("{:#}\n", object(&all)),
         _ => text(&all),
     })?;
@@ -48,7 +48,7 @@ fn text(all: &Standings) -> String {
             ]
         })
         .collect();
-    let mut text = words::table(&columns, &rows);
+    let mut text = text::table(&columns, &rows);
     if rows.len() > 1 {
         text += &format!(
             "\njobs {}, done {}, failed {}, missing {}\n",

@@ -3,20 +3,20 @@
 //! | module | charter |
 //! |---|---|
 //! | `label` | names of columns and values as heads and cells |
-//! | `grid` | a table in as many pieces as a width asks for |
+//! | `text_table` | a table in as many pieces as a width asks for |
 //! | `survey` | one look at all rows: which axes vary, where peaks are largest |
 //! | `peaks` | peak deflection against speed, a row a combination of the other axes |
 //! | `modes` | natural frequencies, a row a shape |
 //!
 //! Knows which table fits which study. Does not know how rows came about.
 
-mod grid;
 mod label;
 mod modes;
 mod peaks;
 mod survey;
 #[cfg(test)]
 mod tests;
+mod text_table;
 
 use crate::terminal::TextStyle;
 pub(crate) use label::axis as told;
@@ -29,12 +29,12 @@ const WIDTH: usize = 118;
 pub(crate) fn text<'a, I: Iterator<Item = SummaryRow<'a>>>(
     columns: &[String],
     rows: impl Fn() -> I,
-    look: TextStyle,
+    text_style: TextStyle,
 ) -> String {
-    let width = look.width.unwrap_or(WIDTH);
+    let width = text_style.width.unwrap_or(WIDTH);
     if columns.last().is_some_and(|column| column == "shape") {
-        modes::modes(columns, rows(), look, width)
+        modes::modes(columns, rows(), text_style, width)
     } else {
-        peaks::peaks(columns, rows, look, width)
+        peaks::peaks(columns, rows, text_style, width)
     }
 }

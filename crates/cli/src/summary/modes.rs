@@ -2,11 +2,11 @@
 //!
 //! Knows how modes of one name are told apart. Does not know where rows come from.
 
-use super::grid::{RowNames, TableEntry, TextTable};
 use super::label::{ColumnHead, axis, heads};
 use super::survey::SummaryRow;
+use super::text_table::{RowNames, TableEntry, TextTable};
 use crate::terminal::{FAINT, TextStyle};
-use crate::words::{listed, wrapped};
+use crate::text::{listed, wrapped};
 use anstyle::Style;
 use pontoon_plan::input::Cell;
 use pontoon_results::Seen;
@@ -71,7 +71,7 @@ impl<'a> OfJob<'a> {
 pub(super) fn modes<'a>(
     columns: &[String],
     rows: impl Iterator<Item = SummaryRow<'a>>,
-    look: TextStyle,
+    text_style: TextStyle,
     width: usize,
 ) -> String {
     let axes = columns.len() - 3;
@@ -98,10 +98,10 @@ pub(super) fn modes<'a>(
     if jobs.is_empty() {
         text += "none: all jobs failed\n";
     }
-    text += &grid(&jobs, &shapes, &varying, &heads).written(width, look);
+    text += &grid(&jobs, &shapes, &varying, &heads).written(width, text_style);
     for (more, of) in [(left, "jobs"), (more_shapes, "shapes")] {
         if more > 0 {
-            text += &(look.painted(FAINT, &format!("and {more} more {of}: see summary.csv")) + "\n");
+            text += &(text_style.painted(FAINT, &format!("and {more} more {of}: see summary.csv")) + "\n");
         }
     }
     text

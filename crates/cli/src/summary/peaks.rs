@@ -3,11 +3,11 @@
 //!
 //! Knows how many rows a person looks at. Does not know where rows come from.
 
-use super::grid::{RowNames, TableEntry, TextTable};
 use super::label::{ColumnHead, axis, heads};
 use super::survey::{SummaryRow, Survey, SurveyAxis, hash, peaks_among};
+use super::text_table::{RowNames, TableEntry, TextTable};
 use crate::terminal::{BAD, FAINT, NOTABLE, TextStyle};
-use crate::words::{listed, wrapped};
+use crate::text::{listed, wrapped};
 use anstyle::Style;
 use pontoon_plan::input::Cell;
 use pontoon_results::labels;
@@ -26,7 +26,7 @@ const FAILED: &str = "failed";
 pub(super) fn peaks<'a, I: Iterator<Item = SummaryRow<'a>>>(
     columns: &[String],
     rows: impl Fn() -> I,
-    look: TextStyle,
+    text_style: TextStyle,
     width: usize,
 ) -> String {
     let survey = Survey::new(columns, &rows);
@@ -56,10 +56,10 @@ pub(super) fn peaks<'a, I: Iterator<Item = SummaryRow<'a>>>(
         text.push('\n');
     }
     text += &match &survey.along {
-        Some(along) => against(&survey, along, columns, &heads, &rows, look, width),
-        None => list(&survey, columns, &heads, &rows, look, width),
+        Some(along) => against(&survey, along, columns, &heads, &rows, text_style, width),
+        None => list(&survey, columns, &heads, &rows, text_style, width),
     };
-    text + &largest(&survey, columns, &heads, look, width)
+    text + &largest(&survey, columns, &heads, text_style, width)
 }
 
 /// Values of the axes that vary, as the names of rows; heads a word a line.
@@ -113,7 +113,7 @@ fn against<'a, I: Iterator<Item = SummaryRow<'a>>>(
     columns: &[String],
     heads: &[ColumnHead],
     rows: &impl Fn() -> I,
-    look: TextStyle,
+    text_style: TextStyle,
     width: usize,
 ) -> String {
     let Some(peak) = survey.largest.first().map(|largest| largest.column) else {
@@ -152,7 +152,7 @@ fn against<'a, I: Iterator<Item = SummaryRow<'a>>>(
     grid.names = names(&survey.varying, heads, &first);
     grid.rows = entries;
     let shown = fitting(&mut grid, width);
-    grid.written(width, look) + &more(survey.combinations - shown, "combinations", look)
+    grid.written(width, text_style) + &more(survey.combinations - shown, "combinations", text_style)
 }
 
 /// Cuts a table to as many rows as a person looks at in all its pieces; how many are left.
@@ -163,10 +163,10 @@ fn fitting(grid: &mut TextTable, width: usize) -> usize {
     grid.rows.len()
 }
 
-fn more(left: usize, of: &str, look: TextStyle) -> String {
+fn more(left: usize, of: &str, text_style: TextStyle) -> String {
     match left {
         0 => String::new(),
-        left => look.painted(FAINT, &format!("and {left} more {of}: see summary.csv")) + "\n",
+        left => text_style.painted(FAINT, &format!("and {left} more {of}: see summary.csv")) + "\n",
     }
 }
 
@@ -176,7 +176,7 @@ fn list<'a, I: Iterator<Item = SummaryRow<'a>>>(
     columns: &[String],
     heads: &[ColumnHead],
     rows: &impl Fn() -> I,
-    look: TextStyle,
+    text_style: TextStyle,
     width: usize,
 ) -> String {
     let peaks: Vec<usize> = peaks_among(columns);
@@ -226,7 +226,7 @@ fn list<'a, I: Iterator<Item = SummaryRow<'a>>>(
     } else {
         "jobs"
     };
-    grid.written(width, look) + &more(survey.rows - shown, of, look)
+    grid.written(width, text_style) + &more(survey.rows - shown, of, text_style)
 }
 
 /// The head of a peak where all are peaks.
@@ -235,7 +235,13 @@ fn short(column: &str) -> ColumnHead {
 }
 
 /// The largest of each peak and where it is.
-fn largest(survey: &Survey<'_>, columns: &[String], heads: &[ColumnHead], look: TextStyle, width: usize) -> String {
+fn largest(
+    survey: &Survey<'_>,
+    columns: &[String],
+    heads: &[ColumnHead],
+    text_style: TextStyle,
+    width: usize,
+) -> String {
     let along = survey.along.iter().map(|along| along.axis);
     let axes: Vec<usize> = along.chain(survey.varying.iter().copied()).collect();
     let parts: Vec<(String, String, Vec<String>)> = survey
@@ -266,7 +272,7 @@ fn largest(survey: &Survey<'_>, columns: &[String], heads: &[ColumnHead], look: 
         let indent = begin.len() + 2;
         let indent = if 2 * indent > width { 4 } else { indent };
         let begin = if at.is_empty() { begin } else { begin + "  " };
-        listed(&begin, at.iter(), width, indent).replacen(most.as_str(), &look.painted(NOTABLE, most), 1)
+        listed(&begin, at.iter(), width, indent).replacen(most.as_str(), &text_style.painted(NOTABLE, most), 1)
     };
     format!("\n{}", parts.iter().map(line).collect::<String>())
 }

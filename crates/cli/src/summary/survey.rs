@@ -102,15 +102,15 @@ impl<'a> FirstPass<'a> {
     fn at(columns: &[String], rows: impl Iterator<Item = SummaryRow<'a>>) -> Self {
         let peaks = peaks_among(columns);
         let axes = (0..columns.len()).filter(|i| !peaks.contains(i)).map(AxisValueSet::new);
-        let mut look = Self {
+        let mut first_pass = Self {
             axes: axes.collect(),
             largest: Vec::new(),
             rows: 0,
         };
         let mut largest: Vec<Option<Largest<'a>>> = peaks.iter().map(|_| None).collect();
         for row in rows {
-            look.rows += 1;
-            look.axes.iter_mut().for_each(|axis| axis.take(&row[axis.place]));
+            first_pass.rows += 1;
+            first_pass.axes.iter_mut().for_each(|axis| axis.take(&row[axis.place]));
             for (&column, largest) in peaks.iter().zip(&mut largest) {
                 let peak = row[column].number();
                 if let Some(most) = peak.filter(|peak| largest.as_ref().is_none_or(|known| *peak > known.most)) {
@@ -119,8 +119,8 @@ impl<'a> FirstPass<'a> {
                 }
             }
         }
-        look.largest = largest.into_iter().flatten().collect();
-        look
+        first_pass.largest = largest.into_iter().flatten().collect();
+        first_pass
     }
 
     fn axis(&self, columns: &[String], name: &str) -> Option<&AxisValueSet<'a>> {
@@ -171,9 +171,9 @@ impl<'a> FirstPass<'a> {
 impl<'a> Survey<'a> {
     /// Looks at all rows twice.
     pub(super) fn new<I: Iterator<Item = SummaryRow<'a>>>(columns: &[String], rows: impl Fn() -> I) -> Self {
-        let look = FirstPass::at(columns, rows());
-        let (varying, constant) = look.parted(columns);
-        let mut along = look.along(columns, &varying);
+        let first_pass = FirstPass::at(columns, rows());
+        let (varying, constant) = first_pass.parted(columns);
+        let mut along = first_pass.along(columns, &varying);
         let others = |along: &Option<SurveyAxis<'_>>| {
             let along = along.as_ref().map(|along| along.axis);
             varying
@@ -186,18 +186,18 @@ impl<'a> Survey<'a> {
         // a table that would be empty for the most part says less than a list
         if along
             .as_ref()
-            .is_some_and(|along| 2 * look.rows < combinations * along.values.len())
+            .is_some_and(|along| 2 * first_pass.rows < combinations * along.values.len())
         {
             along = None;
-            combinations = look.rows;
+            combinations = first_pass.rows;
         }
         Self {
             varying: others(&along),
             constant,
             along,
             combinations,
-            rows: look.rows,
-            largest: look.largest,
+            rows: first_pass.rows,
+            largest: first_pass.largest,
         }
     }
 }

@@ -31,17 +31,17 @@ fn row(axes: Value, deflection_m: Option<f64>) -> Vec<Value> {
     row
 }
 
-fn text_of(names: &str, rows: &[Vec<Value>], look: TextStyle) -> String {
+fn text_of(names: &str, rows: &[Vec<Value>], text_style: TextStyle) -> String {
     text(
         &columns(names),
         || rows.iter().map(|row| row.iter().map(Cell::of).collect()),
-        look,
+        text_style,
     )
 }
 
-fn written(names: &str, rows: &[Vec<Value>], look: TextStyle) -> String {
-    let text = text_of(names, rows, look);
-    if let Some(width) = look.width {
+fn written(names: &str, rows: &[Vec<Value>], text_style: TextStyle) -> String {
+    let text = text_of(names, rows, text_style);
+    if let Some(width) = text_style.width {
         let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
         // the name of a peak and its value are not broken
         assert!(longest <= width.max(31), "{longest} characters:\n{text}");
@@ -371,11 +371,11 @@ local    0.37000
 
 #[test]
 fn colours_are_where_they_are_shown_and_move_nothing() {
-    let look = TextStyle {
+    let text_style = TextStyle {
         colour: true,
         width: Some(118),
     };
-    let [coloured, plain] = [look, PLAIN].map(|look| text_of(COLUMNS, &crossings(), look));
+    let [coloured, plain] = [text_style, PLAIN].map(|text_style| text_of(COLUMNS, &crossings(), text_style));
     assert!(coloured.contains("\u{1b}["), "{coloured}");
     let mut bare = String::new();
     let mut rest = coloured.as_str();

@@ -3,7 +3,7 @@
 //! Knows widths, alignment and what stands in for names that are too long. Does not know what the values are.
 
 use crate::terminal::{HEAD, TextStyle};
-use crate::words::{listed, padded};
+use crate::text::{listed, padded};
 use anstyle::Style;
 use std::ops::Range;
 use unicode_width::UnicodeWidthStr;
@@ -71,7 +71,7 @@ impl TextTable {
     }
 
     /// The table in pieces that fit a width, if there is any way to.
-    pub(super) fn written(&self, width: usize, look: TextStyle) -> String {
+    pub(super) fn written(&self, width: usize, text_style: TextStyle) -> String {
         let names = self.columns_of_names(width);
         let mut text = String::new();
         if self.is_numbered(width) {
@@ -90,7 +90,7 @@ impl TextTable {
             if i > 0 {
                 text.push('\n');
             }
-            self.piece(&names, apart, columns, look, &mut text);
+            self.piece(&names, apart, columns, text_style, &mut text);
         }
         text
     }
@@ -171,7 +171,7 @@ impl TextTable {
         longest(cells.chain(&self.heads[column]))
     }
 
-    fn piece(&self, names: &[RowNames], apart: usize, columns: Range<usize>, look: TextStyle, text: &mut String) {
+    fn piece(&self, names: &[RowNames], apart: usize, columns: Range<usize>, text_style: TextStyle, text: &mut String) {
         let named = |line: &dyn Fn(&RowNames) -> String| {
             let column = |names: &RowNames| {
                 let width = longest(names.rows.iter().chain(&names.head));
@@ -197,7 +197,7 @@ impl TextTable {
                 head += &padded(&at(&self.heads[column], line), value, true);
             }
             if !head.trim().is_empty() {
-                *text += &look.painted(HEAD, head.trim_end());
+                *text += &text_style.painted(HEAD, head.trim_end());
                 text.push('\n');
             }
         }
@@ -207,7 +207,7 @@ impl TextTable {
                 let cell = &row[column];
                 let blanks = self.gap + self.value(column) - cell.text.width();
                 let bare = cell.text.trim_end();
-                written += &format!("{}{}", " ".repeat(blanks), look.painted(cell.style, bare));
+                written += &format!("{}{}", " ".repeat(blanks), text_style.painted(cell.style, bare));
                 written += &" ".repeat(cell.text.len() - bare.len());
             }
             *text += written.trim_end();
