@@ -75,8 +75,8 @@ pub fn journal(folder: &Path, bytes: &[u8]) {
         drop(told(folder));
     }
     written(&file, &mended);
-    if let Some(book) = told(folder) {
-        explained(folder, &book, bytes.len());
+    if let Some(index) = told(folder) {
+        explained(folder, &index, bytes.len());
     }
 }
 
@@ -128,18 +128,18 @@ fn planned(study: &Study) {
 
 /// What a run, and whoever asks how far it has come, reads of a journal.
 fn told(folder: &Path) -> Option<JournalIndex> {
-    let book = JournalIndex::read(folder).ok()?;
-    for entry in book.entries() {
-        let _ = book.record(entry.place);
+    let index = JournalIndex::read(folder).ok()?;
+    for entry in index.entries() {
+        let _ = index.record(entry.place);
     }
-    let _ = (book.deaths(), book.damages().count());
+    let _ = (index.deaths(), index.damages().count());
     let _ = standings(&[folder.to_owned()]);
-    Some(book)
+    Some(index)
 }
 
 /// One job of a journal's study, which decodes its record; `any` says which.
-fn explained(folder: &Path, book: &JournalIndex, any: usize) {
-    let Some(session) = book.files.iter().find_map(|written| written.session.as_ref()) else {
+fn explained(folder: &Path, index: &JournalIndex, any: usize) {
+    let Some(session) = index.files.iter().find_map(|written| written.session.as_ref()) else {
         return;
     };
     let [study, bridge] = [&session.study, &session.bridge].map(Document::from);

@@ -69,7 +69,7 @@ impl Written {
         }
     }
 
-    /// Counts a record and gives its entry; `file` is the number of this file in the book.
+    /// Counts a record and gives its entry; `file` is the number of this file in the index.
     fn take_record(&mut self, frame: &Frame<'_>, file: u32) -> Option<RecordEntry> {
         let (key, failed) = record_head(frame.payload)?;
         self.records += 1;
@@ -146,15 +146,16 @@ impl JournalIndex {
             Err(cause) => return Err(JournalError::io(&folder, cause)),
         }
         paths.sort();
-        let mut book = Self::default();
+        let mut index = Self::default();
         for path in paths {
-            book.take(path)?;
+            index.take(path)?;
         }
         // of records of one key the first counts; all say the same
-        book.entries
+        index
+            .entries
             .sort_by_key(|entry| (entry.key, entry.place.file, entry.place.at));
-        book.entries.dedup_by_key(|entry| entry.key);
-        Ok(book)
+        index.entries.dedup_by_key(|entry| entry.key);
+        Ok(index)
     }
 
     /// Takes in a file of the journal, with the entries of its records.

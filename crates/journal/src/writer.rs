@@ -414,8 +414,8 @@ mod tests {
         assert!(matches!(refused, JournalError::NotEncoded { .. }), "{refused}");
         writer.prepared(&1).unwrap();
         writer.sync().unwrap();
-        let book = JournalIndex::read(dir.path()).unwrap();
-        let prepared: Vec<&Value> = book.files.iter().flat_map(|file| &file.prepared).collect();
+        let index = JournalIndex::read(dir.path()).unwrap();
+        let prepared: Vec<&Value> = index.files.iter().flat_map(|file| &file.prepared).collect();
         assert_eq!(prepared, [&Value::from(1)]);
     }
 }

@@ -9,7 +9,7 @@ use pontoon_results::{JobRecord, Preparation};
 /// The journal as a run of some jobs sees it.
 #[derive(Debug)]
 pub struct ResumeIndex<'a> {
-    book: &'a JournalIndex,
+    index: &'a JournalIndex,
     /// Of each job, by its place among those of the run, the record that it has; nothing where none has one.
     known: Vec<Option<RecordLocation>>,
     writer: Option<&'a JournalWriter>,
@@ -18,21 +18,21 @@ pub struct ResumeIndex<'a> {
 }
 
 impl<'a> ResumeIndex<'a> {
-    /// The records that `jobs` have in a book.
-    pub fn new(book: &'a JournalIndex, jobs: &[Job]) -> Self {
+    /// The records that `jobs` have in a journal.
+    pub fn new(index: &'a JournalIndex, jobs: &[Job]) -> Self {
         let mut failed = 0;
         let known = jobs.iter().map(|job| {
-            let entry = book.find(&record_key(job))?;
+            let entry = index.find(&record_key(job))?;
             failed += usize::from(entry.failed);
             Some(entry.place)
         });
-        let known = if book.entries().is_empty() {
+        let known = if index.entries().is_empty() {
             Vec::new()
         } else {
             known.collect()
         };
         Self {
-            book,
+            index,
             known,
             writer: None,
             failed,
@@ -71,8 +71,8 @@ impl<'a> ResumeIndex<'a> {
     /// [`JournalError`].
     pub(crate) fn record(&self, at: usize, job: &Job) -> Result<Option<JobRecord>, JournalError> {
         let Some(place) = self.place(at) else { return Ok(None) };
-        let left = self.book.record(place)?.left;
-        let damaged = || self.book.damaged(place);
+        let left = self.index.record(place)?.left;
+        let damaged = || self.index.damaged(place);
         let mut record: JobRecord = postcard::from_bytes(&left).map_err(|_| damaged())?;
         // the study may have grown
         record.job = job.number;

@@ -13,7 +13,7 @@ const ASIDE: &str = "aside";
 
 /// Moves the results of a folder to `aside/HASH`, the journal last: until then the folder is what it was, and the next run
 /// with the same wish goes on moving. Tells where to; nothing where there is nothing to move.
-pub(super) fn archive_results(folder: &Path, book: Option<&JournalIndex>) -> Result<Option<PathBuf>, SweepError> {
+pub(super) fn archive(folder: &Path, index: Option<&JournalIndex>) -> Result<Option<PathBuf>, SweepError> {
     let mut list = OwnFiles::in_folder(folder);
     let journal = folder.join(FOLDER);
     if journal.exists() {
@@ -27,7 +27,7 @@ pub(super) fn archive_results(folder: &Path, book: Option<&JournalIndex>) -> Res
     if page.exists() {
         list.insert(0, page);
     }
-    let to = free(&folder.join(ASIDE), &name(book));
+    let to = free(&folder.join(ASIDE), &name(index));
     let error = |path: &Path, cause| JournalError::Io {
         path: path.to_owned(),
         cause,
@@ -54,9 +54,9 @@ pub(super) fn archive_results(folder: &Path, book: Option<&JournalIndex>) -> Res
 }
 
 /// A hash of what the records are bound to and of the study.
-fn name(book: Option<&JournalIndex>) -> String {
+fn name(index: Option<&JournalIndex>) -> String {
     let mut hasher = blake3::Hasher::new();
-    for written in book.into_iter().flat_map(|book| &book.files) {
+    for written in index.into_iter().flat_map(|index| &index.files) {
         let parts = (&written.binding, written.session.as_ref().map(|session| &session.study));
         hasher.update(serde_json::to_string(&parts).unwrap_or_default().as_bytes());
     }

@@ -54,7 +54,7 @@ pub(super) fn settle(
 ) -> Result<PassedOver, SweepError> {
     let (mut over, mut killed, mut before) = (PassedOver::new(), BTreeSet::new(), Vec::new());
     loop {
-        let suspects: Vec<&Job> = suspects(&opened.book, jobs)
+        let suspects: Vec<&Job> = suspects(&opened.index, jobs)
             .filter(|job| !over.contains_key(&job.number))
             .collect();
         let numbers: Vec<usize> = suspects.iter().map(|job| job.number).collect();
@@ -73,7 +73,7 @@ pub(super) fn settle(
         if apart.end == ApartEnd::Own {
             continue;
         }
-        let begun: Vec<RecordKey> = opened.book.begun_apart(apart.process).copied().collect();
+        let begun: Vec<RecordKey> = opened.index.begun_apart(apart.process).copied().collect();
         for job in suspects.iter().filter(|job| begun.contains(&record_key(job))) {
             // one kill may be anybody's
             if apart.end == ApartEnd::Killed && killed.insert(job.number) {
@@ -96,8 +96,8 @@ pub(super) fn hash_of(study: &Study) -> String {
 }
 
 /// Jobs that processes died with too often.
-fn suspects<'j>(book: &JournalIndex, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
-    let mut deaths: BTreeMap<RecordKey, usize> = book.deaths();
+fn suspects<'j>(index: &JournalIndex, jobs: &'j [Job]) -> impl Iterator<Item = &'j Job> {
+    let mut deaths: BTreeMap<RecordKey, usize> = index.deaths();
     deaths.retain(|_, times| *times >= SUSPECT);
     let jobs = if deaths.is_empty() { &[] } else { jobs };
     jobs.iter().filter(move |job| deaths.contains_key(&record_key(job)))
@@ -123,8 +123,8 @@ pub fn run_apart(
         .filter(|job| numbers.contains(&job.number))
         .cloned()
         .collect();
-    let book = JournalIndex::read(&setting.out)?;
-    let resume_index = ResumeIndex::new(&book, &own);
+    let index = JournalIndex::read(&setting.out)?;
+    let resume_index = ResumeIndex::new(&index, &own);
     let asked = session(study, setting, 1, own.len(), resume_index.known(), true);
     let writer = JournalWriter::begin(
         &setting.out,

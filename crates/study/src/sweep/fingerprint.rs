@@ -37,9 +37,9 @@ fn numerics() -> String {
 ///
 /// # Errors
 /// [`Refusal`] of the file.
-pub(super) fn check_program(book: &JournalIndex) -> Result<(), Refusal> {
+pub(super) fn check_program(index: &JournalIndex) -> Result<(), Refusal> {
     let own = numerics();
-    for written in &book.files {
+    for written in &index.files {
         let bound = written.binding.as_ref();
         if let Some(then) = bound.filter(|then| written.records > 0 && then.numerics != own) {
             let found = format!("records of another program ({} then, {own} now)", then.numerics);

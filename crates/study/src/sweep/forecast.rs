@@ -45,22 +45,22 @@ pub struct RecordedJobs {
 /// # Errors
 /// [`SweepError::Refused`] of the first job that is refused; [`SweepError::Journal`].
 pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cache>) -> Result<Forecast, SweepError> {
-    let book = JournalIndex::read(folder)?;
+    let index = JournalIndex::read(folder)?;
     let now = binding(study, None);
-    let refused = results_folder::bindings(&book)
+    let refused = results_folder::bindings(&index)
         .map(|then| then.differences(&now))
         .find(|told| !told.is_empty());
     let refused = refused.unwrap_or_default();
     let (mut done, mut failed) = (0, 0);
-    let known = refused.is_empty() && !book.entries().is_empty();
+    let known = refused.is_empty() && !index.entries().is_empty();
     let plan = Plan::new(study, |job| {
-        if let Some(entry) = known.then(|| book.find(&record_key(job))).flatten() {
+        if let Some(entry) = known.then(|| index.find(&record_key(job))).flatten() {
             done += 1;
             failed += usize::from(entry.failed);
         }
     })?;
     let missing = plan.jobs - done;
-    let found = (!book.files.is_empty()).then_some(RecordedJobs {
+    let found = (!index.files.is_empty()).then_some(RecordedJobs {
         done,
         failed,
         missing,

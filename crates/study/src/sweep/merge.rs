@@ -8,7 +8,7 @@ use super::crash_suspects::hash_of as hash_of_study;
 use super::ending::ending;
 use super::fingerprint::{binding, session};
 use super::results_folder::{check_folder, instruction_paths, preparations, sessions, tell_damage};
-use super::status::study_of_book;
+use super::status::study_of_index;
 use super::{SweepError, SweepSetting, Swept, Watcher};
 use crate::run::{CancelToken, ResumeIndex, Setting, record_key, run};
 use pontoon_journal::place::{Folder, HiddenFile, hash_of};
@@ -41,8 +41,8 @@ impl Merged {
         let mut study = None;
         for folder in folders {
             check_folder(folder)?;
-            let book = JournalIndex::read(folder)?;
-            let (of_folder, ..) = study_of_book(&book, folder)?;
+            let index = JournalIndex::read(folder)?;
+            let (of_folder, ..) = study_of_index(&index, folder)?;
             let hash = hash_of_study(&of_folder);
             match &first {
                 None => {
@@ -90,10 +90,10 @@ pub fn merge<'a>(
     // what the folder of the results holds already counts like a shard
     let old = setting.out.join(FOLDER).exists().then(|| setting.out.clone());
     let folders: Vec<PathBuf> = old.into_iter().chain(folders.iter().cloned()).collect();
-    let mut books = Vec::new();
+    let mut indexes = Vec::new();
     for folder in &folders {
-        let book = JournalIndex::read(folder)?;
-        for written in &book.files {
+        let index = JournalIndex::read(folder)?;
+        for written in &index.files {
             let differences = written.binding.as_ref().map(|then| then.differences(&now));
             let differences = differences.unwrap_or_default();
             if !differences.is_empty() {
@@ -102,10 +102,10 @@ pub fn merge<'a>(
                 return Err(Refusal::new(&written.path, "", found, allowed).into());
             }
         }
-        tell_damage(&book, |what| watcher.warn(what));
-        books.push(book);
+        tell_damage(&index, |what| watcher.warn(what));
+        indexes.push(index);
     }
-    let paths: BTreeSet<String> = books.iter().flat_map(instruction_paths).cloned().collect();
+    let paths: BTreeSet<String> = indexes.iter().flat_map(instruction_paths).cloned().collect();
     let paths: Vec<String> = paths.into_iter().collect();
     if paths.len() > 1 && !setting.any_instructions {
         let found = format!("shards computed on {}", paths.join(" and "));
@@ -118,16 +118,16 @@ pub fn merge<'a>(
         .into());
     }
     let folders = folders.as_slice();
-    check_complete(jobs, &books, folders)?;
-    check_consistent(&books, folders)?;
+    check_complete(jobs, &indexes, folders)?;
+    check_consistent(&indexes, folders)?;
     let folder = Folder::create(&setting.out)?;
     let _lock = Lock::take(&setting.out)?;
     watcher.stage("journals");
     for source in folders.iter().filter(|source| **source != setting.out) {
         copy_journal(source, &setting.out)?;
     }
-    let book = JournalIndex::read(&setting.out)?;
-    let resume_index = ResumeIndex::new(&book, jobs);
+    let index = JournalIndex::read(&setting.out)?;
+    let resume_index = ResumeIndex::new(&index, jobs);
     if resume_index.known() < jobs.len() {
         let found = format!(
             "{} of {} jobs after the shards were copied",
@@ -149,14 +149,14 @@ pub fn merge<'a>(
         ..Setting::default()
     };
     let mut outcome = run(study, jobs, run_setting, cancel, watcher, Some(&mut sink)).map_err(SweepError::from)?;
-    for before in preparations(&book) {
+    for before in preparations(&index) {
         outcome.preparation.add(before);
     }
     let mut manifest = Manifest::new(study, jobs, &outcome, started, Moment::now(), &provenance);
-    manifest.sessions = sessions(&book);
+    manifest.sessions = sessions(&index);
     // the journal's last word is the whole study's
     let asked = session(study, setting, setting.threads, jobs.len(), jobs.len(), false);
-    let last = JournalIndex::newest(&book).filter(|(then, of)| then.shard.is_none() && of.study == asked.study);
+    let last = JournalIndex::newest(&index).filter(|(then, of)| then.shard.is_none() && of.study == asked.study);
     if last.is_none() {
         let writer = JournalWriter::begin(&setting.out, &now, &asked, outcome.failures.count)?;
         writer.end(&ending("complete".to_owned(), 0.0, 0.0))?;
@@ -195,12 +195,12 @@ fn check_distinct(folders: &[PathBuf], out: &Path) -> Result<(), Refusal> {
 }
 
 /// Refuses shards that leave jobs out.
-fn check_complete(jobs: &[Job], books: &[JournalIndex], folders: &[PathBuf]) -> Result<(), Refusal> {
+fn check_complete(jobs: &[Job], indexes: &[JournalIndex], folders: &[PathBuf]) -> Result<(), Refusal> {
     let mut missing = Vec::new();
     let mut count = 0;
     for job in jobs {
         let key = record_key(job);
-        if !books.iter().any(|book| book.find(&key).is_some()) {
+        if !indexes.iter().any(|index| index.find(&key).is_some()) {
             count += 1;
             if missing.len() < 5 {
                 missing.push(job.number.to_string());
@@ -225,12 +225,12 @@ fn check_complete(jobs: &[Job], books: &[JournalIndex], folders: &[PathBuf]) -> 
 }
 
 /// Refuses shards whose records of one job differ.
-fn check_consistent(books: &[JournalIndex], folders: &[PathBuf]) -> Result<(), SweepError> {
-    for (i, book) in books.iter().enumerate() {
-        for entry in book.entries() {
-            for (earlier, other) in books[..i].iter().enumerate() {
+fn check_consistent(indexes: &[JournalIndex], folders: &[PathBuf]) -> Result<(), SweepError> {
+    for (i, index) in indexes.iter().enumerate() {
+        for entry in index.entries() {
+            for (earlier, other) in indexes[..i].iter().enumerate() {
                 let Some(same) = other.find(&entry.key) else { continue };
-                if book.record(entry.place)?.left != other.record(same.place)?.left {
+                if index.record(entry.place)?.left != other.record(same.place)?.left {
                     let found = format!(
                         "a record of job key {} that is not the one of {}",
                         entry.key,

@@ -174,8 +174,8 @@ pub fn sweep<'a>(
     let own: Option<Vec<Job>> = setting.shard.map(share);
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);
     let passed_over = crash_suspects::settle(&mut opened, study, asked, cancel, watcher)?;
-    let resume_index = ResumeIndex::new(&opened.book, asked);
-    results_folder::tell_damage(&opened.book, |what| match resume_index.known() < asked.len() {
+    let resume_index = ResumeIndex::new(&opened.index, asked);
+    results_folder::tell_damage(&opened.index, |what| match resume_index.known() < asked.len() {
         true => watcher.warn(what),
         false => watcher.note(what),
     });

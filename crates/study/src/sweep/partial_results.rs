@@ -5,7 +5,7 @@
 use super::SweepError;
 use super::fingerprint::check_program;
 use super::results_folder::check_folder;
-use super::status::study_of_book;
+use super::status::study_of_index;
 use crate::run::ResumeIndex;
 use pontoon_journal::{JournalIndex, Session};
 use pontoon_plan::input::Refusal;
@@ -38,11 +38,11 @@ pub struct PartialResults {
 /// [`SweepError::Journal`].
 pub fn partial_results(folder: &Path) -> Result<PartialResults, SweepError> {
     check_folder(folder)?;
-    let book = JournalIndex::read(folder)?;
-    check_program(&book)?;
-    let (study, binding, session) = study_of_book(&book, folder)?;
+    let index = JournalIndex::read(folder)?;
+    check_program(&index)?;
+    let (study, binding, session) = study_of_index(&index, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
-    let resume_index = ResumeIndex::new(&book, &jobs);
+    let resume_index = ResumeIndex::new(&index, &jobs);
     let mut records = Vec::with_capacity(resume_index.known());
     for (at, job) in jobs.iter().enumerate() {
         records.extend(resume_index.record(at, job)?);

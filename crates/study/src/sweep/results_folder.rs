@@ -2,7 +2,7 @@
 //!
 //! Knows the lock, the journal and what makes a folder another study's. Does not run anything.
 
-use super::archive::archive_results;
+use super::archive::archive;
 use super::fingerprint::binding;
 use super::{SweepError, SweepSetting, Watcher};
 use pontoon_journal::place::Folder;
@@ -17,7 +17,7 @@ use std::path::Path;
 #[derive(Debug)]
 pub(super) struct ResultsFolder {
     pub folder: Folder,
-    pub book: JournalIndex,
+    pub index: JournalIndex,
     pub binding: Binding,
     _lock: Lock,
 }
@@ -32,21 +32,21 @@ impl ResultsFolder {
         let folder = Folder::create(&setting.out)?;
         let lock = Lock::take(&setting.out)?;
         let binding = binding(study, setting.shard);
-        let mut book = JournalIndex::read(&setting.out);
+        let mut index = JournalIndex::read(&setting.out);
         if setting.fresh {
-            if let Some(to) = archive_results(&setting.out, book.as_ref().ok())? {
+            if let Some(to) = archive(&setting.out, index.as_ref().ok())? {
                 watcher.note(&format!("older results are now in {}", to.display()));
             }
-            book = JournalIndex::read(&setting.out);
+            index = JournalIndex::read(&setting.out);
         }
-        let book = book?;
-        check(&book, &binding, setting)?;
-        if book.files.is_empty() {
+        let index = index?;
+        check(&index, &binding, setting)?;
+        if index.files.is_empty() {
             refuse_without_journal(&setting.out)?;
         }
         Ok(Self {
             folder,
-            book,
+            index,
             binding,
             _lock: lock,
         })
@@ -54,7 +54,7 @@ impl ResultsFolder {
 
     /// Whether the last process that worked here had this study and was asked for the same.
     pub(super) fn is_of(&self, study: &Study) -> bool {
-        self.book.newest().is_some_and(|(then, session)| {
+        self.index.newest().is_some_and(|(then, session)| {
             then.shard == self.binding.shard
                 && Document::from(&session.study) == study.document
                 && Document::from(&session.bridge) == study.bridge.document
@@ -63,14 +63,14 @@ impl ResultsFolder {
 
     /// Reads the journal again.
     pub(super) fn read_again(&mut self) -> Result<(), SweepError> {
-        self.book = JournalIndex::read(self.folder.path())?;
+        self.index = JournalIndex::read(self.folder.path())?;
         Ok(())
     }
 
     /// Instruction paths that records were computed on, `own` among them where this process computes any.
     pub(super) fn instruction_paths(&self, own: bool) -> Vec<String> {
         let own = own.then_some(&self.binding.instruction_path);
-        instruction_paths(&self.book)
+        instruction_paths(&self.index)
             .chain(own)
             .cloned()
             .collect::<BTreeSet<_>>()
@@ -80,34 +80,34 @@ impl ResultsFolder {
 
     /// What jobs share, as earlier processes prepared it.
     pub(super) fn preparations(&self) -> impl Iterator<Item = Preparation> {
-        preparations(&self.book)
+        preparations(&self.index)
     }
 
     /// The processes that worked on the study before.
     pub(super) fn sessions(&self) -> Vec<SessionNote> {
-        sessions(&self.book)
+        sessions(&self.index)
     }
 }
 
-/// What the records of a book are bound to.
-pub(super) fn bindings(book: &JournalIndex) -> impl Iterator<Item = &Binding> {
-    book.files.iter().filter_map(|written| written.binding.as_ref())
+/// What the records of a journal are bound to.
+pub(super) fn bindings(index: &JournalIndex) -> impl Iterator<Item = &Binding> {
+    index.files.iter().filter_map(|written| written.binding.as_ref())
 }
 
-/// Instruction paths that a book's records were computed on.
-pub(super) fn instruction_paths(book: &JournalIndex) -> impl Iterator<Item = &String> {
-    let with_records = book.files.iter().filter(|written| written.records > 0);
+/// Instruction paths that a journal's records were computed on.
+pub(super) fn instruction_paths(index: &JournalIndex) -> impl Iterator<Item = &String> {
+    let with_records = index.files.iter().filter(|written| written.records > 0);
     with_records
         .filter_map(|written| written.binding.as_ref())
         .map(|binding| &binding.instruction_path)
 }
 
-pub(super) fn preparations(book: &JournalIndex) -> impl Iterator<Item = Preparation> {
-    let prepared = book.files.iter().flat_map(|written| &written.prepared);
+pub(super) fn preparations(index: &JournalIndex) -> impl Iterator<Item = Preparation> {
+    let prepared = index.files.iter().flat_map(|written| &written.prepared);
     prepared.filter_map(|value| serde_json::from_value(value.clone()).ok())
 }
 
-pub(super) fn sessions(book: &JournalIndex) -> Vec<SessionNote> {
+pub(super) fn sessions(index: &JournalIndex) -> Vec<SessionNote> {
     let note =
         |(session, ending, shard, records): (&Session, Option<&SessionEnd>, Option<&String>, usize)| SessionNote {
             started: session.started.clone(),
@@ -120,7 +120,7 @@ pub(super) fn sessions(book: &JournalIndex) -> Vec<SessionNote> {
             records,
             ended: ending.map_or_else(|| "died".to_owned(), |ending| ending.how.clone()),
         };
-    let known = book.files.iter().filter_map(|written| {
+    let known = index.files.iter().filter_map(|written| {
         let (binding, session) = (written.binding.as_ref()?, written.session.as_ref()?);
         Some((
             session,
@@ -141,19 +141,19 @@ pub(super) fn check_folder(path: &Path) -> Result<(), Refusal> {
 }
 
 /// Tells what was passed over in a journal.
-pub(super) fn tell_damage(book: &JournalIndex, tell: impl Fn(&str)) {
-    for (path, damage) in book.damages() {
+pub(super) fn tell_damage(index: &JournalIndex, tell: impl Fn(&str)) {
+    for (path, damage) in index.damages() {
         tell(&words(path, damage));
     }
-    for written in book.files.iter().filter(|written| written.binding.is_none()) {
+    for written in index.files.iter().filter(|written| written.binding.is_none()) {
         let path = written.path.display();
         tell(&format!("{path}: begins with no whole frame; nothing of it is used"));
     }
 }
 
 /// Refuses a journal whose records are of no use to a study.
-fn check(book: &JournalIndex, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
-    for written in &book.files {
+fn check(index: &JournalIndex, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
+    for written in &index.files {
         let Some(then) = &written.binding else { continue };
         let refuse = |key: &str, found: String, allowed: &str| Err(Refusal::new(&written.path, key, found, allowed));
         let differences = then.differences(now);

@@ -72,15 +72,15 @@ pub fn standings(folders: &[PathBuf]) -> Result<Standings, SweepError> {
 /// How far a run has come by its journal and study alone.
 fn counted(folder: &Path) -> Result<Standing, SweepError> {
     check_folder(folder)?;
-    let book = JournalIndex::read(folder)?;
-    let (study, binding, session) = study_of_book(&book, folder)?;
+    let index = JournalIndex::read(folder)?;
+    let (study, binding, session) = study_of_index(&index, folder)?;
     let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let share = |shard: Shard| shard.deal(&jobs).into_iter().map(|at| jobs[at].clone()).collect();
     let own: Option<Vec<Job>> = shard.map(share);
     let asked = own.as_deref().unwrap_or(&jobs);
-    let resume_index = ResumeIndex::new(&book, asked);
-    let ended = book
+    let resume_index = ResumeIndex::new(&index, asked);
+    let ended = index
         .files
         .iter()
         .rev()
@@ -161,8 +161,8 @@ fn with_numbers_by_name<S: Serializer>(failure: &Option<Failure>, serializer: S)
 /// [`SweepError`].
 pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> {
     check_folder(folder)?;
-    let book = JournalIndex::read(folder)?;
-    let (study, binding, _) = study_of_book(&book, folder)?;
+    let index = JournalIndex::read(folder)?;
+    let (study, binding, _) = study_of_index(&index, folder)?;
     let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
     let Some(job) = jobs.get(number) else {
         let allowed = format!("0 to {}", jobs.len().saturating_sub(1));
@@ -174,9 +174,9 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
     let shard: Option<Shard> = binding.shard.as_ref().and_then(|shard| shard.parse().ok());
     let running = Lock::is_held(folder);
     let deaths = if running {
-        book.deaths_before(&key)
+        index.deaths_before(&key)
     } else {
-        book.deaths().get(&key).copied().unwrap_or_default()
+        index.deaths().get(&key).copied().unwrap_or_default()
     };
     let mut told = Explanation {
         job: number,
@@ -193,16 +193,16 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
         deaths,
         steps: job.steps(),
     };
-    match book.find(&key) {
+    match index.find(&key) {
         Some(entry) => {
-            check_program(&book)?;
-            let resume_index = ResumeIndex::new(&book, std::slice::from_ref(job));
+            check_program(&index)?;
+            let resume_index = ResumeIndex::new(&index, std::slice::from_ref(job));
             let record = resume_index.record(0, job)?;
-            let written = book.file_of(entry.place);
+            let written = index.file_of(entry.place);
             told.state = if entry.failed { "failed" } else { "ok" };
             told.failure = record.and_then(|record| record.failure);
             told.reason = told.failure.as_ref().map(|failure| failure.text.clone());
-            told.recorded = Some(pontoon_results::Moment::of_unix_ms(book.record(entry.place)?.unix_ms).text());
+            told.recorded = Some(pontoon_results::Moment::of_unix_ms(index.record(entry.place)?.unix_ms).text());
             told.by = written
                 .session
                 .as_ref()
@@ -224,10 +224,10 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
 }
 
 /// The study of a folder's journal as its last process had it, and that process.
-pub(super) fn study_of_book<'a>(
-    book: &'a JournalIndex,
+pub(super) fn study_of_index<'a>(
+    index: &'a JournalIndex,
     folder: &Path,
 ) -> Result<(Study, &'a Binding, &'a Session), SweepError> {
-    let (binding, session) = book.newest().ok_or_else(|| no_journal(folder))?;
+    let (binding, session) = index.newest().ok_or_else(|| no_journal(folder))?;
     Ok((study_of(session, folder)?, binding, session))
 }
