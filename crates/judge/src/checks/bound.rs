@@ -77,8 +77,8 @@ impl CheckKind for BoundCheck {
         place.quantity("bound.of", &self.of, None)
     }
 
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        asked.quantity("bound.of", &self.of)
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        input.quantity("bound.of", &self.of)
     }
 
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue> {

@@ -73,11 +73,11 @@ impl CheckKind for CurveCheck {
         }
     }
 
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        let table = asked.table(&asked.at("curve.table"), self.table)?;
-        asked.number_column(&asked.at("curve.column"), table, &self.column)?;
-        asked.number_column(&asked.at("curve.against"), table, &self.against)?;
-        asked.filters(&asked.at("curve"), &Filter::default(), Some(table))
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        let table = input.table(&input.at("curve.table"), self.table)?;
+        input.number_column(&input.at("curve.column"), table, &self.column)?;
+        input.number_column(&input.at("curve.against"), table, &self.against)?;
+        input.filters(&input.at("curve"), &Filter::default(), Some(table))
     }
 
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue> {

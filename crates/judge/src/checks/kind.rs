@@ -14,7 +14,7 @@ pub(crate) trait CheckKind {
     fn refuse(&self, place: &Place<'_>) -> Result<(), Refusal>;
 
     /// Refuses what the results cannot have.
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal>;
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal>;
 
     /// What it finds on the rows that a filter means.
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue>;

@@ -37,8 +37,8 @@ impl CheckKind for MeasuredCheck {
         place.quantity("measured.of", &self.of, None)
     }
 
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        asked.quantity("measured.of", &self.of)
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        input.quantity("measured.of", &self.of)
     }
 
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue> {

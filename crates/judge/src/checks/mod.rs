@@ -169,9 +169,9 @@ impl Check {
     }
 
     /// Refuses what results cannot have: tables, columns, words, jobs.
-    pub(crate) fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        asked.check_each()?;
-        self.kind.of().select(asked)
+    pub(crate) fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        input.check_each()?;
+        self.kind.of().select(input)
     }
 
     /// The one value that it is of, what is expected of it and how far it may be off; none of another kind.

@@ -53,10 +53,10 @@ impl CheckKind for ModeCheck {
         place.tolerance("mode", self.tolerance())
     }
 
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        let modes = asked.table(&asked.at("mode"), TableName::Modes)?;
-        asked.allowed(&asked.at("mode.shape"), Some(modes), "shape", &self.of_shape())?;
-        asked.filters(&asked.at("mode"), &Filter::default(), Some(modes))
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        let modes = input.table(&input.at("mode"), TableName::Modes)?;
+        input.allowed(&input.at("mode.shape"), Some(modes), "shape", &self.of_shape())?;
+        input.filters(&input.at("mode"), &Filter::default(), Some(modes))
     }
 
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue> {

@@ -102,9 +102,9 @@ impl CheckKind for TrendCheck {
         place.quantity("trend.of", &self.of, Some(&self.along))
     }
 
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        asked.number_column(&asked.at("trend.along"), asked.results.jobs(), &self.along)?;
-        asked.quantity("trend.of", &self.of)
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        input.number_column(&input.at("trend.along"), input.results.jobs(), &self.along)?;
+        input.quantity("trend.of", &self.of)
     }
 
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue> {

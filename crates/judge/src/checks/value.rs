@@ -49,8 +49,8 @@ impl CheckKind for ValueCheck {
         place.quantity("value.of", &self.of, None)
     }
 
-    fn select(&self, asked: &CheckInput<'_>) -> Result<(), Refusal> {
-        asked.quantity("value.of", &self.of)
+    fn select(&self, input: &CheckInput<'_>) -> Result<(), Refusal> {
+        input.quantity("value.of", &self.of)
     }
 
     fn evaluate(&self, on: &Evaluator<'_>, filter: &Filter) -> Result<Finding, NoValue> {
