@@ -175,7 +175,7 @@ pub fn bending_frequencies_hz(free: &Bridge) -> Result<[f64; 2], AnalysisError> 
     missing
 }
 
-/// ShapeNames in order of frequency.
+/// Names in order of frequency.
 #[derive(Default)]
 struct ShapeNames {
     count: BTreeMap<&'static str, usize>,

@@ -1,4 +1,4 @@
-//! The masses that compliance along in one lane: where they are, what they see of each other and of the connectors.
+//! The masses that ride along in one lane: where they are, what they see of each other and of the connectors.
 //!
 //! Knows one vehicle's place at one instant, laid out once so that a step allocates nothing. Does not know the scheme but
 //! for its factors.
@@ -23,7 +23,7 @@ struct MovingMass {
     slopes: (usize, usize),
 }
 
-/// MovingMasses on stations of a line side by side.
+/// Masses on neighbouring stations of a line.
 #[derive(Debug, Clone, Copy)]
 struct MassRun {
     line: usize,
@@ -42,7 +42,7 @@ struct MassPoint {
     axle: usize,
 }
 
-/// FreeMotion motion of the modes at the end of a step: `q, v, a` as they would be without connector and mass forces.
+/// Free motion of the modes at the end of a step: `q, v, a` as they would be without connector and mass forces.
 #[derive(Debug, Default)]
 pub(super) struct FreeMotion {
     pub q: Vec<f64>,
@@ -74,7 +74,7 @@ impl FreeMotion {
 
 /// The masses of one lane at one instant.
 ///
-/// MassPoint masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
+/// Point masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
 /// as many masses D as stations, on rows of two entries, stand for any number of points exactly.
 #[derive(Debug)]
 pub(super) struct MovingMasses {
@@ -84,12 +84,12 @@ pub(super) struct MovingMasses {
     points: Vec<MassPoint>,
     force: Vec<(usize, f64)>,
     slopes: Vec<(usize, f64, f64)>,
-    /// MovingMasses on a station and the next, where all are; and the second entry of the row of each.
+    /// Masses on a station and the next, where all are; and the second entry of the row of each.
     runs: Vec<MassRun>,
     nexts: Vec<f64>,
     /// Tridiagonal mass matrix of a line: diagonal and the entry to the next station.
     line: Vec<(f64, f64)>,
-    /// FreeMotion motion of each node: acceleration, velocity, displacement.
+    /// Free motion of each node: acceleration, velocity, displacement.
     dots: Vec<[f64; 3]>,
     /// What a node sees of a unit force of each mass.
     seen: Vec<f64>,
