@@ -1,7 +1,7 @@
-//! The deck's nodes near one vehicle, as what the modes leave out moves them.
+//! Residual (static-correction) displacement of the deck nodes near the vehicle: `x + a x' = R f`, f = wheel and connector
+//! forces.
 //!
-//! Knows how a node follows the forces on the deck nearby and of the connectors, `x + a x' = R f`, in the same steps as the
-//! rest. Does not know who exerts them.
+//! Knows how a node follows forces in a time step. Does not know who exerts them.
 
 use super::loads::StationForce;
 use super::step_constants::{ResidualRule, StepConstants};
