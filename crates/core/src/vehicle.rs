@@ -88,6 +88,8 @@ const DEFAULT_TRACK_Y_M: [f64; 2] = [-1.4, 1.4];
 pub struct WheelPoint {
     /// Distance of the point ahead of the vehicle's front `[m]`; negative behind it.
     pub ahead_m: f64,
+    /// Number of that distance in [`Vehicle::along_m`], from 0.
+    pub along: usize,
     /// Place across the bridge `[m]`.
     pub y_m: f64,
     /// Share of the vehicle's weight.
@@ -115,6 +117,8 @@ pub struct Patch {
 pub struct Vehicle {
     /// The patches.
     pub patches: Vec<Patch>,
+    /// Distances of the points ahead of the front `[m]`, each once; points side by side share one.
+    pub along_m: Vec<f64>,
     /// Number of axles.
     pub axles: usize,
     /// How the mass takes part.
@@ -219,6 +223,7 @@ impl VehicleDesign {
             ));
         }
         Ok(Vehicle {
+            along_m: number_places(&mut patches),
             patches,
             axles: axles.len(),
             inertia: self.inertia,
@@ -237,6 +242,7 @@ fn patch(k: usize, axle: &Axle, y: f64, share: f64, along: usize) -> Patch {
             let ahead_m = centre + axle.patch_length_m * ((i as f64 + 0.5) / along as f64 - 0.5);
             across.iter().map(move |s| WheelPoint {
                 ahead_m,
+                along: 0,
                 y_m: y + s * gauss,
                 share: each,
             })
@@ -249,6 +255,18 @@ fn patch(k: usize, axle: &Axle, y: f64, share: f64, along: usize) -> Patch {
         share,
         points,
     }
+}
+
+/// Numbers the places of the points along the vehicle and gives their distances ahead of the front.
+fn number_places(patches: &mut [Patch]) -> Vec<f64> {
+    let mut along_m: Vec<f64> = Vec::new();
+    for point in patches.iter_mut().flat_map(|p| &mut p.points) {
+        point.along = along_m.iter().position(|x| *x == point.ahead_m).unwrap_or_else(|| {
+            along_m.push(point.ahead_m);
+            along_m.len() - 1
+        });
+    }
+    along_m
 }
 
 impl Vehicle {

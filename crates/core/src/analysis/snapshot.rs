@@ -63,32 +63,22 @@ pub(super) fn connectors(states: &[State], forces: &[f64], elongations: &[f64]) 
     .collect()
 }
 
-/// The points of a vehicle of weight `load_n` with its front at `front_x_m`. `load` is the same vehicle there and `inertia`
-/// the inertia force of each of its riders `[N]`: a point's own, or its share of the patch's.
-pub(super) fn wheels(
-    track: &Track,
-    vehicle: &Vehicle,
-    (load_n, front_x_m): (f64, f64),
-    load: &Load,
-    inertia: &[f64],
-) -> Vec<WheelNow> {
+/// The points of a vehicle of weight `load_n` whose load on the track is `load`; `inertia` is the inertia force of each of the
+/// load's riders `[N]`: a point's own, or its share of the patch's.
+pub(super) fn wheels(track: &Track, vehicle: &Vehicle, load_n: f64, load: &Load, inertia: &[f64]) -> Vec<WheelNow> {
     debug_assert_eq!(load.riders.len(), inertia.len());
+    let placement = &load.placement;
     let mut inertia = inertia.iter().copied();
     let mut wheels = Vec::new();
     for (number, patch) in vehicle.patches.iter().enumerate() {
-        let on: Vec<Option<SparseRow>> = patch
-            .points
-            .iter()
-            .map(|point| track.row(front_x_m + point.ahead_m, point.y_m))
-            .collect();
-        let shares = patch.points.iter().zip(&on).filter(|(_, row)| row.is_some());
-        let share_on: f64 = shares.map(|(point, _)| point.share).sum();
+        let share_on = placement.share_on(patch);
         let of_patch = if vehicle.inertia == Inertia::Convective && share_on > 0.0 {
             inertia.next().unwrap_or_default()
         } else {
             0.0
         };
-        for (point, row) in patch.points.iter().zip(on) {
+        for point in &patch.points {
+            let row = placement.row(track, point);
             let contact_force_n = match (&row, vehicle.inertia) {
                 (None, _) => 0.0,
                 (Some(_), Inertia::None) => load_n * point.share,
@@ -98,7 +88,7 @@ pub(super) fn wheels(
             wheels.push(WheelNow {
                 axle: patch.axle,
                 patch: number,
-                x_m: front_x_m + point.ahead_m,
+                x_m: placement.x_m(point),
                 y_m: point.y_m,
                 row,
                 contact_force_n,

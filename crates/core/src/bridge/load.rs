@@ -1,8 +1,8 @@
 //! What a vehicle at a place does to the track: weights on rows, and the masses that ride along.
 //!
-//! Knows points, patches and rows. Does not know solvers or time.
+//! Knows the weight and mass of points and patches, and rows. Does not know solvers or time.
 
-use super::Track;
+use super::{Track, VehiclePlacement};
 use crate::fem::SparseRow;
 use crate::vehicle::{GRAVITY_M_S2, Inertia, Patch, Vehicle};
 
@@ -23,6 +23,8 @@ pub(crate) struct Rider {
 /// A vehicle on the track at one instant.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Load {
+    /// Where the vehicle is.
+    pub placement: VehiclePlacement,
     /// Downward force of the weights on each track column, as one row `[N]`.
     pub weight: SparseRow,
     /// The masses.
@@ -36,22 +38,21 @@ impl Load {
     /// Equation (V1).
     pub(crate) fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64) -> Self {
         let mut load = Self {
+            placement: VehiclePlacement::new(track, vehicle, front_x_m),
             axles: vec![(0.0, true); vehicle.axles],
             ..Self::default()
         };
         let mut weight = Vec::new();
         for patch in &vehicle.patches {
             let mut mean: Vec<(usize, f64)> = Vec::new();
-            let mut share_on = 0.0;
             for point in &patch.points {
-                let Some(row) = track.row(front_x_m + point.ahead_m, point.y_m) else {
+                let Some(row) = load.placement.row(track, point) else {
                     load.axles[patch.axle].1 = false;
                     continue;
                 };
                 let w = load_n * point.share;
                 load.axles[patch.axle].0 += w;
                 weight.extend(row.0.iter().map(|&(c, v)| (c, v * w)));
-                share_on += point.share;
                 match vehicle.inertia {
                     Inertia::None => {}
                     Inertia::Local => {
@@ -66,13 +67,14 @@ impl Load {
                     Inertia::Convective => mean.extend(row.0.iter().map(|&(c, v)| (c, v * point.share))),
                 }
             }
+            let share_on = load.placement.share_on(patch);
             if vehicle.inertia == Inertia::Convective && share_on > 0.0 {
                 let scaled = mean.into_iter().map(|(c, v)| (c, v / share_on)).collect();
                 load.riders.push(Rider {
                     mass_kg: load_n * share_on / GRAVITY_M_S2,
                     axle: patch.axle,
                     row: SparseRow::from_entries(scaled),
-                    derivatives: Some(derivatives(track, patch, front_x_m + patch.ahead_m)),
+                    derivatives: Some(derivatives(track, patch, &load.placement)),
                 });
             }
         }
@@ -81,14 +83,14 @@ impl Load {
     }
 }
 
-/// r_x and r_xx of the row averaged over the part of a patch centred at `x` that is on the bridge: differences of the row
-/// and of its slope between the part's ends, over its length.
+/// r_x and r_xx of the row averaged over the part of a patch that is on the bridge: differences of the row and of its slope
+/// between the part's ends, over its length.
 /// Equation (V2).
-fn derivatives(track: &Track, patch: &Patch, x: f64) -> (SparseRow, SparseRow) {
+fn derivatives(track: &Track, patch: &Patch, placement: &VehiclePlacement) -> (SparseRow, SparseRow) {
     let mut ys: Vec<f64> = patch.points.iter().map(|p| p.y_m).collect();
     ys.sort_by(f64::total_cmp);
     ys.dedup();
-    let [left, right] = [-0.5, 0.5].map(|end| (x + end * patch.length_m).clamp(0.0, track.length_m()));
+    let [left, right] = placement.ends_m(track, patch);
     let per = 1.0 / ((right - left) * ys.len() as f64);
     let difference = |of: &dyn Fn(f64, f64) -> Option<SparseRow>| {
         let mut terms = Vec::new();

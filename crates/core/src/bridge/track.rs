@@ -62,30 +62,35 @@ impl Track {
 
     /// The deck's z at `(x, y)` in terms of the columns; none off the bridge.
     pub fn row(&self, x_m: f64, y_m: f64) -> Option<SparseRow> {
-        self.interpolate(x_m, y_m, |s, _| (1.0 - s, s))
+        self.cell(x_m).map(|cell| self.row_in(cell, y_m))
     }
 
-    /// Its derivative along x `[1/m]`.
+    /// The deck's z at a place in a cell and at y.
+    pub(crate) fn row_in(&self, cell: DeckCell, y_m: f64) -> SparseRow {
+        self.on_lines(cell.station, y_m, (1.0 - cell.fraction, cell.fraction))
+    }
+
+    /// Its derivative along x `[1/m]`; none off the bridge.
     pub(crate) fn slope_row(&self, x_m: f64, y_m: f64) -> Option<SparseRow> {
-        self.interpolate(x_m, y_m, |_, length| (-1.0 / length, 1.0 / length))
+        let cell = self.cell(x_m)?;
+        Some(self.on_lines(cell.station, y_m, (-1.0 / cell.length_m, 1.0 / cell.length_m)))
     }
 
-    fn interpolate(&self, x_m: f64, y_m: f64, along: impl Fn(f64, f64) -> (f64, f64)) -> Option<SparseRow> {
-        let place = self.cell(x_m)?;
-        let (a, b) = along(place.fraction, place.length_m);
+    /// Factors of a station and the next, on the lines beside y.
+    fn on_lines(&self, station: usize, y_m: f64, (a, b): (f64, f64)) -> SparseRow {
         let mut entries = Vec::with_capacity(4);
         for (line, across) in self.across(y_m) {
             // a wheel on a line needs that line alone
             if across != 0.0 {
-                let first = line * self.stations() + place.station;
+                let first = line * self.stations() + station;
                 entries.extend([(first, a * across), (first + 1, b * across)]);
             }
         }
-        Some(SparseRow(entries))
+        SparseRow(entries)
     }
 
     /// The interval between two stations that holds `x_m`; none off the bridge.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn cell(&self, x_m: f64) -> Option<DeckCell> {
         if !(0.0..=self.length_m()).contains(&x_m) {
             return None;
@@ -137,6 +142,7 @@ impl DeckCell {
 }
 
 /// The interval of `lines` that holds `at`, the place in it from 0 to 1, and its length; the outermost interval outside.
+#[inline(always)]
 fn interval(lines: &[f64], at: f64) -> (usize, f64, f64) {
     let i = lines.windows(2).position(|w| at <= w[1]).unwrap_or(lines.len() - 2);
     let length = lines[i + 1] - lines[i];

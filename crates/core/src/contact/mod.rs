@@ -3,9 +3,11 @@
 //! Knows a small piecewise-linear system. The active set decides the tangent; a state changes only between Newton
 //! solutions, never inside one. Does not know time.
 
+mod link;
 mod warm;
 
-use crate::connector::{Law, State};
+use crate::connector::State;
+pub(crate) use link::{LinkLaw, ask};
 use nalgebra::{DMatrix, DVector};
 pub(crate) use warm::WarmContact;
 
@@ -60,22 +62,23 @@ impl ContactProblem<'_> {
     ///
     /// # Errors
     /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is singular.
-    pub(crate) fn solve(&self, law: &Law, first: &[State], limit: usize) -> Result<ContactSolution, NotSettled> {
-        let mut states: Vec<State> = match law.state(0.0) {
-            State::Both => vec![State::Both; first.len()],
-            _ => first.to_vec(),
+    pub(crate) fn solve(&self, laws: &[LinkLaw], first: &[State], limit: usize) -> Result<ContactSolution, NotSettled> {
+        let guess = |(law, &first): (&LinkLaw, &State)| match law.at_rest() {
+            State::Both => State::Both,
+            _ => first,
         };
-        let mut system = UnderLaw { problem: self, law };
+        let mut states: Vec<State> = laws.iter().zip(first).map(guess).collect();
+        let mut system = UnderLaws { problem: self, laws };
         let (solution, iterations) = settle(&mut system, &mut states, &mut Vec::new(), limit)?;
         Ok(ContactSolution { iterations, ..solution })
     }
 
     /// One Newton solution: the linear system of an active set.
     /// Equation (C2).
-    fn linear(&self, law: &Law, states: &[State]) -> Option<ContactSolution> {
+    fn linear(&self, laws: &[LinkLaw], states: &[State]) -> Option<ContactSolution> {
         let active: Vec<usize> = (0..states.len()).filter(|&i| states[i] != State::Open).collect();
         let (na, nr) = (active.len(), self.riders_free.len());
-        let branches: Vec<_> = states.iter().map(|&s| law.branch(s)).collect();
+        let branches: Vec<_> = states.iter().zip(laws).map(|(&s, law)| law.branch(s)).collect();
         let mut a = DMatrix::zeros(na + nr, na + nr);
         let mut b = DVector::zeros(na + nr);
         for (p, &i) in active.iter().enumerate() {
@@ -122,18 +125,18 @@ impl ContactProblem<'_> {
     }
 }
 
-/// A problem under the law of its connectors.
-struct UnderLaw<'a> {
+/// A problem under the laws of its connectors.
+struct UnderLaws<'a> {
     problem: &'a ContactProblem<'a>,
-    law: &'a Law,
+    laws: &'a [LinkLaw],
 }
 
-impl PiecewiseLinear for UnderLaw<'_> {
+impl PiecewiseLinear for UnderLaws<'_> {
     type Solution = ContactSolution;
 
     fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<ContactSolution> {
-        let solution = self.problem.linear(self.law, states)?;
-        ask(self.law, &solution.elongations, asked);
+        let solution = self.problem.linear(self.laws, states)?;
+        ask(self.laws, &solution.elongations, asked);
         Some(solution)
     }
 }
@@ -186,13 +189,5 @@ pub(crate) fn settle<P: PiecewiseLinear>(
             return Err(NotSettled { connector, iterations });
         }
         states.copy_from_slice(asked);
-    }
-}
-
-/// The state that each elongation asks for.
-#[inline(always)]
-pub(crate) fn ask(law: &Law, elongations: &[f64], asked: &mut [State]) {
-    for (asked, &e) in asked.iter_mut().zip(elongations) {
-        *asked = law.state(e);
     }
 }

@@ -3,14 +3,14 @@
 //! Knows `e = e_free - connectors N(e)` with its factor and memory kept, by the same Newton as every other contact. Does
 //! not know where the load is, nor what to do where it does not settle.
 
-use super::{ContactSolution, NotSettled, PiecewiseLinear, ask, settle};
-use crate::connector::{Law, State};
+use super::{ContactSolution, LinkLaw, NotSettled, PiecewiseLinear, ask, settle};
+use crate::connector::State;
 use nalgebra::{Cholesky, DMatrix, DVectorViewMut, Dyn};
 
-/// Connectors and their law, with the states, forces and elongations of the last load.
+/// Connectors and their laws, with the states, forces and elongations of the last load.
 #[derive(Debug)]
 pub(crate) struct WarmContact<'a> {
-    law: Law,
+    laws: Vec<LinkLaw>,
     states: Vec<State>,
     seen: Vec<State>,
     tangent: Tangent<'a>,
@@ -18,11 +18,11 @@ pub(crate) struct WarmContact<'a> {
 
 impl<'a> WarmContact<'a> {
     /// Connectors with the flexibility `connectors` `[m/N]` among them, at rest.
-    pub(crate) fn new(connectors: &'a DMatrix<f64>, law: Law) -> Self {
+    pub(crate) fn new(connectors: &'a DMatrix<f64>, laws: Vec<LinkLaw>) -> Self {
         let nc = connectors.nrows();
         Self {
-            law,
-            states: vec![law.state(0.0); nc],
+            states: laws.iter().map(LinkLaw::at_rest).collect(),
+            laws,
             seen: Vec::new(),
             tangent: Tangent {
                 connectors,
@@ -43,7 +43,7 @@ impl<'a> WarmContact<'a> {
     /// are then no solution's until [`Self::restart`].
     pub(crate) fn solve(&mut self, e_free: &[f64], limit: usize) -> Result<usize, NotSettled> {
         let mut system = UnderLoad {
-            law: &self.law,
+            laws: &self.laws,
             tangent: &mut self.tangent,
             e_free,
         };
@@ -66,7 +66,7 @@ impl<'a> WarmContact<'a> {
 
 /// Connectors under one load.
 struct UnderLoad<'a, 'c> {
-    law: &'a Law,
+    laws: &'a [LinkLaw],
     tangent: &'a mut Tangent<'c>,
     e_free: &'a [f64],
 }
@@ -75,8 +75,8 @@ impl PiecewiseLinear for UnderLoad<'_, '_> {
     type Solution = ();
 
     fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<()> {
-        self.tangent.solve(self.law, states, self.e_free)?;
-        ask(self.law, &self.tangent.elongations, asked);
+        self.tangent.solve(self.laws, states, self.e_free)?;
+        ask(self.laws, &self.tangent.elongations, asked);
         Some(())
     }
 }
@@ -95,14 +95,14 @@ struct Tangent<'a> {
 
 impl Tangent<'_> {
     /// Forces and elongations of an active set; none where its matrix is not positive definite.
-    fn solve(&mut self, law: &Law, states: &[State], e_free: &[f64]) -> Option<()> {
+    fn solve(&mut self, laws: &[LinkLaw], states: &[State], e_free: &[f64]) -> Option<()> {
         let at_work = |&i: &usize| states[i] != State::Open;
         if self.factor.is_none() || self.active.iter().copied().ne((0..states.len()).filter(at_work)) {
             self.active.clear();
             self.active.extend((0..states.len()).filter(at_work));
-            self.factorise(law, states);
+            self.factorise(laws, states);
         }
-        let branches = || self.active.iter().map(|&i| (i, law.branch(states[i])));
+        let branches = || self.active.iter().map(|&i| (i, laws[i].branch(states[i])));
         self.active_forces.clear();
         self.active_forces
             .extend(branches().map(|(i, branch)| e_free[i] - branch.offset / branch.stiffness));
@@ -121,7 +121,7 @@ impl Tangent<'_> {
                 e_free[i] - forces.map(shortening).sum::<f64>()
             } else {
                 // the active line holds exactly: the elongation follows from the force, without cancellation
-                let branch = law.branch(states[i]);
+                let branch = laws[i].branch(states[i]);
                 (self.forces[i] + branch.offset) / branch.stiffness
             };
         }
@@ -129,12 +129,12 @@ impl Tangent<'_> {
     }
 
     /// Factorises the matrix of the active set in the memory of the last.
-    fn factorise(&mut self, law: &Law, states: &[State]) {
+    fn factorise(&mut self, laws: &[LinkLaw], states: &[State]) {
         let last = self.factor.take();
         let mut a: Vec<f64> = last.map_or_else(Vec::new, |factor| factor.unpack_dirty().data.into());
         a.clear();
         for &j in &self.active {
-            let compliance = 1.0 / law.branch(states[j]).stiffness;
+            let compliance = 1.0 / laws[j].branch(states[j]).stiffness;
             let own = |i: usize| if i == j { compliance } else { 0.0 };
             a.extend(self.active.iter().map(|&i| self.connectors[(i, j)] + own(i)));
         }

@@ -180,6 +180,11 @@ impl BridgeOperator {
         self.cutoff
     }
 
+    /// Number of connectors.
+    pub(crate) fn connectors(&self) -> usize {
+        self.sizes.connectors
+    }
+
     /// R of two track columns.
     pub(super) fn residual(&self, column: usize, other: usize) -> f64 {
         let (lines, stations) = (self.track.lines(), self.track.stations());

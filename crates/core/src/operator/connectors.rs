@@ -7,7 +7,7 @@ use super::energy::Terms;
 use super::lane_array::LaneArray;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
-use crate::connector::{Law, State};
+use crate::contact::LinkLaw;
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -23,8 +23,9 @@ pub(super) struct Connectors {
     /// Elongation `[m]`, and in the step under way first without, then with its forces.
     e: LaneArray,
     pub(super) e_now: LaneArray,
-    /// `1 / (2 k)` of the connectors at work.
+    /// `1 / (2 k)` of the first connector at work, and each one's compliance over the first one's.
     half_compliance: LaneArray,
+    relative_compliance: LaneArray,
     /// Those that pull or push in any lane.
     active: Vec<usize>,
 }
@@ -40,6 +41,7 @@ impl Connectors {
             e: zeros(),
             e_now: zeros(),
             half_compliance: LaneArray::new(1, lanes),
+            relative_compliance: zeros(),
             active: Vec::with_capacity(sizes.connectors),
         }
     }
@@ -60,13 +62,13 @@ impl Connectors {
         [&mut self.n_now, &mut self.e_now]
     }
 
-    /// Takes a law in a lane.
-    pub(super) fn take_law(&mut self, lane: usize, law: &Law) {
-        let at_work = match law.state(0.0) {
-            State::Both => State::Both,
-            _ => State::Tension,
-        };
-        *self.half_compliance.at_mut(0, lane) = 0.5 / law.branch(at_work).stiffness;
+    /// Takes the laws of a lane's connectors.
+    pub(super) fn take_laws(&mut self, lane: usize, laws: &[LinkLaw]) {
+        let first = laws.first().map_or(1.0, LinkLaw::stiffness_at_work);
+        *self.half_compliance.at_mut(0, lane) = 0.5 / first;
+        for (i, law) in laws.iter().enumerate() {
+            *self.relative_compliance.at_mut(i, lane) = first / law.stiffness_at_work();
+        }
     }
 
     /// Trial elongations, without new connector and inertia forces (O4): `e + B Phi d + dr - R_BB ds`, from the
@@ -124,13 +126,17 @@ impl Connectors {
         std::mem::swap(&mut self.rn, &mut self.rn_now);
     }
 
-    /// Strain energy, `1/2 N^2 / k` of the branch at work: those that are not open have one slope in a lane, that of one truss
-    /// or of both.
+    /// Strain energy, the sum of `1/2 N^2 / k` of the branches at work.
     #[inline(always)]
     pub(super) fn energy<S: Simd>(&self, o: Ops<S>) -> S::f64s {
         let mut squares = o.splat(0.0);
-        for n in self.n.vectors::<S>() {
-            squares = o.fma(*n, *n, squares);
+        for (n, relative) in self
+            .n
+            .vectors::<S>()
+            .iter()
+            .zip(self.relative_compliance.vectors::<S>())
+        {
+            squares = o.fma(o.mul(*relative, *n), *n, squares);
         }
         o.mul(squares, self.half_compliance.vectors::<S>()[0])
     }

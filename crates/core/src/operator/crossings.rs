@@ -85,10 +85,12 @@ impl Crossings {
     pub(crate) fn begin(&mut self, operator: &BridgeOperator, lane: usize, crossing: CrossingInput, time_s: f64) {
         self.rest(lane);
         self.envelope.begin(lane);
-        self.connectors.take_law(lane, &crossing.law);
+        self.connectors.take_laws(lane, &crossing.laws);
         let of = &mut self.lanes[lane];
         of.contact.forget();
-        of.contact.states.fill(crossing.law.state(0.0));
+        for (state, law) in of.contact.states.iter_mut().zip(crossing.laws.iter()) {
+            *state = law.at_rest();
+        }
         of.statistics = Statistics::default();
         of.unloaded = 0;
         of.masses.leave();
@@ -167,7 +169,7 @@ impl Crossings {
     pub(crate) fn resume(&mut self, lane: usize, crossing: CrossingInput, saved: &Saved) {
         // a crossing without riding masses writes no inertia forces, so that none may be left of the one before
         self.rest(lane);
-        self.connectors.take_law(lane, &crossing.law);
+        self.connectors.take_laws(lane, &crossing.laws);
         self.lanes[lane].take(crossing);
         self.restore(lane, saved);
     }
@@ -218,8 +220,8 @@ impl Crossings {
     /// Force of a joint now, its connectors added, tension positive `[N]`.
     pub(crate) fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
         let per_joint = self.envelope.per_joint();
-        let forces = self.connectors.n.lane(lane).skip((joint - 2) * per_joint);
-        forces.take(per_joint).sum()
+        let first = (joint - 2) * per_joint;
+        (first..first + per_joint).map(|i| self.connectors.n.at(i, lane)).sum()
     }
 
     /// Puts the weights of all vehicles where they are at the end of the step (V1).

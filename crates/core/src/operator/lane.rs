@@ -5,16 +5,16 @@
 use super::basis::BridgeOperator;
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
-use super::contact_system::ContactSystem;
+use super::contact_system::{ContactInput, ContactSystem};
 use super::lane_array::LaneArray;
 use super::loads::{Loads, StationForce};
 use super::local_residual::StepForces;
 use super::modes::Modes;
 use super::moving_masses::{FreeMotion, MovingMasses};
 use super::step_constants::StepConstants;
-use super::wheel_lines::{WheelCompliance, WheelLines};
-use crate::connector::Law;
-use crate::contact::NotSettled;
+use super::wheel_lines::{WheelCompliance, WheelLine, WheelLines};
+use crate::bridge::VehiclePlacement;
+use crate::contact::{LinkLaw, NotSettled};
 use crate::response::Statistics;
 use std::sync::Arc;
 
@@ -25,8 +25,8 @@ pub(crate) struct CrossingInput {
     pub wheels: Arc<WheelLines>,
     /// Its small compliances at the step length.
     pub compliance: Arc<WheelCompliance>,
-    /// The connectors' law.
-    pub law: Law,
+    /// The law of each connector.
+    pub laws: Arc<[LinkLaw]>,
     /// Weight of the vehicle `[N]`.
     pub load_n: f64,
     /// Speed `[m/s]`.
@@ -37,9 +37,9 @@ pub(crate) struct CrossingInput {
 #[derive(Debug)]
 pub(super) struct Lane {
     pub(super) crossing: Option<CrossingInput>,
-    /// Place of the vehicle's front at the end of the step under way `[m]`, and the time then `[s]`.
-    pub(super) front_x_m: f64,
+    /// Time at the end of the step under way `[s]`, and where the vehicle is then.
     pub(super) time_s: f64,
+    placement: VehiclePlacement,
     pub(super) contact: ContactSystem,
     pub(super) masses: MovingMasses,
     /// Weight on each axle that is on the bridge `[N]`, and whether all its points are.
@@ -62,8 +62,8 @@ impl Lane {
     pub(super) fn new(modes: usize, connectors: usize, most_nodes: usize, newton_limit: usize) -> Self {
         Self {
             crossing: None,
-            front_x_m: 0.0,
             time_s: 0.0,
+            placement: VehiclePlacement::default(),
             contact: ContactSystem::new(connectors, most_nodes, newton_limit),
             masses: MovingMasses::new(connectors, most_nodes),
             axles: Vec::new(),
@@ -89,7 +89,6 @@ impl Lane {
     /// Says where the vehicle is at the end of the coming step.
     pub(super) fn place(&mut self, time_s: f64) {
         self.time_s = time_s;
-        self.front_x_m = self.crossing.as_ref().map_or(0.0, |c| c.speed_m_s * time_s);
     }
 
     /// Whether the vehicle has masses that ride along.
@@ -101,43 +100,29 @@ impl Lane {
     /// Puts the weights where the vehicle is at the end of the step (V1).
     #[inline(always)]
     pub(super) fn place_loads(&mut self, lane: usize, operator: &BridgeOperator, loads: &mut Loads) {
-        self.place_weights(operator);
         let Some(crossing) = &self.crossing else {
             return;
         };
+        let front_x_m = crossing.speed_m_s * self.time_s;
+        self.placement
+            .place(&operator.track, &crossing.wheels.vehicle, front_x_m);
+        self.axles.fill((0.0, true));
+        self.weights.clear();
+        for (line, of) in crossing.wheels.weights.iter().enumerate() {
+            place_weights(
+                (line, of),
+                &self.placement,
+                crossing.load_n,
+                &mut self.axles,
+                &mut self.weights,
+            );
+        }
         if !self.weights.is_empty() {
             self.unloaded = 0;
             loads.apply_weights(lane, &crossing.wheels, &self.weights);
         } else if self.unloaded < 2 {
             self.unloaded += 1;
             loads.left().into_iter().for_each(|forces| forces.clear(lane));
-        }
-    }
-
-    /// Weights on stations and axles at the vehicle's place.
-    #[inline(always)]
-    fn place_weights(&mut self, operator: &BridgeOperator) {
-        let Some(crossing) = &self.crossing else {
-            return;
-        };
-        self.axles.fill((0.0, true));
-        self.weights.clear();
-        for (line, of) in crossing.wheels.weights.iter().enumerate() {
-            let own = self.weights.len();
-            for &(ahead_m, share, axle) in &of.points {
-                let Some(cell) = operator.track.cell(self.front_x_m + ahead_m) else {
-                    self.axles[axle].1 = false;
-                    continue;
-                };
-                let w = crossing.load_n * share;
-                self.axles[axle].0 += w * of.lines.len() as f64;
-                for (station, part) in cell.shares() {
-                    match self.weights[own..].iter_mut().rev().find(|(_, s, _)| *s == station) {
-                        Some((_, _, sum)) => *sum += w * part,
-                        None => self.weights.push((line, station, w * part)),
-                    }
-                }
-            }
         }
     }
 
@@ -155,10 +140,10 @@ impl Lane {
         };
         let m = constants.c.len();
         let (wheels, compliance, masses) = (&*crossing.wheels, &*crossing.compliance, &mut self.masses);
-        masses.place(wheels, &operator.track, crossing.load_n, self.front_x_m);
+        masses.place(wheels, &operator.track, crossing.load_n, &self.placement);
         clock.lap(StepPart::RidingMasses, || 0.0);
         if masses.count() > 0 {
-            self.free.gather(lane, &modes.free, masses.symmetric());
+            self.free.gather(lane, &modes.free, masses.block.symmetric());
             connectors.n.gather(lane, &mut self.n);
         }
         connectors.e_now.gather(lane, &mut self.contact.linear.e);
@@ -172,10 +157,13 @@ impl Lane {
         masses.couple(wheels, compliance, constants, m, crossing.speed_m_s, &self.free);
         clock.lap(StepPart::RidingMasses, || masses.flop_of_coupling(m));
         let weight = 1.0 - constants.scheme.alpha_f;
-        let compliances = &constants.connector_compliance;
-        let solved = self
-            .contact
-            .solve(&crossing.law, compliances, weight, masses, newton_limit);
+        let input = ContactInput {
+            laws: &crossing.laws,
+            compliance: &constants.connector_compliance,
+            weight,
+            riders: &masses.block,
+        };
+        let solved = self.contact.solve(input, newton_limit);
         clock.lap(StepPart::Contact, || self.contact.flop(masses.count(), &solved));
         match solved {
             Ok((iterations, switches)) => {
@@ -213,7 +201,7 @@ impl Lane {
         if masses.count() == 0 {
             return;
         }
-        let (wheels, scaled) = (&*crossing.wheels, &self.contact.linear.masses);
+        let (wheels, scaled) = (&*crossing.wheels, &self.contact.linear.riders);
         masses.add_inertia(
             &crossing.compliance,
             constants,
@@ -226,5 +214,31 @@ impl Lane {
         loads.apply_inertia(lane, wheels, &self.mass_forces);
         n.gather(lane, &mut self.n);
         masses.lead(wheels, constants, constants.c.len(), &self.mass_forces, &self.n);
+    }
+}
+
+/// Weights of a line's points on its stations, and on axles.
+#[inline(always)]
+fn place_weights(
+    (line, of): (usize, &WheelLine),
+    placement: &VehiclePlacement,
+    load_n: f64,
+    axles: &mut [(f64, bool)],
+    weights: &mut Vec<StationForce>,
+) {
+    let own = weights.len();
+    for point in &of.points {
+        let Some(cell) = placement.cell(point.along) else {
+            axles[point.axle].1 = false;
+            continue;
+        };
+        let w = load_n * point.share;
+        axles[point.axle].0 += w * of.lines.len() as f64;
+        for (station, part) in cell.shares() {
+            match weights[own..].iter_mut().rev().find(|(_, s, _)| *s == station) {
+                Some((_, _, sum)) => *sum += w * part,
+                None => weights.push((line, station, w * part)),
+            }
+        }
     }
 }

@@ -4,12 +4,14 @@
 //! for its factors.
 
 use super::lane_array::LaneArray;
+use super::line_mass::LineMass;
 use super::loads::StationForce;
 use super::local_residual::{LocalResidual, StepForces};
+use super::rider_block::RiderBlock;
 use super::step_constants::StepConstants;
 use super::sums::{add_to, dot};
 use super::wheel_lines::{DeckNode, WheelCompliance, WheelLine, WheelLines};
-use crate::bridge::Track;
+use crate::bridge::{Track, VehiclePlacement};
 use crate::vehicle::{GRAVITY_M_S2, Inertia};
 
 /// A mass and its rows on nodes.
@@ -72,10 +74,7 @@ impl FreeMotion {
     }
 }
 
-/// The masses of one lane at one instant.
-///
-/// Point masses on the deck's piecewise linear rows are a tridiagonal mass matrix `M = V D V^T` on each line's stations:
-/// as many masses D as stations, on rows of two entries, stand for any number of points exactly.
+/// The masses of one lane at one instant. Those of [`LineMass`] stand for the points of a `local` vehicle.
 #[derive(Debug)]
 pub(super) struct MovingMasses {
     connectors: usize,
@@ -87,16 +86,13 @@ pub(super) struct MovingMasses {
     /// Masses on a station and the next, where all are; and the second entry of the row of each.
     runs: Vec<MassRun>,
     nexts: Vec<f64>,
-    /// Tridiagonal mass matrix of a line: diagonal and the entry to the next station.
-    line: Vec<(f64, f64)>,
+    line: LineMass,
     /// Free motion of each node: acceleration, velocity, displacement.
     dots: Vec<[f64; 3]>,
     /// What a node sees of a unit force of each mass.
     seen: Vec<f64>,
-    matrix: Vec<f64>,
-    connectors_of: Vec<f64>,
-    connectors_on: Vec<f64>,
-    free: Vec<f64>,
+    /// Their rows in the contact system.
+    pub(super) block: RiderBlock,
     /// Nodes' motion local the modes, near the vehicle; and room for the next list.
     local: LocalResidual,
     next: LocalResidual,
@@ -116,13 +112,10 @@ impl MovingMasses {
             slopes: Vec::new(),
             runs: Vec::new(),
             nexts: Vec::with_capacity(nodes),
-            line: Vec::new(),
+            line: LineMass::default(),
             dots: Vec::with_capacity(nodes),
             seen: vec![0.0; nodes * nodes],
-            matrix: vec![0.0; nodes * nodes],
-            connectors_of: vec![0.0; nodes * connectors],
-            connectors_on: vec![0.0; nodes * connectors],
-            free: vec![0.0; nodes],
+            block: RiderBlock::new(nodes, connectors),
             local: LocalResidual::new(nodes),
             next: LocalResidual::new(nodes),
             on_nodes: vec![0.0; nodes],
@@ -133,15 +126,10 @@ impl MovingMasses {
         self.list.len()
     }
 
-    /// Whether what a mass sees of another is what that one sees of it.
-    pub(super) fn symmetric(&self) -> bool {
-        self.slopes.is_empty()
-    }
-
     /// Operations of [`MovingMasses::follow`] and [`MovingMasses::couple`] on so many modes.
     pub(super) fn flop_of_coupling(&self, modes: usize) -> f64 {
         let (n, r, c) = (self.nodes.len(), self.list.len(), self.connectors);
-        let motions = if self.symmetric() { 1 } else { 3 };
+        let motions = if self.slopes.is_empty() { 1 } else { 3 };
         let entries = self.force.len() + self.slopes.len();
         (2 * motions * modes * n + 2 * n * r + entries * 2 * (r + c) + 12 * n) as f64
     }
@@ -152,28 +140,9 @@ impl MovingMasses {
         (2 * n * rows + 2 * n * (r + c) + 2 * n * c + 2 * self.force.len() + 14 * n) as f64
     }
 
-    pub(super) fn row(&self, i: usize) -> &[f64] {
-        &self.matrix[i * self.list.len()..][..self.list.len()]
-    }
-
-    pub(super) fn of_connectors(&self, i: usize) -> &[f64] {
-        &self.connectors_of[i * self.connectors..][..self.connectors]
-    }
-
-    pub(super) fn on_connectors(&self, i: usize) -> &[f64] {
-        if self.symmetric() {
-            return self.of_connectors(i);
-        }
-        &self.connectors_on[i * self.connectors..][..self.connectors]
-    }
-
-    pub(super) fn free(&self) -> &[f64] {
-        &self.free[..self.list.len()]
-    }
-
     /// Puts the vehicle's masses where they are: nodes, masses and their rows.
     #[inline(always)]
-    pub(super) fn place(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, front_x_m: f64) {
+    pub(super) fn place(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, placement: &VehiclePlacement) {
         self.nodes.clear();
         self.list.clear();
         self.points.clear();
@@ -185,76 +154,52 @@ impl MovingMasses {
             Inertia::None => {}
             Inertia::Local => {
                 for (line, of) in wheels.masses.iter().enumerate() {
-                    self.place_line(line, of, track, load_n, front_x_m);
+                    self.place_line(line, of, load_n, placement);
                 }
             }
-            Inertia::Convective => self.place_patches(wheels, track, load_n, front_x_m),
+            Inertia::Convective => self.place_patches(wheels, track, load_n, placement),
         }
+        self.block.begin(self.list.len(), self.slopes.is_empty());
     }
 
     /// `u''` of the deck under each point: the line's mass matrix and its factors.
     #[inline(always)]
-    fn place_line(&mut self, line: usize, of: &WheelLine, track: &Track, load_n: f64, front_x_m: f64) {
-        let first = self.gather_line(of, track, load_n, front_x_m);
+    fn place_line(&mut self, line: usize, of: &WheelLine, load_n: f64, placement: &VehiclePlacement) {
+        let first = self.gather_line(of, load_n, placement);
         let base = self.nodes.len();
-        for at in 0..self.line.len() {
+        for at in 0..self.line.stations() {
             let station = first + at;
             self.nodes.push(DeckNode { line, station });
-            let mass_kg = self.factor_line(at);
+            let [mass_kg, next] = self.line.factor(at);
             if mass_kg > 0.0 {
-                self.add_mass(DeckNode { line, station }, base + at, mass_kg, self.line[at].1);
+                self.add_mass(DeckNode { line, station }, base + at, mass_kg, next);
             }
         }
     }
 
     /// The mass matrix of a line's points, and its first station.
     #[inline(always)]
-    fn gather_line(&mut self, of: &WheelLine, track: &Track, load_n: f64, front_x_m: f64) -> usize {
+    fn gather_line(&mut self, of: &WheelLine, load_n: f64, placement: &VehiclePlacement) -> usize {
         self.line.clear();
         let base = self.nodes.len();
         let mut first = 0;
-        for &(ahead_m, share, axle) in &of.points {
-            let Some(place) = track.cell(front_x_m + ahead_m) else {
+        for point in &of.points {
+            let Some(cell) = placement.cell(point.along) else {
                 continue;
             };
-            if self.line.is_empty() {
-                first = place.station;
+            if self.line.stations() == 0 {
+                first = cell.station;
             }
-            let (at, s, mass_kg) = (place.station - first, place.fraction, share * load_n / GRAVITY_M_S2);
-            while self.line.len() < at + 2 {
-                self.line.push((0.0, 0.0));
-            }
-            self.line[at].0 += mass_kg * (1.0 - s) * (1.0 - s);
-            self.line[at].1 += mass_kg * s * (1.0 - s);
-            self.line[at + 1].0 += mass_kg * s * s;
+            let (at, mass_kg) = (cell.station - first, point.share * load_n / GRAVITY_M_S2);
+            self.line.add(at, cell.fraction, mass_kg);
             self.points.push(MassPoint {
                 node: base + at,
-                part: s,
+                part: cell.fraction,
                 mass_kg,
-                axle,
+                axle: point.axle,
             });
         }
         first
-    }
-
-    /// The mass of a station in `M = V D V^T`, in place of its diagonal entry.
-    #[inline(always)]
-    fn factor_line(&mut self, at: usize) -> f64 {
-        let whole = self.line[at].0;
-        let mut taken = 0.0;
-        if at > 0 {
-            let (before, coupling) = self.line[at - 1];
-            taken = if before > 0.0 {
-                coupling * coupling / before
-            } else {
-                0.0
-            };
-        }
-        let left = whole - taken;
-        // fewer points than stations: what is left is rounding
-        let mass_kg = if left > 1e-12 * whole { left } else { 0.0 };
-        self.line[at].0 = mass_kg;
-        mass_kg
     }
 
     /// A mass on the row of a station and of the next, to which the matrix has the entry `next`.
@@ -286,20 +231,15 @@ impl MovingMasses {
     /// The patches' means, measured by `r u'' + 2 V r_x u' + V^2 r_xx u`; the derivatives are differences of the row and of
     /// its slope between the ends of the patch.
     #[inline(always)]
-    fn place_patches(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, front_x_m: f64) {
+    fn place_patches(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, placement: &VehiclePlacement) {
         for (patch, lines) in wheels.vehicle.patches.iter().zip(&wheels.point_lines) {
-            let points = || patch.points.iter().zip(lines);
-            let on = |ahead_m: f64| track.cell(front_x_m + ahead_m);
-            let share: f64 = points()
-                .filter(|(p, _)| on(p.ahead_m).is_some())
-                .map(|(p, _)| p.share)
-                .sum();
+            let share = placement.share_on(patch);
             if share <= 0.0 {
                 continue;
             }
             let forces = self.force.len();
-            for (p, &line) in points() {
-                if let Some(place) = on(p.ahead_m) {
+            for (p, &line) in patch.points.iter().zip(lines) {
+                if let Some(place) = placement.cell(p.along) {
                     let w = p.share / share;
                     for (station, part) in place.shares() {
                         if part != 0.0 {
@@ -310,8 +250,7 @@ impl MovingMasses {
                 }
             }
             let slopes = self.slopes.len();
-            let centre = front_x_m + patch.ahead_m;
-            let [left, right] = [-0.5, 0.5].map(|end| (centre + end * patch.length_m).clamp(0.0, track.length_m()));
+            let [left, right] = placement.ends_m(track, patch);
             let across = || {
                 (0..lines.len())
                     .filter(|&i| !lines[..i].contains(&lines[i]))
@@ -362,48 +301,37 @@ impl MovingMasses {
         speed_m_s: f64,
         free: &FreeMotion,
     ) {
-        let (nr, nc) = (self.list.len(), self.connectors);
+        let nr = self.list.len();
         if nr == 0 {
             return;
         }
         let s = &constants.scheme;
         let (on_x, on_xx) = (2.0 * speed_m_s / s.c_a, speed_m_s * speed_m_s / s.c_a);
-        let convective = !self.slopes.is_empty();
         self.free_nodes(wheels, constants, modes, free);
         if self.runs.is_empty() {
             self.see_rows(compliance);
         } else {
             self.see_pairs(compliance);
         }
-        self.matrix[..nr * nr].fill(0.0);
-        self.connectors_of[..nr * nc].fill(0.0);
-        if convective {
-            self.connectors_on[..nr * nc].fill(0.0);
-        }
         for (i, mass) in self.list.iter().enumerate() {
-            let (matrix, of) = (
-                &mut self.matrix[i * nr..][..nr],
-                &mut self.connectors_of[i * nc..][..nc],
-            );
+            let row = self.block.row_mut(i);
             let mut free = 0.0;
             for &(node, w) in &self.force[mass.force.0..mass.force.1] {
                 let DeckNode { line, station } = self.nodes[node];
-                add_to(matrix, w, &self.seen[node * nr..][..nr]);
+                add_to(row.among, w, &self.seen[node * nr..][..nr]);
                 let there = compliance.with_connectors(line, station);
-                add_to(of, w, there);
-                if convective {
-                    add_to(&mut self.connectors_on[i * nc..][..nc], w, there);
-                }
+                add_to(row.of_links, w, there);
+                add_to(row.on_links, w, there);
                 free += w * self.dots[node][0] / s.c_a;
             }
             for &(node, r_x, r_xx) in &self.slopes[mass.slopes.0..mass.slopes.1] {
                 let (w, DeckNode { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
-                add_to(matrix, w, &self.seen[node * nr..][..nr]);
-                add_to(of, w, compliance.with_connectors(line, station));
+                add_to(row.among, w, &self.seen[node * nr..][..nr]);
+                add_to(row.of_links, w, compliance.with_connectors(line, station));
                 free += on_x * r_x * self.dots[node][1] + on_xx * r_xx * self.dots[node][2];
             }
-            self.matrix[i * nr + i] += 1.0 / ((1.0 - s.alpha_m) * mass.mass_kg * s.c_a);
-            self.free[i] = free;
+            row.among[i] += 1.0 / ((1.0 - s.alpha_m) * mass.mass_kg * s.c_a);
+            *row.free = free;
         }
     }
 

@@ -108,3 +108,74 @@ impl InstructionPath {
         Arch::new().dispatch(Ask)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{InstructionPath, Panel, lanes, lanes_mut};
+    use crate::operator::vector::Ops;
+    use pulp::{Arch, Simd, WithSimd};
+
+    fn entry(row: usize, column: usize) -> f64 {
+        (row as f64 + 2.7 * column as f64 + 0.4).sin()
+    }
+
+    /// Products of a panel with numbers x, over all columns or those listed.
+    struct Product<'a> {
+        panel: &'a Panel,
+        list: Option<&'a [usize]>,
+        x: &'a [f64],
+        y: &'a mut [f64],
+    }
+
+    impl WithSimd for Product<'_> {
+        type Output = ();
+
+        fn with_simd<S: Simd>(self, simd: S) {
+            let (x, y) = (lanes::<S>(self.x), lanes_mut::<S>(self.y));
+            match self.list {
+                None => self.panel.multiply(Ops(simd), x, y),
+                Some(list) => self.panel.multiply_listed(Ops(simd), list, x, y),
+            }
+        }
+    }
+
+    /// Largest difference from the plain product, in which `factor` multiplies the entry (0, 0).
+    fn apart(rows: usize, columns: usize, list: Option<&[usize]>, factor: f64) -> f64 {
+        let width = InstructionPath::of_this_machine().lanes;
+        let x: Vec<f64> = (0..columns * width).map(|i| 1.0 + (0.7 * i as f64).cos()).collect();
+        let mut y = vec![f64::NAN; rows * width];
+        Arch::new().dispatch(Product {
+            panel: &Panel::new(rows, columns, entry),
+            list,
+            x: &x,
+            y: &mut y,
+        });
+        let all: Vec<usize> = (0..columns).collect();
+        let mut apart = 0.0_f64;
+        for row in 0..rows {
+            for lane in 0..width {
+                let term = |&k: &usize| {
+                    let by = if (row, k) == (0, 0) { factor } else { 1.0 };
+                    by * entry(row, k) * x[k * width + lane]
+                };
+                let plain: f64 = list.unwrap_or(&all).iter().map(term).sum();
+                apart = apart.max((y[row * width + lane] - plain).abs());
+            }
+        }
+        apart
+    }
+
+    /// Each lane has its own product, whole blocks of rows or not; 1e-13: rounding of sums of at most 20 numbers near 1. An
+    /// entry that is 5 % off is found.
+    #[test]
+    fn product_of_each_lane_is_the_plain_one() {
+        for (rows, columns) in [(1, 1), (7, 3), (8, 20), (9, 5), (24, 1)] {
+            for list in [None, Some(&[0][..])] {
+                let off = apart(rows, columns, list, 1.0);
+                assert!(off < 1e-13, "{rows} x {columns}, {list:?}: {off:e}");
+            }
+        }
+        assert!(apart(9, 5, Some(&[4, 0, 2]), 1.0) < 1e-13);
+        assert!(apart(9, 5, None, 1.05) > 1e-3, "a wrong entry passes");
+    }
+}

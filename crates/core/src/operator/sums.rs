@@ -29,3 +29,35 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{add_to, dot};
+
+    fn numbers(n: usize, phase: f64) -> Vec<f64> {
+        (0..n).map(|i| (1.3 * i as f64 + phase).sin()).collect()
+    }
+
+    /// At every remainder by eight, and with lists of unequal length; 1e-14: rounding of 20 numbers below 1. A number that is
+    /// 5 % off is found.
+    #[test]
+    fn dot_product_is_the_plain_one() {
+        for n in 0..=20 {
+            let (a, mut b) = (numbers(n, 0.2), numbers(n + 3, 1.1));
+            let plain: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+            assert!((dot(&a, &b) - plain).abs() < 1e-14, "{n} numbers");
+            if n > 0 {
+                b[0] *= 1.05;
+                assert!((dot(&a, &b) - plain).abs() > 1e-3, "a wrong number passes");
+            }
+        }
+    }
+
+    /// `1 + 2 x 0.5`.
+    #[test]
+    fn weighted_numbers_are_added() {
+        let mut sum = [1.0, 3.0];
+        add_to(&mut sum, 2.0, &[0.5]);
+        assert_eq!(sum, [2.0, 3.0]);
+    }
+}

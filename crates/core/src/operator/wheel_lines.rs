@@ -8,8 +8,16 @@ use crate::bridge::Track;
 use crate::vehicle::{Inertia, Vehicle};
 use nalgebra::DMatrix;
 
-/// Place ahead of the front `[m]`, share of the weight, axle.
-type OnLine = (f64, f64, usize);
+/// A wheel point on its line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LinePoint {
+    /// Number of its place along the vehicle.
+    pub along: usize,
+    /// Share of the vehicle's weight.
+    pub share: f64,
+    /// Its axle.
+    pub axle: usize,
+}
 
 /// Wheel points on one line along the bridge, or on several that carry the same.
 #[derive(Debug)]
@@ -17,7 +25,7 @@ pub(super) struct WheelLine {
     /// Lines of the masses that carry these points.
     pub lines: Vec<usize>,
     /// Points from the rear.
-    pub points: Vec<OnLine>,
+    pub points: Vec<LinePoint>,
     /// For each station the influence of a unit force there: `phi`, `R_BL`, `R_VL`, edges inside modules.
     pub influence: Vec<f64>,
 }
@@ -52,7 +60,7 @@ impl WheelLines {
     /// A vehicle on the deck of an operator.
     pub(crate) fn new(operator: &BridgeOperator, vehicle: &Vehicle) -> Self {
         let track = &operator.track;
-        let mut lines: Vec<(f64, Vec<OnLine>)> = Vec::new();
+        let mut lines: Vec<(f64, Vec<LinePoint>)> = Vec::new();
         let mut point_lines = Vec::new();
         for patch in &vehicle.patches {
             let mut own = Vec::new();
@@ -61,13 +69,17 @@ impl WheelLines {
                     lines.push((p.y_m, Vec::new()));
                     lines.len() - 1
                 });
-                lines[line].1.push((p.ahead_m, p.share, patch.axle));
+                lines[line].1.push(LinePoint {
+                    along: p.along,
+                    share: p.share,
+                    axle: patch.axle,
+                });
                 own.push(line);
             }
             point_lines.push(own);
         }
         for (_, points) in &mut lines {
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            points.sort_by(|a, b| vehicle.along_m[a.along].total_cmp(&vehicle.along_m[b.along]));
         }
         let mut weights: Vec<WheelLine> = Vec::new();
         let mut masses = Vec::new();

@@ -12,7 +12,8 @@ mod step;
 use super::AnalysisError;
 use super::modes::Rayleigh;
 use crate::bridge::{Bridge, Track};
-use crate::connector::{Connection, Law};
+use crate::connector::Connection;
+use crate::contact::LinkLaw;
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
 use crate::response::{CrossingResponse, Record};
@@ -54,6 +55,13 @@ pub struct Crossing {
     pub tail_s: f64,
     /// Histories to keep.
     pub record: Record,
+}
+
+impl Crossing {
+    /// The law of each of so many connectors.
+    fn laws(&self, connectors: usize) -> Vec<LinkLaw> {
+        vec![LinkLaw::connector(self.connector_stiffness_n_m, self.connection); connectors]
+    }
 }
 
 /// A bridge made ready for crossings at one time step. Shared read-only between jobs and threads.
@@ -116,10 +124,7 @@ impl CrossingSolver {
             load_n: crossing.load_n,
             speed_m_s: crossing.speed_m_s,
             rayleigh: self.settings.rayleigh,
-            law: Law {
-                k: crossing.connector_stiffness_n_m,
-                connection: crossing.connection,
-            },
+            laws: crossing.laws(self.bridge.connectors.len()),
         };
         let observer = Observer::new(&self.bridge, &crossing.record);
         CrossingRun::new(self, stepper, observer, crossing.tail_s)

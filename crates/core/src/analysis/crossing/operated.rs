@@ -6,7 +6,6 @@ use super::halving::{Halving, halve};
 use super::{Crossing, CrossingSettings, span};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign};
-use crate::connector::Law;
 use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
@@ -198,10 +197,7 @@ impl<C: StepClock> Crew<'_, C> {
         let crossing_input = CrossingInput {
             wheels: Arc::clone(&self.mounts[mount].wheels),
             compliance: self.compliance(mount, self.refinement),
-            law: Law {
-                k: crossing.connector_stiffness_n_m,
-                connection: crossing.connection,
-            },
+            laws: crossing.laws(self.solver.operator.connectors()).into(),
             load_n: crossing.load_n,
             speed_m_s: crossing.speed_m_s,
         };

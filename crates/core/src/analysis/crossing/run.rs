@@ -74,14 +74,13 @@ impl<'a> CrossingRun<'a> {
         let (now, stepper) = (&self.now, &self.stepper);
         let Rayleigh { a, b } = stepper.rayleigh;
         let sum = |x: &[f64], factor: f64, y: &[f64]| x.iter().zip(y).map(|(x, y)| x + factor * y).collect();
-        let place = (stepper.load_n, stepper.speed_m_s * now.time_s);
         Snapshot {
             time_s: now.time_s,
             u: now.u.clone(),
             elastic: sum(&now.u, a, &now.v),
             inertial: Some(sum(&now.a, b, &now.v)),
             connectors: connectors(&now.states, &now.forces, &now.elongations),
-            wheels: wheels(stepper.track, stepper.vehicle, place, &now.load, &now.inertia),
+            wheels: wheels(stepper.track, stepper.vehicle, stepper.load_n, &now.load, &now.inertia),
         }
     }
 

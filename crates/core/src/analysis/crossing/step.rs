@@ -5,8 +5,8 @@
 use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
 use crate::bridge::{Bridge, Load, Rider, Track};
-use crate::connector::{Law, State};
-use crate::contact::{ContactProblem, NotSettled};
+use crate::connector::State;
+use crate::contact::{ContactProblem, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::response::StepEnergies;
 use crate::scheme::{Newmark, Scalar};
@@ -51,7 +51,8 @@ pub(super) struct Stepper<'a> {
     pub load_n: f64,
     pub speed_m_s: f64,
     pub rayleigh: Rayleigh,
-    pub law: Law,
+    /// Law of each connector.
+    pub laws: Vec<LinkLaw>,
 }
 
 impl Stepper<'_> {
@@ -69,7 +70,7 @@ impl Stepper<'_> {
             ku: zero.clone(),
             mv: zero.clone(),
             ma: zero,
-            states: vec![self.law.state(0.0); connectors],
+            states: self.laws.iter().map(LinkLaw::at_rest).collect(),
             forces: vec![0.0; connectors],
             elongations: vec![0.0; connectors],
             load,
@@ -98,7 +99,7 @@ impl Stepper<'_> {
 
         // the connectors and the riding masses, together
         let problem = self.contact_problem(matrix, old, &load, &d);
-        let contact = problem.solve(&self.law, &old.states, newton_limit)?;
+        let contact = problem.solve(&self.laws, &old.states, newton_limit)?;
         for (i, force) in contact.forces.iter().enumerate() {
             flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * force, &mut d);
         }
@@ -233,7 +234,12 @@ impl Stepper<'_> {
         let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         let kinetic = 0.5 * dot(&new.v, &new.mv);
         let strain = 0.5 * dot(&new.u, &new.ku);
-        let connectors: f64 = new.elongations.iter().map(|&e| self.law.energy(e)).sum();
+        let connectors: f64 = self
+            .laws
+            .iter()
+            .zip(&new.elongations)
+            .map(|(law, &e)| law.energy(e))
+            .sum();
         let (mut inertia, mut stiffness, mut damping_m, mut damping_k) = (0.0, 0.0, 0.0, 0.0);
         for (i, d) in d.iter().enumerate() {
             inertia += d * s.at_m(new.ma[i], old.ma[i]);

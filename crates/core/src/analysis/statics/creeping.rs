@@ -71,9 +71,9 @@ impl CreepingLoad {
 
     /// The peaks, the load brought on in parts wherever `limit` Newton solutions from the last place do not settle.
     fn peaks_within(&self, case: &StaticCase, limit: usize) -> Result<Vec<f64>, AnalysisError> {
-        let law = case.law();
         let nc = self.among.nrows();
-        let mut contact = WarmContact::new(&self.among, law);
+        let laws = case.laws(nc);
+        let mut contact = WarmContact::new(&self.among, laws.clone());
         let mut e_free = vec![0.0; nc];
         let mut deflections = vec![0.0; self.positions.nrows()];
         let mut peaks = vec![0.0_f64; self.positions.nrows()];
@@ -82,7 +82,7 @@ impl CreepingLoad {
             scale(&mut e_free, -case.load_n, shortenings);
             scale(&mut deflections, case.load_n, direct);
             if contact.solve(&e_free, limit).is_err() {
-                contact.restart(&brought_on(&self.among, &law, &e_free, x)?);
+                contact.restart(&brought_on(&self.among, &laws, &e_free, x)?);
             }
             for (&force, seen) in contact.forces().iter().zip(self.positions.column_iter()) {
                 if force != 0.0 {

@@ -6,9 +6,9 @@ mod creeping;
 
 use super::AnalysisError;
 use super::snapshot::{Snapshot, connectors, wheels};
-use crate::bridge::{Bridge, Load};
-use crate::connector::{Connection, Law, State};
-use crate::contact::{ContactProblem, ContactSolution, NotSettled};
+use crate::bridge::{Bridge, Load, VehiclePlacement};
+use crate::connector::{Connection, State};
+use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::flexibility::Flexibility;
 use crate::response::{Equilibrium, JointForces, StaticResponse};
@@ -31,11 +31,9 @@ pub struct StaticCase {
 }
 
 impl StaticCase {
-    fn law(&self) -> Law {
-        Law {
-            k: self.connector_stiffness_n_m,
-            connection: self.connection,
-        }
+    /// The law of each of so many connectors.
+    fn laws(&self, connectors: usize) -> Vec<LinkLaw> {
+        vec![LinkLaw::connector(self.connector_stiffness_n_m, self.connection); connectors]
     }
 }
 
@@ -74,7 +72,7 @@ impl StaticSolver {
     /// [`AnalysisError::StaticNotConverged`].
     /// Equation (S1).
     pub fn solve(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<StaticResponse, AnalysisError> {
-        let (_, contact, u) = self.rest(vehicle, case)?;
+        let (load, contact, u) = self.rest(vehicle, case)?;
         let bridge = &self.bridge;
         let design = bridge.design();
         let joints = (2..=design.modules)
@@ -108,7 +106,7 @@ impl StaticSolver {
                 .freeboard_m
                 .map(|board| bridge.deck_corners.iter().any(|row| -row.dot(&u) > board)),
             newton_iterations: contact.iterations,
-            equilibrium: self.equilibrium(vehicle, case, &u),
+            equilibrium: self.equilibrium(vehicle, case, &load.placement, &u),
         })
     }
 
@@ -118,7 +116,6 @@ impl StaticSolver {
     /// As [`Self::solve`].
     pub fn state(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<Snapshot, AnalysisError> {
         let (load, contact, u) = self.rest(vehicle, case)?;
-        let place = (case.load_n, case.load_x_m - vehicle.centre_ahead_m());
         let at_rest = vec![0.0; load.riders.len()];
         Ok(Snapshot {
             time_s: 0.0,
@@ -126,7 +123,7 @@ impl StaticSolver {
             u,
             inertial: None,
             connectors: connectors(&contact.states, &contact.forces, &contact.elongations),
-            wheels: wheels(self.flexibility.track(), vehicle, place, &load, &at_rest),
+            wheels: wheels(self.flexibility.track(), vehicle, case.load_n, &load, &at_rest),
         })
     }
 
@@ -136,7 +133,8 @@ impl StaticSolver {
         let e_free: Vec<f64> = (0..self.bridge.connectors.len())
             .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
             .collect();
-        let contact = brought_on(self.flexibility.among_connectors(), &case.law(), &e_free, case.load_x_m)?;
+        let laws = case.laws(e_free.len());
+        let contact = brought_on(self.flexibility.among_connectors(), &laws, &e_free, case.load_x_m)?;
         let mut u = vec![0.0; self.bridge.dofs()];
         self.flexibility
             .add_track_response(&SparseRow::combine(&[(-1.0, &load.weight)]), &mut u);
@@ -204,15 +202,17 @@ impl StaticSolver {
         right_end - left_end
     }
 
-    fn equilibrium(&self, vehicle: &Vehicle, case: &StaticCase, u: &[f64]) -> Equilibrium {
+    fn equilibrium(
+        &self,
+        vehicle: &Vehicle,
+        case: &StaticCase,
+        placement: &VehiclePlacement,
+        u: &[f64],
+    ) -> Equilibrium {
         let mut result = Equilibrium::default();
-        let front = case.load_x_m - vehicle.centre_ahead_m();
-        for point in vehicle.points() {
-            let x = front + point.ahead_m;
-            if self.flexibility.track().row(x, point.y_m).is_some() {
-                let force = -case.load_n * point.share;
-                add_force(&mut result.load, force, x, point.y_m);
-            }
+        for point in vehicle.points().filter(|p| placement.cell(p.along).is_some()) {
+            let force = -case.load_n * point.share;
+            add_force(&mut result.load, force, placement.x_m(point), point.y_m);
         }
         result.water = std::array::from_fn(|i| self.bridge.water[i].dot(u));
         for held in self.bridge.held.iter().filter(|h| h.vertical) {
@@ -233,7 +233,7 @@ fn add_force(to: &mut [f64; 3], force: f64, x: f64, y: f64) {
 /// connectors, the load is brought on in parts.
 fn brought_on(
     among: &DMatrix<f64>,
-    law: &Law,
+    laws: &[LinkLaw],
     e_full: &[f64],
     load_x_m: f64,
 ) -> Result<ContactSolution, AnalysisError> {
@@ -252,7 +252,7 @@ fn brought_on(
     loop {
         let target = (reached + part).min(1.0);
         problem.e_free = e_full.iter().map(|e| target * e).collect();
-        match problem.solve(law, &states, NEWTON_LIMIT) {
+        match problem.solve(laws, &states, NEWTON_LIMIT) {
             Ok(solution) => {
                 iterations += solution.iterations;
                 if target >= 1.0 {

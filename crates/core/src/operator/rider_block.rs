@@ -1,0 +1,106 @@
+//! What rides along, as the contact system sees it: one dense block of rows a vehicle.
+//!
+//! Knows rows on riders and on links. Does not know what rides or what a link is.
+
+/// The rows of one vehicle's riders, each measured in displacement: `A q' + A_links N' = free`, q' and N' the scaled forces of
+/// riders and links; links see `A_on q'` of the riders.
+/// Equation (C1).
+#[derive(Debug)]
+pub(super) struct RiderBlock {
+    riders: usize,
+    links: usize,
+    symmetric: bool,
+    among: Vec<f64>,
+    of_links: Vec<f64>,
+    on_links: Vec<f64>,
+    free: Vec<f64>,
+}
+
+/// One rider's row, to be written.
+#[derive(Debug)]
+pub(super) struct RiderRow<'a> {
+    /// What it sees of riders and of links.
+    pub among: &'a mut [f64],
+    pub of_links: &'a mut [f64],
+    /// What links see of it; empty where that is what it sees of them.
+    pub on_links: &'a mut [f64],
+    /// Its measure without new forces.
+    pub free: &'a mut f64,
+}
+
+impl RiderBlock {
+    /// Room for so many riders beside so many links.
+    pub(super) fn new(riders: usize, links: usize) -> Self {
+        Self {
+            riders: 0,
+            links,
+            symmetric: true,
+            among: vec![0.0; riders * riders],
+            of_links: vec![0.0; riders * links],
+            on_links: vec![0.0; riders * links],
+            free: vec![0.0; riders],
+        }
+    }
+
+    /// Begins a block of zeros; a symmetric one sees of links what they see of it.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, riders: usize, symmetric: bool) {
+        (self.riders, self.symmetric) = (riders, symmetric);
+        self.among[..riders * riders].fill(0.0);
+        self.of_links[..riders * self.links].fill(0.0);
+        if !symmetric {
+            self.on_links[..riders * self.links].fill(0.0);
+        }
+    }
+
+    /// A rider's row, to be written.
+    #[inline(always)]
+    pub(super) fn row_mut(&mut self, i: usize) -> RiderRow<'_> {
+        let on_links = if self.symmetric { 0 } else { self.links };
+        RiderRow {
+            among: &mut self.among[i * self.riders..][..self.riders],
+            of_links: &mut self.of_links[i * self.links..][..self.links],
+            on_links: &mut self.on_links[i * self.links..][..on_links],
+            free: &mut self.free[i],
+        }
+    }
+
+    /// Number of riders.
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        self.riders
+    }
+
+    /// Whether what a rider sees of another, or of a link, is what that one sees of it.
+    #[inline(always)]
+    pub(super) fn symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// What a rider sees of the riders.
+    #[inline(always)]
+    pub(super) fn among(&self, i: usize) -> &[f64] {
+        &self.among[i * self.riders..][..self.riders]
+    }
+
+    /// What a rider sees of the links.
+    #[inline(always)]
+    pub(super) fn of_links(&self, i: usize) -> &[f64] {
+        &self.of_links[i * self.links..][..self.links]
+    }
+
+    /// What the links see of a rider.
+    #[inline(always)]
+    pub(super) fn on_links(&self, i: usize) -> &[f64] {
+        if self.symmetric {
+            return self.of_links(i);
+        }
+        &self.on_links[i * self.links..][..self.links]
+    }
+
+    /// The riders' measures without new forces.
+    #[inline(always)]
+    pub(super) fn free(&self) -> &[f64] {
+        &self.free[..self.riders]
+    }
+}
