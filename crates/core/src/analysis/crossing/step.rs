@@ -6,7 +6,7 @@ use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
 use crate::bridge::{Bridge, Load, Rider, Track};
 use crate::connector::State;
-use crate::contact::{ContactProblem, LinkLaw, NotSettled};
+use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::response::StepEnergies;
 use crate::scheme::{Newmark, Scalar};
@@ -14,7 +14,7 @@ use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
 /// The motion at one time, with what the next step and the energy balance need of it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Motion {
     pub time_s: f64,
     pub u: Vec<f64>,
@@ -37,6 +37,20 @@ pub(super) struct Motion {
 }
 
 impl Motion {
+    /// Displacements and velocities of zero, without connectors and load.
+    fn zero(dofs: usize) -> Self {
+        let zero = || vec![0.0; dofs];
+        Self {
+            u: zero(),
+            v: zero(),
+            a: zero(),
+            ku: zero(),
+            mv: zero(),
+            ma: zero(),
+            ..Self::default()
+        }
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         self.spent.kinetic.is_finite() && self.spent.strain.is_finite()
     }
@@ -59,24 +73,15 @@ impl Stepper<'_> {
     /// Rest under the vehicle's first place.
     pub(super) fn at_rest(&self, time_s: f64) -> Motion {
         let load = self.load(time_s);
-        let zero = vec![0.0; self.bridge.dofs()];
-        let connectors = self.bridge.connectors.len();
-        let riders = load.riders.len();
+        let connectors = self.laws.len();
         Motion {
             time_s,
-            u: zero.clone(),
-            v: zero.clone(),
-            a: zero.clone(),
-            ku: zero.clone(),
-            mv: zero.clone(),
-            ma: zero,
             states: self.laws.iter().map(LinkLaw::at_rest).collect(),
             forces: vec![0.0; connectors],
             elongations: vec![0.0; connectors],
+            inertia: vec![0.0; load.riders.len()],
             load,
-            inertia: vec![0.0; riders],
-            newton_iterations: 0,
-            spent: StepEnergies::default(),
+            ..Motion::zero(self.bridge.dofs())
         }
     }
 
@@ -88,54 +93,60 @@ impl Stepper<'_> {
         time_s: f64,
         newton_limit: usize,
     ) -> Result<Motion, NotSettled> {
-        let load = self.load(time_s);
-        let s = &matrix.scheme;
-        let flexibility = &matrix.flexibility;
+        let load = self.load(time_s); // (V1)
+        let mut d = self.predict(matrix, old, &load); // (T3), (T4)
+        let problem = self.contact_problem(matrix, old, &load, &d); // (C1), (T5)
+        let contact = problem.solve(&self.laws, &old.states, newton_limit)?; // (C2)
+        self.correct(matrix, &load, &contact, &mut d);
+        let mut new = self.advance(matrix, old, &d); // (T2)
+        new.time_s = time_s;
+        new.load = load;
+        new.inertia = contact
+            .riders
+            .iter()
+            .map(|q| q / (1.0 - matrix.scheme.alpha_m))
+            .collect();
+        new.states = contact.states;
+        new.forces = contact.forces;
+        new.elongations = contact.elongations;
+        new.newton_iterations = contact.iterations;
+        new.spent = self.account(matrix, old, &new, &d); // (R1)
+        Ok(new)
+    }
 
-        // the step without new connector and inertia forces:  A d = f - M (y_m + b y_v) - K (u_0 + a y_v)
+    /// The step without new connector and inertia forces, `A d = f - M (y_m + b y_v) - K (u_0 + a y_v)`.
+    fn predict(&self, matrix: &StepMatrix, old: &Motion, load: &Load) -> Vec<f64> {
         let mut d = self.known_forces(matrix, old);
-        flexibility.add_track_force(&load.weight, -(1.0 - s.alpha_f), &mut d);
-        flexibility.solve(&mut d);
+        let weight = -(1.0 - matrix.scheme.alpha_f);
+        matrix.flexibility.add_track_force(&load.weight, weight, &mut d);
+        matrix.flexibility.solve(&mut d);
+        d
+    }
 
-        // the connectors and the riding masses, together
-        let problem = self.contact_problem(matrix, old, &load, &d);
-        let contact = problem.solve(&self.laws, &old.states, newton_limit)?;
+    /// Adds to a step what the new connector and inertia forces do.
+    fn correct(&self, matrix: &StepMatrix, load: &Load, contact: &ContactSolution, d: &mut [f64]) {
+        let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         for (i, force) in contact.forces.iter().enumerate() {
-            flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * force, &mut d);
+            flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * force, d);
         }
         let mut inertia = SparseRow::default();
         for (rider, q) in load.riders.iter().zip(&contact.riders) {
             inertia.0.extend(rider.row.0.iter().map(|&(c, r)| (c, -q * r)));
         }
-        flexibility.add_track_response(&SparseRow::from_entries(inertia.0), &mut d);
+        flexibility.add_track_response(&SparseRow::from_entries(inertia.0), d);
+    }
 
-        // the new instant
-        let n = d.len();
-        let mut new = Motion {
-            time_s,
-            u: vec![0.0; n],
-            v: vec![0.0; n],
-            a: vec![0.0; n],
-            ku: vec![0.0; n],
-            mv: vec![0.0; n],
-            ma: vec![0.0; n],
-            states: contact.states,
-            forces: contact.forces,
-            elongations: contact.elongations,
-            load,
-            inertia: contact.riders.iter().map(|q| q / (1.0 - s.alpha_m)).collect(),
-            newton_iterations: contact.iterations,
-            spent: StepEnergies::default(),
-        };
-        let newmark = Newmark::of(Scalar, s);
+    /// The motion after a step in which the displacement changes by d.
+    fn advance(&self, matrix: &StepMatrix, old: &Motion, d: &[f64]) -> Motion {
+        let mut new = Motion::zero(d.len());
+        let newmark = Newmark::of(Scalar, &matrix.scheme);
         for (i, &d) in d.iter().enumerate() {
             [new.u[i], new.v[i], new.a[i]] = newmark.advance(Scalar, d, [old.u[i], old.v[i], old.a[i]]);
         }
         self.bridge.times_k.multiply(&new.u, &mut new.ku);
         self.bridge.times_m.multiply(&new.v, &mut new.mv);
         self.bridge.times_m.multiply(&new.a, &mut new.ma);
-        new.spent = self.account(matrix, old, &new, &d);
-        Ok(new)
+        new
     }
 
     /// The vehicle where it is at a time.
