@@ -87,6 +87,16 @@ pub fn number(x: f64, digits: usize) -> String {
     format!("{mantissa}{exponent}")
 }
 
+/// A count with its noun: "1 thread", "2 threads".
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {}", plural(noun, count))
+}
+
+/// A noun as it stands behind a count.
+pub fn plural(noun: &str, count: usize) -> String {
+    format!("{noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A number as a person wrote it, without what decimals leave in the last bits.
 pub fn as_written(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-6 {
@@ -201,6 +211,14 @@ mod tests {
         );
         assert_eq!([0.021, -0.000_04, 1e-9].map(percent), ["+2.10 %", "-4e-3 %", "+1e-7 %"]);
         assert_eq!([0.1 + 0.2, 74.0, 1e-7].map(as_written), ["0.3", "74", "1e-7"]);
+    }
+
+    #[test]
+    fn one_is_singular_and_every_other_count_plural() {
+        assert_eq!(
+            [0, 1, 2].map(|n| counted(n, "thread")),
+            ["0 threads", "1 thread", "2 threads"]
+        );
     }
 
     #[test]

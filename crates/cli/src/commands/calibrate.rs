@@ -25,7 +25,10 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
     check_out(&arguments.out, &arguments.bridge)?;
     let told = |candidates: usize, least: f64| {
         if !common.quiet {
-            text::note(&format!("{candidates} candidates, least sum of squares {least:.4}"));
+            text::note(&format!(
+                "{}, least sum of squares {least:.4}",
+                labels::counted(candidates, "candidate")
+            ));
         }
     };
     let task = CalibrationTask::new(&bridge, &references, &parameters, &told)?;
@@ -98,15 +101,15 @@ fn text(found: &Calibration, out: &Path) -> String {
             .collect(),
     };
     format!(
-        "{}\n{}\n{}\n{undetermined}sum of squares {:.4} before, {:.4} after; {} candidates, {} modules condensed, {} candidates failed\n{}: {}\nbridge in {}\n",
+        "{}\n{}\n{}\n{undetermined}sum of squares {:.4} before, {:.4} after; {}, {} condensed, {} failed\n{}: {}\nbridge in {}\n",
         checks(&found.checks),
         parameters(&found.parameters),
         correlation(found),
         found.sum_of_squares_start,
         found.sum_of_squares_best,
-        found.evaluations,
-        found.condensations,
-        found.failed.len(),
+        labels::counted(found.evaluations, "candidate"),
+        labels::counted(found.condensations, "module"),
+        labels::counted(found.failed.len(), "candidate"),
         if found.converged { "converged" } else { "not converged" },
         found.ending,
         out.display()

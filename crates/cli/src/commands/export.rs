@@ -5,6 +5,7 @@ use crate::exit_status::ExitStatus;
 use crate::text;
 use anyhow::Result;
 use pontoon_plan::input::{Cell, Refusal};
+use pontoon_results::labels;
 use pontoon_study::modes::BridgeError;
 use pontoon_view::export::{ExportError, Exported, LoadRequest, Part, Request, export as write};
 use serde_json::json;
@@ -55,5 +56,9 @@ fn text(exported: &Exported, to: &str) -> String {
         ]
     };
     let rows: Vec<Vec<Cell<'_>>> = exported.parts.iter().map(row).collect();
-    format!("{}{} files in {to}\n", text::table(&columns, &rows), exported.files)
+    format!(
+        "{}{} in {to}\n",
+        text::table(&columns, &rows),
+        labels::counted(exported.files, "file")
+    )
 }

@@ -9,6 +9,7 @@ use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use pontoon_journal::place::Folder;
 use pontoon_plan::input::Refusal;
+use pontoon_results::labels;
 use serde_json::json;
 
 /// Writes the pages of the definitions that words are understood by.
@@ -29,7 +30,7 @@ pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<ExitStatus
     }
     text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!({ "to": to.display().to_string(), "pages": names })),
-        _ => format!("{} pages in {}\n", names.len(), to.display()),
+        _ => format!("{} in {}\n", labels::counted(names.len(), "page"), to.display()),
     })?;
     Ok(ExitStatus::Good)
 }

@@ -6,6 +6,7 @@ use crate::terminal::{BAD, TextStyle};
 use crate::{axes, text};
 use anyhow::Result;
 use pontoon_plan::study_file::Study;
+use pontoon_results::labels;
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{Forecast, forecast};
 use serde_json::json;
@@ -50,14 +51,18 @@ fn text(study: &Study, forecast: &Forecast, out: &str, text_style: TextStyle) ->
     };
     let merged = match plan.points - plan.jobs {
         0 => String::new(),
-        merged => format!(" ({} equal points merged)", text::grouped(merged as u64)),
+        merged => format!(
+            " ({} equal {} merged)",
+            text::grouped(merged as u64),
+            labels::plural("point", merged)
+        ),
     };
     let time = match forecast.expected_seconds {
         Some(seconds) => format!(
-            "about {} on {} threads, {} jobs tried",
+            "about {} on {}, {} tried",
             text::duration(seconds),
-            forecast.threads,
-            forecast.tried
+            labels::counted(forecast.threads, "thread"),
+            labels::counted(forecast.tried, "job")
         ),
         None => "not known: the jobs that were tried failed, or are too long to try".to_owned(),
     };

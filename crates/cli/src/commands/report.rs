@@ -8,7 +8,7 @@ use pontoon_journal::place::{Folder, FolderError};
 use pontoon_judge::compare::{Comparison, against_reference};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Refusal;
-use pontoon_results::PAGE;
+use pontoon_results::{PAGE, labels};
 use pontoon_study::run::Cache;
 use pontoon_view::figures::{Figures, marks};
 use pontoon_view::report::{OpenedResults, Report, ReportSetting};
@@ -157,12 +157,12 @@ fn text(report: &Report, compared: Option<&Comparison>, out: &Path, bytes: u64) 
         n => format!(", {n} {what}"),
     };
     let mut text = format!(
-        "jobs {}{}{}; {} crossings to play, {} mode shapes\n",
+        "jobs {}{}{}; {} to play, {}\n",
         jobs.total,
         count(jobs.failed, "failed"),
         count(jobs.missing, "missing"),
-        report.plays.len(),
-        report.modes.iter().map(|set| set.list.len()).sum::<usize>(),
+        labels::counted(report.plays.len(), "crossing"),
+        labels::counted(report.modes.iter().map(|set| set.list.len()).sum(), "mode shape"),
     );
     if let Some(compared) = compared {
         text += &format!("{}\n", compared.tally());

@@ -13,7 +13,7 @@ use pontoon_judge::reference::Reference;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
-use pontoon_results::{Failures, Outcome, Results, SummaryTable};
+use pontoon_results::{Failures, Outcome, Results, SummaryTable, labels};
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{SweepSetting, Swept, run_apart, sweep};
 use serde::ser::{Serialize, Serializer};
@@ -150,13 +150,13 @@ fn text(swept: &Swept<'_>, out: &Path) -> String {
     };
     let counts = text::wrapped(
         &format!(
-            "jobs {}{recorded}, failed {}; condensations {}, offline part {}, jobs {} on {} threads",
+            "jobs {}{recorded}, failed {}; condensations {}, offline part {}, jobs {} on {}",
             outcome.jobs,
             outcome.failures.count,
             outcome.preparation.condensations,
             text::duration(outcome.offline_s),
             text::duration(outcome.jobs_s),
-            outcome.threads,
+            labels::counted(outcome.threads, "thread"),
         ),
         text_style.width.unwrap_or(usize::MAX),
         2,
@@ -164,7 +164,8 @@ fn text(swept: &Swept<'_>, out: &Path) -> String {
     let Some(summary_table) = &swept.summary else {
         let of = swept.jobs;
         return format!(
-            "{counts}a share of {of} jobs in {}: `pontoon merge` puts shares together\n",
+            "{counts}a share of {} in {}: `pontoon merge` puts shares together\n",
+            labels::counted(of, "job"),
             out.display()
         );
     };

@@ -250,9 +250,10 @@ fn largest(
         .map(|largest| {
             let name = &columns[largest.column];
             let head = short(name);
+            // a peak of zero is no job's
             let at = axes
                 .iter()
-                .filter(|&&i| !largest.row[i].is_nothing())
+                .filter(|&&i| largest.most > 0.0 && !largest.row[i].is_nothing())
                 .map(|&i| heads[i].told(&largest.row[i]));
             let value = format!(
                 "{} {}",

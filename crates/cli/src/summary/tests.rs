@@ -86,6 +86,17 @@ largest tension       220000 N  speed 15 m/s, connection nonlinear, tension gap 
 }
 
 #[test]
+fn a_largest_peak_of_zero_has_no_place() {
+    let mut rows = crossings();
+    for row in &mut rows {
+        *row.last_mut().unwrap() = json!(0.0);
+    }
+    let text = written(COLUMNS, &rows, PLAIN);
+    let tension = text.lines().last().unwrap();
+    assert_eq!(tension, "largest tension            0 N");
+}
+
+#[test]
 fn the_table_goes_on_below_where_a_terminal_is_narrow() {
     let text = written(COLUMNS, &crossings(), narrow(40));
     let table = "\

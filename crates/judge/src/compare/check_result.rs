@@ -4,7 +4,7 @@
 
 use crate::checks::Role;
 use pontoon_plan::input::Cell;
-use pontoon_results::labels::{all_digits, percent};
+use pontoon_results::labels::{all_digits, as_written, counted, percent};
 use serde::{Serialize, Serializer};
 
 /// Digits of a value of a line.
@@ -142,6 +142,7 @@ impl CheckResult {
         let columns = self.worst.case.0.iter();
         let place = columns.map(|(name, cell)| match cell {
             Cell::Nothing => format!("{name} null"),
+            Cell::Number(x) => format!("{name} {}", as_written(*x)),
             other => format!("{name} {}", other.text()),
         });
         let place = place.collect::<Vec<_>>().join(", ");
@@ -158,7 +159,7 @@ impl CheckResult {
             .filter(|case| case.reason.is_some() && case.reason != self.worst.reason);
         let others = Some(other.count())
             .filter(|n| *n > 0)
-            .map(|n| format!("{n} other cases with remarks"));
+            .map(|n| format!("{} with remarks", counted(n, "other case")));
         [
             Some(cases).filter(|c| !c.is_empty()),
             some_hold,
@@ -222,6 +223,28 @@ mod tests {
             deviation,
             ..Case::without_values(CaseColumns::default(), String::new())
         }
+    }
+
+    #[test]
+    fn a_remark_names_the_worst_case_with_its_numbers_as_they_are_written() {
+        let columns = [("load_n", Cell::Number(300_000.0)), ("gap_tension_m", Cell::Nothing)];
+        let columns = columns.map(|(name, cell)| (name.to_owned(), cell));
+        let of = |reason: Option<&str>| Case {
+            reason: reason.map(str::to_owned),
+            ..Case::without_values(CaseColumns(columns.to_vec()), String::new())
+        };
+        let result = CheckResult {
+            id: "id".to_owned(),
+            statement: None,
+            role: Role::Record,
+            expected: "-".to_owned(),
+            expected_value: None,
+            verdict: Verdict::Record,
+            worst: of(None),
+            cases: vec![of(None), of(Some("no job matches"))],
+        };
+        let expected = "worst of 2: load_n 300000, gap_tension_m null; 1 other case with remarks";
+        assert_eq!(result.remark(), expected);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};
 use pontoon_core::analysis::modes::{largest_made_one, modes};
 use pontoon_core::bridge::{Ends, Model};
+use pontoon_results::labels;
 
 /// Largest component of a shape's displacement.
 const LARGEST: f64 = 1.0;
@@ -38,7 +39,7 @@ pub(super) fn write(
     let files = count as u64;
     check_size(
         subject,
-        ("--count", format!("{count} modes")),
+        ("--count", labels::counted(count, "mode")),
         [files, files * size.0],
         note,
     )?;

@@ -32,7 +32,7 @@ use figure_context::FigureContext;
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Refusal;
 use pontoon_plan::study_file::Kind;
-use pontoon_results::Results;
+use pontoon_results::{Results, labels};
 use serde::Serialize;
 
 /// Figures of one study.
@@ -98,9 +98,11 @@ impl Figures {
                 .iter()
                 .map(|figure| figure.name.as_str())
                 .collect();
-            context
-                .left_out
-                .push(format!("{} figures: {}", names.len(), names.join(", ")));
+            context.left_out.push(format!(
+                "{}: {}",
+                labels::counted(names.len(), "figure"),
+                names.join(", ")
+            ));
             figures.truncate(MOST_FIGURES);
         }
         let mut left_out = context.left_out.clone();

@@ -84,7 +84,7 @@ pub(super) fn caption(
     if let Some(by) = &series_group.by {
         let others = series_group.lines.iter().filter(|line| line.style > 0);
         let values: Vec<String> = others.map(|line| line.label.clone()).collect();
-        text += &format!(", for a {} of {}", labels::label(by), listed(&values));
+        text += &format!(", for {} {}", labels::label(by), listed(&values));
         if linear {
             text += " and for the linear connection";
         }

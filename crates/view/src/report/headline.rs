@@ -21,7 +21,7 @@ pub struct PageCard {
     pub value: f64,
     /// Its unit.
     pub unit: &'static str,
-    /// Where and when.
+    /// Where and when; empty where the value is 0.
     #[serde(rename = "where")]
     pub place: String,
     /// Its job; null where the value is 0, for it is nobody's.
@@ -54,15 +54,16 @@ pub(super) fn cards(results: &Results, measures: &[PageMeasure], row_label: &dyn
             let place = number(Some(column))?;
             Some(format!("{kind} {place}"))
         });
+        let words = |of_job: String| if value == 0.0 { String::new() } else { of_job };
         let when = number(of.time).map(|time| format!("at {time:.2} s"));
         Some(PageCard {
             measure: measure.name,
             label: of.label,
             value,
             unit: measure.unit,
-            place: [at, when].into_iter().flatten().collect::<Vec<_>>().join(" "),
+            place: words([at, when].into_iter().flatten().collect::<Vec<_>>().join(" ")),
             job: (value != 0.0).then(|| super::job(results, row)),
-            axes: if value == 0.0 { String::new() } else { row_label(row) },
+            axes: words(row_label(row)),
         })
     };
     Column::measures().filter_map(card).collect()

@@ -35,9 +35,9 @@ fn bridge(study: &Study) -> String {
     let module = &design.module;
     let metres = |x: f64| number(x);
     format!(
-        "{}: {} modules of {} m, {} m wide, {} m deep; water {} kPa/m and {} kg/m",
+        "{}: {} of {} m, {} m wide, {} m deep; water {} kPa/m and {} kg/m",
         design.name,
-        design.modules,
+        labels::counted(design.modules, "module"),
         metres(module.length_m),
         metres(module.breadth_m),
         metres(module.depth_m),
@@ -79,8 +79,8 @@ fn vehicle(study: &Study) -> String {
         axles => {
             let behind: Vec<String> = axles.iter().map(|axle| number(axle.behind_front_m)).collect();
             format!(
-                "{} axles at {} m behind the front; {inertia}",
-                axles.len(),
+                "{} at {} m behind the front; {inertia}",
+                labels::counted(axles.len(), "axle"),
                 behind.join(", ")
             )
         }
