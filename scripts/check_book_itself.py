@@ -20,8 +20,8 @@ def block(info, body):
 CONNECTORS = """| column | unit | is |
 |---|---|---|
 | `job` |  | number of the job |
-| `joint` |  | number of the joint, from 2 |
-| `y_m` | m | place of the connector across; null of the joint's connectors added |
+| `joint` |  | number of the joint, from 2: joint k lies at position k |
+| `y_m` | m | place of the connector across; null in a joint's row, which adds its connectors |
 | `peak_compression_n` | N | largest compression |
 | `peak_compression_time_s` | s | its time |
 | `peak_tension_n` | N | largest tension |
