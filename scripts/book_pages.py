@@ -58,6 +58,12 @@ class Page:
         plain = (re.sub(r"[`*_]", "", heading).lower() for heading in HEADING.findall(self.prose))
         return {re.sub(r"[^\w\- ]", "", heading).strip().replace(" ", "-") for heading in plain}
 
+    def made(self):
+        """The paths that its blocks write or name, with the folders above them: they need not be in the repository."""
+        words = [word for block in self.blocks if block.language == "console" for word in block.body.split()]
+        words += [block.settings["file"] for block in self.blocks if "file" in block.settings]
+        return {part.as_posix() for word in words for part in (Path(word), *Path(word).parents)}
+
 
 def read_page(path, source):
     """The page of a file below the book's source."""
@@ -109,7 +115,7 @@ def faults_of_text(page, pages, source, root):
         for word in match[1].split():
             if word.startswith(ROOTS):
                 wrong = fault_of_path(word.rstrip(",;:."), root)
-                if wrong:
+                if wrong and Path(word).as_posix() not in page.made():
                     fault(match.start(), wrong)
     return faults
 

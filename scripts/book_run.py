@@ -5,7 +5,7 @@ Knows how each language is run. Does not know where pages come from.
 | block | how it is tried |
 |---|---|
 | `console` | lines that begin with `$ ` are run by bash, `\\` goes on; what follows is their standard output, or of a command that must fail (`exit=N`) its standard error. Spaces count as one. What moves from run to run (`MOVES`) matches whatever is of its kind; `within=0.01` lets numbers be off by that share; all else is equal. `head=12`, `tail=2` or `lines=3-9` say which lines of the last command's output are shown. Outside the guide `...` on a line of its own stands for any lines, within one for any text |
-| `json study`, `json bridge`, `json reference` | written to `file=PATH` where there is one, and refused or not by the program. `with=PATH`: the keys of the block in place of those of that file. `exit=2`: must be refused |
+| `json study`, `json bridge`, `json reference` | written to `file=PATH` where there is one, and refused or not by the program. `with=PATH`: the keys of the block in place of those of that file. `exit=2`: must be refused. `equals=PATH`: must hold what that file holds |
 | `json parameters` | written to `file=PATH`, for the commands below |
 | `python` | run in the page's one Python; `text output` right after it is what it prints |
 | `text` | not run |
@@ -307,6 +307,10 @@ class Sandbox:
             document = replaced(json.loads(base.read_text()), document)
         else:
             base = self.folder / {"bridge": "studies/bridges/x"}.get(kind, "studies/x/x")
+        if "equals" in block.settings:
+            kept = json.loads((self.folder / block.settings["equals"]).read_text())
+            if document != kept:
+                raise Mismatch(f"not what {block.settings['equals']} holds")
         name = f"block-{self.number}.json"
         path = self.folder / block.settings["file"] if "file" in block.settings else base.with_name(name)
         path.parent.mkdir(parents=True, exist_ok=True)

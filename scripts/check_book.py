@@ -9,7 +9,9 @@ Exit status 1 where something of the book is not so.
 """
 
 import argparse
+import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -44,9 +46,22 @@ def faults_of_pages(pages, source):
     for page in pages.values():
         faults += book_pages.faults_of_text(page, pages, source, ROOT)
         for block in page.blocks:
-            wrong = fault_of_block(block)
+            wrong = fault_of_block(block, page.prose)
             if wrong:
                 faults.append(f"{block.place}: {wrong}")
+    return faults + faults_of_names(pages)
+
+
+def faults_of_names(pages):
+    """Studies of one name that are not one study: their results would share a folder."""
+    faults, known = [], {}
+    for block in (block for page in pages.values() for block in page.blocks):
+        if block.language != "json" or "study" not in block.words or "exit" in block.settings:
+            continue
+        study = json.loads(block.body)
+        first, place = known.setdefault(study.get("name", block.place), (study, block.place))
+        if first != study:
+            faults.append(f"{block.place}: another study is called {study['name']} at {place}")
     return faults
 
 
@@ -104,13 +119,16 @@ def faults_of_patches(source):
     return faults
 
 
-def fault_of_block(block):
-    """What is wrong with how a block is marked; none where nothing is."""
+def fault_of_block(block, prose):
+    """What is wrong with how a block of a page of that prose is marked; none where nothing is."""
     if block.language not in book_run.LANGUAGES:
         return f"a block of '{block.language}', not of {', '.join(sorted(book_run.LANGUAGES))}"
     if "not-run" in block.settings and not block.settings["not-run"].strip():
         return "not run, without a reason"
     included = all(book_pages.INCLUDE.fullmatch(line.strip()) for line in block.raw.splitlines() if line.strip())
+    file = block.settings.get("file")
+    if file and not re.search(rf"`{re.escape(file)}`", prose):
+        return f"saved as {file}, which the text does not name in backticks"
     if block.language == "rust" and not included:
         return "Rust that is no part of a tested file: include it"
     shows = block.language == "console" or "output" in block.words

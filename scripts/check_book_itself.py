@@ -28,6 +28,8 @@ CONNECTORS = """| column | unit | is |
 | `peak_tension_time_s` | s | its time |
 """
 
+SMOKE = (Path(__file__).resolve().parent.parent / "studies/bridges/smoke.json").read_text()
+
 # what is tried, a page that is right, the same with its fault
 TRIALS = [
     ("output", block("console", "$ echo 1.25 m\n1.25 m"), block("console", "$ echo 1.25 m\n1.26 m")),
@@ -90,6 +92,27 @@ TRIALS = [
         "a bridge",
         block("json bridge with=studies/bridges/smoke.json", '{ "modules": 2 }'),
         block("json bridge with=studies/bridges/smoke.json", '{ "modules": 0 }'),
+    ),
+    (
+        "a copy of a file",
+        block("json bridge equals=studies/bridges/smoke.json", SMOKE),
+        block("json bridge equals=studies/bridges/smoke.json", SMOKE.replace('"modules": 3', '"modules": 2')),
+    ),
+    (
+        "a file that the text names",
+        "Save this as `a.json`:\n\n" + block("json parameters file=a.json", "{}"),
+        block("json parameters file=a.json", "{}"),
+    ),
+    (
+        "a path that a block makes",
+        "`studies/x`\n\n" + block("console", "$ mkdir studies/x"),
+        "`studies/x`\n\n" + block("console", "$ mkdir studies/y"),
+    ),
+    (
+        "studies of one name",
+        block("json study with=studies/smoke/study.json", '{ "name": "a" }') * 2,
+        block("json study with=studies/smoke/study.json", '{ "name": "a" }')
+        + block("json study with=studies/smoke/study.json", '{ "name": "a", "question": "?" }'),
     ),
     ("a reason", block('console not-run="no cluster"', "$ false"), block('console not-run=" "', "$ false")),
     ("a language", block("text", "x"), block("xyz", "x")),
