@@ -87,7 +87,7 @@ pub(crate) enum Command {
         after_help = "Examples:\n  pontoon modes studies/bridges/fu2005.json --count 20\n  pontoon modes studies/bridges/fu2005.json --module --count 6"
     )]
     Modes(ModesArguments),
-    /// Holds results against a reference file, or against older results job by job.
+    /// Compares results with a reference file, or with older results job by job.
     ///
     /// A line a check: what is expected, what was found, by how much it is off, how much was left, the verdict. Exit status
     /// 1 where a check falls short; one that matches no row, or failed jobs only, falls short too. Older results are
@@ -166,7 +166,7 @@ pub(crate) struct RunArguments {
     /// Jobs to be solved one by one into the journal of a folder that another process holds.
     #[arg(long, hide = true, value_parser = apart, value_name = "HASH:JOB,...")]
     pub apart: Option<(String, Vec<usize>)>,
-    /// Holds the results against a reference file (or the folder that holds reference.json) once they are there.
+    /// Compares the results with a reference file (or the folder that holds reference.json) once they are there.
     #[arg(long, value_name = "REFERENCE")]
     pub with: Option<PathBuf>,
 }
