@@ -246,6 +246,11 @@ impl Axis {
         }
     }
 
+    /// The name that its random numbers follow from: the same for all names of what it sets.
+    pub(super) fn drawn_by(&self) -> &str {
+        NamedAxis::of(&self.name).map_or(&self.name, |named| named.name)
+    }
+
     /// Whether it sets what an axis of another name would set.
     pub(super) fn sets_what(&self, name: &str) -> bool {
         place(&self.name) == place(name)

@@ -86,7 +86,8 @@ enum ValueSource<'a> {
     Zip(&'a [Values]),
     /// With the coordinates of the ranges.
     LatinHypercube(&'a [SampledAxis], Vec<LatinHypercubeAxis>),
-    Sobol(&'a [SampledAxis], SobolPoints),
+    /// With the dimension of each range, in the order of the axes.
+    Sobol(&'a [SampledAxis], Vec<usize>, SobolPoints),
     Cases(&'a [ValueColumn]),
 }
 
@@ -96,13 +97,14 @@ impl<'a> ValueSource<'a> {
             PointSource::Grid(values) => Self::Grid(values),
             PointSource::Zip(values) => Self::Zip(values),
             PointSource::LatinHypercube(RandomSample { count, seed, drawn }) => {
-                let ranges = axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
-                let strata = ranges.map(|(axis, _)| LatinHypercubeAxis::new(*count, *seed, &axis.name));
+                let names = names_of_ranges(axes, drawn);
+                let strata = names.iter().map(|name| LatinHypercubeAxis::new(*count, *seed, name));
                 Self::LatinHypercube(drawn, strata.collect())
             }
             PointSource::Sobol(RandomSample { seed, drawn, .. }) => {
-                let dimensions = drawn.iter().filter(|drawn| drawn.is_range()).count();
-                Self::Sobol(drawn, SobolPoints::new(dimensions, *seed))
+                let dimensions = dimensions(&names_of_ranges(axes, drawn));
+                let points = SobolPoints::new(dimensions.len(), *seed);
+                Self::Sobol(drawn, dimensions, points)
             }
             PointSource::Cases(columns, _) => Self::Cases(columns),
         }
@@ -130,13 +132,28 @@ impl<'a> ValueSource<'a> {
             Self::LatinHypercube(drawn, strata) => {
                 drawn_values(drawn, strata.iter_mut().map(|strata| strata.share(number)))
             }
-            Self::Sobol(drawn, points) => drawn_values(drawn, points.next()?.into_iter()),
+            Self::Sobol(drawn, dimensions, points) => {
+                let shares = points.next()?;
+                drawn_values(drawn, dimensions.iter().map(|&dimension| shares[dimension]))
+            }
             Self::Cases(columns) => {
                 let columns: &'a [ValueColumn] = columns;
                 Some(columns.iter().map(|column| column.at(number)).collect())
             }
         }
     }
+}
+
+/// The names that the random numbers of the ranges follow from, in the order of the axes.
+fn names_of_ranges<'a>(axes: &'a [Axis], drawn: &[SampledAxis]) -> Vec<&'a str> {
+    let ranges = axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
+    ranges.map(|(axis, _)| axis.drawn_by()).collect()
+}
+
+/// The dimension of each of some names: their place in the order of the alphabet, whatever the order of the file.
+fn dimensions(names: &[&str]) -> Vec<usize> {
+    let before = |name: &&str| names.iter().filter(|other| *other < name).count();
+    names.iter().map(before).collect()
 }
 
 impl SampledAxis {

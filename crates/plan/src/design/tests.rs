@@ -488,18 +488,36 @@ proptest! {
     #[test]
     fn the_axis_beside_another_does_not_change_it(count in 2_usize..50, seed: u64) {
         let found = |form: &str, ranges: Value| numbers(json!({form: {"count": count, "seed": seed, "ranges": ranges}}));
-        for form in ["latin_hypercube", "sobol"] {
+        // of a sequence, an axis that stands behind the other in the alphabet
+        for (form, beside) in [("latin_hypercube", "load_n"), ("sobol", "vehicle.footprint_length_m")] {
             let (alone, both) = (
                 found(form, json!({"speed_m_s": [2, 20]})),
-                found(form, json!({"speed_m_s": [2, 20], "load_n": [0, 9]})),
+                found(form, json!({"speed_m_s": [2, 20], beside: [0, 9]})),
             );
             prop_assert!(alone.iter().zip(&both).all(|(alone, both)| alone[0] == both[0]));
         }
-        let (first, last) = (
-            found("latin_hypercube", json!({"speed_m_s": [2, 20], "load_n": [0, 9]})),
-            found("latin_hypercube", json!({"load_n": [0, 9], "speed_m_s": [2, 20]})),
-        );
-        prop_assert!(first.iter().zip(&last).all(|(a, b)| a[0] == b[1] && a[1] == b[0]));
+    }
+
+    #[test]
+    fn the_order_of_ranges_does_not_change_the_points(count in 2_usize..50, seed: u64) {
+        for form in ["latin_hypercube", "sobol"] {
+            let found = |ranges: Value| numbers(json!({form: {"count": count, "seed": seed, "ranges": ranges}}));
+            let first = found(json!({"speed_m_s": [2, 20], "load_n": [0, 9], "connection": 1, "gap_tension_m": [0, 1]}));
+            let last = found(json!({"gap_tension_m": [0, 1], "load_n": [0, 9], "speed_m_s": [2, 20], "connection": 1}));
+            for (a, b) in first.iter().zip(&last) {
+                prop_assert_eq!([a[0], a[1], a[2], a[3]], [b[2], b[1], b[3], b[0]]);
+            }
+        }
+    }
+
+    #[test]
+    fn two_names_of_an_axis_draw_the_same_points(count in 2_usize..50, seed: u64) {
+        for form in ["latin_hypercube", "sobol"] {
+            let found = |gap: &str| {
+                numbers(json!({form: {"count": count, "seed": seed, "ranges": {gap: [0, 1], "load_n": [0, 9]}}}))
+            };
+            prop_assert_eq!(found("gap_tension_m"), found("bridge.connectors.gap_tension_m"));
+        }
     }
 
     #[test]
