@@ -2,9 +2,9 @@
 //!
 //! Knows designs as points. Does not know what the points lead to.
 
-use crate::summary::told;
 use pontoon_plan::input::Cell;
 use pontoon_plan::study_file::Study;
+use pontoon_results::labels;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -69,13 +69,13 @@ impl AxisSummary {
         let left = self.known.len() - first.len();
         match self.range {
             Some((from, to)) if left > 0 => {
-                let [from, to] = [from, to].map(|x| told(&Cell::written(x)));
-                return format!("{from} to {to}, {} values", self.known.len());
+                let ends = labels::listed_apart(&[from, to].map(Cell::written).each_ref());
+                return format!("{}, {} values", ends.join(" to "), self.known.len());
             }
             Some(_) => first.sort_by(|a, b| f64::total_cmp(&number(a), &number(b))),
             None => {}
         }
-        let first = first.iter().map(told).collect::<Vec<_>>().join(", ");
+        let first = labels::listed_apart(&first.iter().collect::<Vec<_>>()).join(", ");
         if left > 0 {
             format!("{first}, and {left} more")
         } else {

@@ -6,6 +6,7 @@
 use crate::registry::{Column, Digits};
 use pontoon_plan::design::NamedAxis;
 use pontoon_plan::input::Cell;
+use std::collections::{HashMap, HashSet};
 
 /// Suffixes of names with the units that they tell, the longer before the shorter.
 const UNITS: [(&str, &str); 16] = [
@@ -139,8 +140,51 @@ pub fn listed(name: &str, cell: &Cell<'_>) -> String {
     }
 }
 
+/// Values of an axis in a table of the terminal, a text each: what differs has as many more digits as it takes to read otherwise.
+pub fn listed_apart(cells: &[&Cell<'_>]) -> Vec<String> {
+    apart(cells, LISTED, |cell, digits| match cell {
+        Cell::Number(x) => number(*x, digits),
+        other => listed("", other),
+    })
+}
+
+/// Values of a column as people say them, a text each: what differs has as many more digits as it takes to read otherwise.
+pub fn values_apart(name: &str, cells: &[&Cell<'_>]) -> Vec<String> {
+    apart(cells, SHOWN, |cell, digits| value_to(name, cell, digits))
+}
+
+/// Significant digits that tell any two numbers apart.
+const ALL: usize = 17;
+
+/// A text for each of some values, from `digits` on with more of them where a text stands for two values.
+fn apart(cells: &[&Cell<'_>], digits: usize, text: impl Fn(&Cell<'_>, usize) -> String) -> Vec<String> {
+    let mut texts: Vec<String> = cells.iter().map(|cell| text(cell, digits)).collect();
+    for more in digits + 1..=ALL {
+        let mut first: HashMap<&str, &Cell<'_>> = HashMap::new();
+        let mut several: HashSet<String> = HashSet::new();
+        for (text, cell) in texts.iter().zip(cells) {
+            if *first.entry(text).or_insert(cell) != *cell {
+                several.insert(text.clone());
+            }
+        }
+        if several.is_empty() {
+            break;
+        }
+        for (written, cell) in texts.iter_mut().zip(cells) {
+            if several.contains(written.as_str()) {
+                *written = text(cell, more);
+            }
+        }
+    }
+    texts
+}
+
 /// A value of a column as people say it: `0.028` of `gap_tension_m` is "28 mm", `230300` of `load_n` "230.3 kN".
 pub fn value(name: &str, cell: &Cell<'_>) -> String {
+    value_to(name, cell, SHOWN)
+}
+
+fn value_to(name: &str, cell: &Cell<'_>, digits: usize) -> String {
     let Some(x) = cell.number() else {
         return match cell {
             Cell::Nothing => "-".to_owned(),
@@ -153,7 +197,7 @@ pub fn value(name: &str, cell: &Cell<'_>) -> String {
         unit => (x, unit),
     };
     let space = if unit.is_empty() { "" } else { " " };
-    format!("{}{space}{unit}", number(x, SHOWN))
+    format!("{}{space}{unit}", number(x, digits))
 }
 
 /// A word that keeps to its line: a blank for whatever is no character to be seen.
@@ -218,6 +262,29 @@ mod tests {
         assert_eq!(
             [0, 1, 2].map(|n| counted(n, "thread")),
             ["0 threads", "1 thread", "2 threads"]
+        );
+    }
+
+    #[test]
+    fn what_differs_reads_otherwise() {
+        let below = Cell::Number(0.1 - 1.4e-17);
+        let cells = [
+            Cell::Whole(5),
+            Cell::Number(5.000_000_000_000_001),
+            Cell::Number(5.0),
+            Cell::Number(1.0 / 3.0),
+        ];
+        assert_eq!(
+            listed_apart(&cells.each_ref()),
+            ["5", "5.000000000000001", "5", "0.333333"]
+        );
+        let cells = [Cell::Number(0.1), below, Cell::Nothing, Cell::from("a")];
+        assert_eq!(listed_apart(&cells.each_ref())[2..], ["-", "a"]);
+        assert_ne!(listed_apart(&cells.each_ref())[0], listed_apart(&cells.each_ref())[1]);
+        let cells = [Cell::Number(230_300.4), Cell::Number(230_300.3), Cell::Number(5e3)];
+        assert_eq!(
+            values_apart("load_n", &cells.each_ref()),
+            ["230.3004 kN", "230.3003 kN", "5 kN"]
         );
     }
 

@@ -28,6 +28,21 @@ fn bad(design: Value, key: &str, found: &str, allowed: &str) {
 }
 
 #[test]
+fn numbers_that_are_two_jobs_are_two_for_conditions_and_read_otherwise() {
+    let generated = json!({ "grid": { "speed_m_s": { "linspace": [0.1, 0.4, 4] }, "load_n": 1e5 } });
+    let written = json!({ "grid": { "speed_m_s": [0.1, 0.2, 0.3, 0.4], "load_n": 1e5 } });
+    assert_eq!(plan(json!([generated, written]))["jobs"], 4);
+    let close =
+        json!({ "cases": [{ "speed_m_s": 5, "load_n": 1e5 }, { "speed_m_s": 5.000000000000001, "load_n": 1e5 }] });
+    let output = stage(json!([close])).write().pontoon(&["plan", "study.json"]);
+    let text = stdout(&output);
+    assert!(text.contains("  speed_m_s       5, 5.000000000000001\n"), "{text}");
+    let mut left = close;
+    left["where"] = json!({ "speed_m_s": 5 });
+    assert_eq!(plan(json!([left]))["jobs"], 1);
+}
+
+#[test]
 fn every_form_is_planned_with_its_points_and_its_jobs() {
     let ranges = json!({ "connection": "nonlinear", "gap_tension_m": [0, 0.03], "gap_compression_m": [0, 0.01],
                          "speed_m_s": [5, 15], "load_n": 1e5 });

@@ -31,8 +31,13 @@ impl ColumnHead {
 
     /// A value with its name and unit: "tension gap 0.028 m".
     pub(super) fn told(&self, value: &Cell<'_>) -> String {
+        self.told_as(&axis(value))
+    }
+
+    /// A value that is written already, with its name and unit.
+    pub(super) fn told_as(&self, value: &str) -> String {
         let unit = self.unit.map_or(String::new(), |unit| format!(" {unit}"));
-        format!("{} {}{unit}", self.name, axis(value))
+        format!("{} {value}{unit}", self.name)
     }
 }
 

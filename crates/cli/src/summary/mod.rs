@@ -19,7 +19,6 @@ mod tests;
 mod text_table;
 
 use crate::terminal::TextStyle;
-pub(crate) use label::axis as told;
 use survey::SummaryRow;
 
 /// Characters of a line where the place does not say how many it has.

@@ -2,7 +2,7 @@
 //!
 //! Knows how modes of one name are told apart. Does not know where rows come from.
 
-use super::label::{ColumnHead, axis, heads};
+use super::label::{ColumnHead, heads};
 use super::survey::SummaryRow;
 use super::text_table::{RowNames, TableEntry, TextTable};
 use crate::terminal::{FAINT, TextStyle};
@@ -111,6 +111,8 @@ pub(super) fn modes<'a>(
 fn grid(jobs: &[OfJob<'_>], shapes: &[&ShapeName], varying: &[usize], heads: &[ColumnHead]) -> TextTable {
     let or_blank = |names: Vec<String>| if names.is_empty() { vec![String::new()] } else { names };
     let names: Vec<String> = shapes.iter().map(|(name, _)| name.clone()).collect();
+    let texts = |&i: &usize| labels::listed_apart(&jobs.iter().map(|job| &job.axes[i]).collect::<Vec<_>>());
+    let texts: Vec<Vec<String>> = varying.iter().map(texts).collect();
     TextTable {
         gap: 2,
         names: vec![RowNames {
@@ -118,9 +120,8 @@ fn grid(jobs: &[OfJob<'_>], shapes: &[&ShapeName], varying: &[usize], heads: &[C
             rows: names.clone(),
             told: names,
         }],
-        heads: jobs
-            .iter()
-            .map(|job| or_blank(varying.iter().map(|&i| axis(&job.axes[i])).collect()))
+        heads: (0..jobs.len())
+            .map(|job| or_blank(texts.iter().map(|of_axis| of_axis[job].clone()).collect()))
             .collect(),
         rows: shapes
             .iter()

@@ -3,7 +3,7 @@
 //!
 //! Knows how many rows a person looks at. Does not know where rows come from.
 
-use super::label::{ColumnHead, axis, heads};
+use super::label::{ColumnHead, heads};
 use super::survey::{SummaryRow, Survey, SurveyAxis, hash, peaks_among};
 use super::text_table::{RowNames, TableEntry, TextTable};
 use crate::terminal::{BAD, FAINT, NOTABLE, TextStyle};
@@ -67,17 +67,16 @@ fn names(axes: &[usize], heads: &[ColumnHead], rows: &[SummaryRow<'_>]) -> Vec<R
     let column = |&i: &usize| {
         let head = &heads[i];
         let words = head.name.split(' ').map(str::to_owned);
-        let told = |row: &SummaryRow<'_>| {
-            if row[i].is_nothing() {
-                String::new()
-            } else {
-                head.told(&row[i])
-            }
+        let values: Vec<&Cell<'_>> = rows.iter().map(|row| &row[i]).collect();
+        let texts = labels::listed_apart(&values);
+        let told = |(value, text): (&&Cell<'_>, &String)| match value.is_nothing() {
+            true => String::new(),
+            false => head.told_as(text),
         };
         RowNames {
             head: words.chain(head.unit.map(|unit| format!("[{unit}]"))).collect(),
-            rows: rows.iter().map(|row| axis(&row[i])).collect(),
-            told: rows.iter().map(told).collect(),
+            told: values.iter().zip(&texts).map(told).collect(),
+            rows: texts,
         }
     };
     axes.iter().map(column).collect()
@@ -121,7 +120,10 @@ fn against<'a, I: Iterator<Item = SummaryRow<'a>>>(
     };
     let values = &along.values;
     let mut grid = TextTable {
-        heads: values.iter().map(|value| vec![axis(value) + " "]).collect(),
+        heads: labels::listed_apart(&values.iter().collect::<Vec<_>>())
+            .into_iter()
+            .map(|text| vec![text + " "])
+            .collect(),
         gap: 1,
         ..TextTable::default()
     };
@@ -254,7 +256,7 @@ fn largest(
             let at = axes
                 .iter()
                 .filter(|&&i| largest.most > 0.0 && !largest.row[i].is_nothing())
-                .map(|&i| heads[i].told(&largest.row[i]));
+                .map(|&i| heads[i].told_as(&text_of(survey, i, &largest.row[i])));
             let value = format!(
                 "{} {}",
                 labels::digits(name, largest.most),
@@ -276,6 +278,15 @@ fn largest(
         listed(&begin, at.iter(), width, indent).replacen(most.as_str(), &text_style.painted(NOTABLE, most), 1)
     };
     format!("\n{}", parts.iter().map(line).collect::<String>())
+}
+
+/// The value of an axis at a largest peak, beside the values that it is read with: those looked along, or at the other peaks.
+fn text_of(survey: &Survey<'_>, axis: usize, value: &Cell<'_>) -> String {
+    let along = survey.along.as_ref().filter(|along| along.axis == axis);
+    let others = survey.largest.iter().map(|largest| &largest.row[axis]);
+    let beside = along.into_iter().flat_map(|along| &along.values).chain(others);
+    let cells: Vec<&Cell<'_>> = std::iter::once(value).chain(beside).collect();
+    labels::listed_apart(&cells).swap_remove(0)
 }
 
 /// Whether the peak of a row is the largest, above nothing and not the only one.

@@ -3,7 +3,7 @@
 //! Knows how conditions are written and when the values of a point meet them. Does not know how points are made.
 
 use super::axes::Axis;
-use crate::input::filter::{Allowed, NoFilter, entries, same};
+use crate::input::filter::{Allowed, NoFilter, entries};
 use crate::input::{Cell, Refusal};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer};
@@ -50,13 +50,13 @@ impl Relation {
         }
     }
 
-    /// Whether `a` stands to `b` so; numbers that differ in their last bits alone are equal.
+    /// Whether `a` stands to `b` so. Equal is what is one job.
     pub fn holds(self, a: f64, b: f64) -> bool {
         match self {
-            Self::AtLeast => a > b || same(a, b),
-            Self::AtMost => a < b || same(a, b),
-            Self::Above => a > b && !same(a, b),
-            Self::Below => a < b && !same(a, b),
+            Self::AtLeast => a >= b,
+            Self::AtMost => a <= b,
+            Self::Above => a > b,
+            Self::Below => a < b,
         }
     }
 }
@@ -150,7 +150,7 @@ impl Test {
         let value = |axis: Option<usize>| axis.map_or(&Cell::Nothing, |axis| &values[axis]);
         let own = value(self.axis);
         let stands = |&(relation, other): &(Relation, Option<usize>)| matches!((own.number(), value(other).number()), (Some(a), Some(b)) if relation.holds(a, b));
-        self.allowed.as_ref().is_none_or(|allowed| allowed.allows(own)) && self.compared.iter().all(stands)
+        self.allowed.as_ref().is_none_or(|allowed| allowed.allows_exactly(own)) && self.compared.iter().all(stands)
     }
 }
 
@@ -237,19 +237,25 @@ mod tests {
     }
 
     #[test]
-    fn relations_take_numbers_that_differ_in_their_last_bits_for_equal() {
-        let (a, b) = (0.1 + 0.2, 0.3);
-        assert_ne!(a, b);
+    fn relations_take_for_equal_what_is_one_job() {
         for (relation, less, equal, more) in [
             (Relation::AtLeast, false, true, true),
             (Relation::AtMost, true, true, false),
             (Relation::Above, false, false, true),
             (Relation::Below, true, false, false),
         ] {
-            assert_eq!(relation.holds(0.2, b), less, "{relation:?}");
-            assert_eq!(relation.holds(a, b), equal, "{relation:?}");
-            assert_eq!(relation.holds(b, a), equal, "{relation:?}");
-            assert_eq!(relation.holds(0.4, b), more, "{relation:?}");
+            for (a, expected) in [(0.2, less), (0.3, equal), (0.1 + 0.2, more), (0.4, more)] {
+                assert_eq!(relation.holds(a, 0.3), expected, "{relation:?} {a}");
+            }
+        }
+        let Conditions(conditions) = read(json!({"a": 0.3, "b": {"to": 0.3}})).unwrap();
+        for (_, condition) in conditions {
+            let test = Test {
+                axis: Some(0),
+                allowed: condition.allowed,
+                compared: Vec::new(),
+            };
+            assert!(test.met(&[Cell::Number(0.3)]) && !test.met(&[Cell::Number(0.1 + 0.2)]));
         }
     }
 }

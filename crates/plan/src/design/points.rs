@@ -6,7 +6,7 @@ use super::axes::Axis;
 use super::column::ValueColumn;
 use super::condition::Test;
 use super::sampling::{LatinHypercubeAxis, SobolPoints};
-use super::values::Values;
+use super::values::{Values, rounded};
 use crate::input::Cell;
 use std::sync::Arc;
 
@@ -167,7 +167,7 @@ fn drawn_values<'a>(drawn: &'a [SampledAxis], mut shares: impl Iterator<Item = f
     let value = |drawn: &'a SampledAxis| match drawn {
         SampledAxis::Constant(value) => Some(value.borrowed()),
         SampledAxis::Range(from, to) => {
-            let x = from + (to - from) * shares.next()?;
+            let x = rounded(from + (to - from) * shares.next()?);
             Some(Cell::written(x.clamp(*from, *to)))
         }
     };

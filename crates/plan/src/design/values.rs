@@ -1,6 +1,6 @@
 //! The values of an axis as they are written: a list, one value, an evenly spaced range.
 //!
-//! Knows the forms and that ranges hold both ends exactly. Does not know what an axis may be called.
+//! Knows the forms, that ranges hold both ends exactly, and how many digits a computed value has. Does not know what an axis may be called.
 
 use super::column::ValueColumn;
 use crate::input::{Cell, FoundValue, Refusal};
@@ -84,12 +84,18 @@ impl Values {
                 Cell::written(match place {
                     0 => from,
                     place if place == last => to,
-                    _ if geometric => from * (to / from).powf(s),
-                    _ => from + (to - from) * s,
+                    _ if geometric => rounded(from * (to / from).powf(s)),
+                    _ => rounded(from + (to - from) * s),
                 })
             }
         }
     }
+}
+
+/// A computed value to 15 significant digits, which every decimal of so many digits survives: the third of `[0, 0.3, 4]` is
+/// the number that a person writes as 0.2.
+pub(super) fn rounded(x: f64) -> f64 {
+    format!("{x:.14e}").parse().unwrap_or(x)
 }
 
 /// The range of `[from, to, count]`.
@@ -150,6 +156,20 @@ mod tests {
             assert!((pair[1] / pair[0] - 10.0).abs() < 1e-12, "{ratio:?}");
         }
         assert_eq!(values(json!({"linspace": [3, 1, 3]})), [3.0, 2.0, 1.0]);
+    }
+
+    #[test]
+    fn values_of_a_range_are_the_numbers_that_a_person_writes() {
+        assert_eq!(values(json!({"linspace": [0, 0.3, 4]})), [0.0, 0.1, 0.2, 0.3]);
+        assert_eq!(
+            values(json!({"linspace": [0, 1, 11]})),
+            [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+        );
+        assert_eq!(
+            values(json!({"geomspace": [0.001, 10, 5]})),
+            [0.001, 0.01, 0.1, 1.0, 10.0]
+        );
+        assert_eq!(values(json!({"linspace": [1e-300, 3e-300, 3]}))[1], 2e-300);
     }
 
     #[test]

@@ -24,9 +24,9 @@ pub enum Allowed {
     Range(Option<f64>, Option<f64>),
 }
 
-/// Numbers closer than this share of each other are the same: decimals of a file and points of a range differ in their
-/// last bits.
-const SAME_NUMBER: f64 = 1e-9;
+/// A number of a file means those of a table that are closer to it than this share of them: a table holds numbers that were
+/// computed, as the place of a position is, whose last digits nobody writes.
+const MEANT: f64 = 1e-9;
 
 impl Allowed {
     /// One value.
@@ -34,8 +34,17 @@ impl Allowed {
         Self::OneOf(vec![value.owned()])
     }
 
-    /// Whether a cell is meant.
+    /// Whether a cell of a table is meant, whose number may differ from a written one in its last digits.
     pub fn allows(&self, cell: &Cell<'_>) -> bool {
+        self.allows_where(cell, |a, b| (a - b).abs() <= MEANT * a.abs().max(b.abs()))
+    }
+
+    /// Whether the value of an axis is meant: numbers are equal where their jobs are one.
+    pub fn allows_exactly(&self, cell: &Cell<'_>) -> bool {
+        self.allows_where(cell, |a, b| a == b)
+    }
+
+    fn allows_where(&self, cell: &Cell<'_>, same: fn(f64, f64) -> bool) -> bool {
         match (self, cell.number()) {
             (Self::OneOf(values), Some(x)) => values.iter().filter_map(Cell::number).any(|v| same(v, x)),
             (Self::OneOf(values), None) => values.contains(cell),
@@ -152,11 +161,6 @@ impl NoFilter {
             Self::NotAllowed { found, allowed } => E::invalid_value(Unexpected::Other(&found), &allowed.as_str()),
         }
     }
-}
-
-/// Whether two numbers are the same but for their last bits.
-pub fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs())
 }
 
 impl Filter {

@@ -6,7 +6,8 @@ use super::figure::{FigurePanel, MomentKind};
 use super::figure_context::{FigureContext, listed};
 use super::series_group::SeriesGroup;
 use crate::thinning::spread;
-use pontoon_results::labels::{self, SHOWN};
+use pontoon_plan::input::Cell;
+use pontoon_results::labels;
 use std::collections::BTreeMap;
 
 /// Panels of a figure.
@@ -54,12 +55,12 @@ pub(super) fn by_speed(
     let chosen = spread(speeds.len(), MOST_PANELS);
     let left_out = (chosen.len() < speeds.len())
         .then(|| format!("{name}: {} of {} speeds", speeds.len() - chosen.len(), speeds.len()));
+    let cells: Vec<Cell<'_>> = speeds.iter().map(|(speed_m_s, _)| (*speed_m_s).into()).collect();
+    let titles = labels::values_apart("speed_m_s", &cells.iter().collect::<Vec<_>>());
     let mut splits: Vec<Option<Split>> = speeds
         .into_iter()
-        .map(|(speed_m_s, lines)| {
-            let title = format!("{} m/s", labels::number(speed_m_s, SHOWN));
-            Some(Split { title, lines })
-        })
+        .zip(titles)
+        .map(|((_, lines), title)| Some(Split { title, lines }))
         .collect();
     let single = chosen.len() == 1;
     let mut split = |i: usize| {

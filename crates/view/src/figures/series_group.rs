@@ -186,8 +186,10 @@ fn series_group(
         let left = values.len() - chosen.len();
         format!("by {}: {left} of {} values", labels::label(by), values.len())
     });
+    let cells: Vec<Cell<'_>> = chosen.iter().map(|&place| context.cell(by, values[place][0])).collect();
+    let mut texts = labels::values_apart(by, &cells.iter().collect::<Vec<_>>());
     lines.extend(chosen.into_iter().enumerate().map(|(i, place)| GroupedLine {
-        label: labels::value(by, &context.cell(by, values[place][0])),
+        label: std::mem::take(&mut texts[i]),
         style: i + 1,
         rows: std::mem::take(&mut values[place]),
     }));
