@@ -232,6 +232,36 @@ fn a_job_beyond_the_step_limit_fails_without_running() {
     }
 }
 
+/// A time step that the program finds is halved no further than the limit allows.
+#[test]
+fn the_step_limit_holds_for_each_time_step_that_is_tried() {
+    let mut stage = sweep(2, 0.05);
+    stage.study["analysis"]["time_step_s"] = json!("auto");
+    finish(&stage, "whole");
+    let steps: Vec<f64> = stage
+        .numbers("whole/jobs.parquet", "steps")
+        .into_iter()
+        .flatten()
+        .collect();
+    let (least, most) = steps
+        .iter()
+        .fold((f64::MAX, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
+    assert!(least < most);
+    stage.study["analysis"]["step_limit"] = json!(most as u64 - 1);
+    stage.write();
+    let output = run(&stage, "r", &[]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    let failed = format!(" s: {most} time steps, the limit is {}", most - 1.0);
+    assert!(
+        told.contains("failed: at a time step of 0.0") && told.contains(&failed),
+        "{told}"
+    );
+    for (found, steps) in stage.numbers("r/jobs.parquet", "steps").iter().zip(&steps) {
+        assert_eq!(*found, Some(*steps).filter(|steps| *steps < most));
+    }
+}
+
 #[test]
 fn a_job_that_half_the_step_helps_says_so() {
     let mut stage = sweep(4, 0.05);

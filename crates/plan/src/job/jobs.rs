@@ -4,16 +4,13 @@
 
 use super::documents::{BridgeEntry, Documents, VehicleEntry};
 use super::seen::SeenJobs;
-use super::{Job, StandingLoad, Task};
+use super::{Job, MOST_STEPS, StandingLoad, Task};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study, check_histories};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::InvalidInput;
 use std::collections::HashSet;
-
-/// Most time steps of one crossing.
-const MOST_STEPS: f64 = 1e7;
 
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
 pub struct Jobs<'a> {
@@ -224,16 +221,32 @@ impl Short<'_> {
         if step > passage {
             let [most, speed] = [passage, speed_m_s].map(Cell::written);
             let allowed = format!("above 0 and at most {most}, the passage of one module at {speed} m/s");
-            return refuse(step.into(), allowed);
+            return refuse(self.time_step_found(analysis, None), allowed);
         }
         let vehicle = &vehicle.vehicle;
         let way = bridge.design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
         let steps = (way / speed_m_s + analysis.tail_s) / step;
-        if steps > MOST_STEPS {
-            let found = FoundValue::from(step).which(format!("which makes {steps:.1e} steps"));
+        if steps > MOST_STEPS as f64 {
+            let found = self.time_step_found(analysis, Some(format!("makes {steps:.1e} steps")));
             return refuse(found, format!("a crossing of at most {MOST_STEPS} steps"));
         }
         Ok(())
+    }
+
+    /// The time step as the study writes it, and what it makes.
+    fn time_step_found(&self, analysis: &CrossingAnalysis, makes: Option<String>) -> FoundValue {
+        let (step, path) = (analysis.time_step.seconds(), "analysis.time_step_s");
+        let and_makes = makes.iter().map(|makes| format!(" and {makes}")).collect::<String>();
+        if analysis.time_step.tolerance().is_some() {
+            return FoundValue::value("auto").which(format!("which begins with {step} s{and_makes}"));
+        }
+        if self.study.analysis_written.time_step_s.is_none() && self.path_or(path) == path {
+            return format!("none, which stands for {step} s{and_makes}").into();
+        }
+        match makes {
+            Some(makes) => FoundValue::from(step).which(format!("which {makes}")),
+            None => step.into(),
+        }
     }
 
     /// Refuses damping at the bending modes of a bridge that has none.

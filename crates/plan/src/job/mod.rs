@@ -86,16 +86,48 @@ pub struct CrossingJob<'a> {
     pub speed_m_s: f64,
 }
 
+/// Time steps beyond which no crossing runs, whatever its study allows.
+const MOST_STEPS: usize = 10_000_000;
+
+/// A crossing of more time steps than it may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooManySteps {
+    /// How many it would take.
+    pub steps: usize,
+    /// How many it may take.
+    pub limit: usize,
+}
+
 impl<'a> CrossingJob<'a> {
-    /// Time steps, bisected ones apart.
+    /// Time steps at its stated step, at the coarsest of its own; bisected ones apart.
     pub fn steps(&self) -> usize {
+        self.steps_of(self.analysis.time_step.seconds())
+    }
+
+    /// Time steps of so many seconds, bisected ones apart.
+    fn steps_of(&self, time_step_s: f64) -> usize {
         CrossingSolver::steps(
             self.job.bridge.design.length_m(),
             &self.job.vehicle.vehicle,
-            self.analysis.time_step.seconds(),
+            time_step_s,
             self.speed_m_s,
             self.analysis.tail_s,
         )
+    }
+
+    /// Whether it may be run at a time step `[s]`.
+    ///
+    /// # Errors
+    /// [`TooManySteps`] beyond the limit of its study.
+    pub fn check_steps(&self, time_step_s: f64) -> Result<(), TooManySteps> {
+        let (steps, limit) = (
+            self.steps_of(time_step_s),
+            self.analysis.step_limit.unwrap_or(MOST_STEPS),
+        );
+        if steps > limit {
+            return Err(TooManySteps { steps, limit });
+        }
+        Ok(())
     }
 
     /// What a solver is given, of which a record is kept.

@@ -291,6 +291,35 @@ mod tests {
     }
 
     #[test]
+    fn a_time_step_beyond_a_module_is_told_as_it_was_typed() {
+        for (more, path, found) in [
+            (
+                json!({ "analysis.time_step_s": "auto", "speed_m_s": 400 }),
+                "design[0].cases[0].analysis.time_step_s",
+                "\"auto\", which begins with 0.02 s",
+            ),
+            (
+                json!({ "analysis.time_step_s": 0.03, "speed_m_s": 400 }),
+                "design[0].cases[0].analysis.time_step_s",
+                "0.03",
+            ),
+            (
+                json!({ "speed_m_s": 700 }),
+                "analysis.time_step_s",
+                "none, which stands for 0.01 s",
+            ),
+            (
+                json!({ "speed_m_s": 1e-5, "analysis.tail_s": 0 }),
+                "analysis.time_step_s",
+                "none, which stands for 0.01 s and makes 2.3e8 steps",
+            ),
+        ] {
+            let refused = jobs(json!([{ "cases": [case(more)] }])).unwrap_err();
+            assert_eq!((refused.path.as_str(), refused.found.text().as_str()), (path, found));
+        }
+    }
+
+    #[test]
     fn a_vehicle_is_checked_on_every_deck() {
         let on = |breadth_m: f64| {
             let more = json!({ "bridge.module.breadth_m": breadth_m, "vehicle.track_y_m": [-4.4, 4.4] });

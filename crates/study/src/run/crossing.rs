@@ -3,7 +3,8 @@
 //! Knows which number of a response fills which field of a record, and when a time step has been halved enough. Does not know
 //! columns, or how a crossing is stepped.
 
-use super::failure::JobFailure;
+use super::failure::{JobFailure, too_many_steps};
+use super::retry::RETRY_STEP_SHARE;
 use super::shared_models::SharedModels;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
@@ -29,6 +30,11 @@ pub(super) fn again_at_half_step(
     models: &SharedModels,
     failed: &JobFailure,
 ) -> JobResult {
+    let half = crossing.analysis.time_step.seconds() * RETRY_STEP_SHARE;
+    crossing.check_steps(half).map_err(|beyond| {
+        let behind = format!("; at half the time step: {}", too_many_steps(beyond).text);
+        JobFailure::from(failed.failure.clone().said("", &behind))
+    })?;
     let (vehicle, input) = (crossing.vehicle(), crossing.input(record));
     let again = if crossing.operator_tolerance().is_some() {
         let mut answers = models.operated(crossing)?.solve_all(&[(vehicle, &input)], 1);
@@ -64,7 +70,13 @@ pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models:
         .map(|((crossing, _), input)| (crossing.vehicle(), input))
         .collect();
     let answers = match first.analysis.time_step.tolerance() {
-        Some(tolerance) => refined(&solver, &asked, tolerance),
+        Some(tolerance) => {
+            let may_run = |place: usize, time_step_s: f64| {
+                let (crossing, _) = &lane_batch[place];
+                crossing.check_steps(time_step_s).map_err(too_many_steps)
+            };
+            refined(&solver, &asked, tolerance, may_run)
+        }
         None => {
             let plain = |answer: Result<CrossingResponse, AnalysisError>| Ok((answer?, None));
             solver.solve_all(&asked, 0).into_iter().map(plain).collect()
@@ -84,17 +96,27 @@ type SteppedResponse = (CrossingResponse, Option<f64>);
 
 /// Solves crossings at half the time step again and again, each until its peak force has settled: the last halving changed
 /// it by no more than half the tolerance and the one before by no more than the tolerance. One small change alone may be
-/// chance where contacts decide.
+/// chance where contacts decide. One that may not run at a time step has no finer one.
 fn refined(
     solver: &OperatorSolver,
     asked: &[(&Vehicle, &Crossing)],
     tolerance: f64,
+    may_run: impl Fn(usize, f64) -> Result<(), Failure>,
 ) -> Vec<Result<SteppedResponse, JobFailure>> {
     let mut answers: Vec<Option<Result<SteppedResponse, JobFailure>>> = vec![None; asked.len()];
     // peak force at the last step and by how much it had changed there
     let mut before = vec![(f64::NAN, f64::NAN); asked.len()];
     let mut open: Vec<usize> = (0..asked.len()).collect();
     for refinement in 0..=REFINEMENTS {
+        let h = solver.time_step_s(refinement);
+        open.retain(|&place| {
+            let may = may_run(place, h);
+            let beyond = may
+                .err()
+                .map(|failure| failure.said(&format!("at a time step of {h} s: "), ""));
+            answers[place] = beyond.map(|failure| Err(failure.into()));
+            answers[place].is_none()
+        });
         let list: Vec<_> = open.iter().map(|&i| asked[i]).collect();
         let solved = solver.solve_all(&list, refinement);
         let mut next = Vec::new();
@@ -114,7 +136,7 @@ fn refined(
                     continue;
                 }
             };
-            let (peak, h) = (peak_force_n(&response), solver.time_step_s(refinement));
+            let peak = peak_force_n(&response);
             let (last, last_change) = before[place];
             let change = (peak - last).abs();
             if change <= 0.5 * tolerance * peak && last_change <= tolerance * peak {

@@ -8,6 +8,7 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::bridge::BridgeError;
 use pontoon_core::fem::FemError;
 use pontoon_core::operator::OperatorError;
+use pontoon_plan::job::TooManySteps;
 use pontoon_results::{Failure, FailureKind};
 
 /// Why a job gave no record.
@@ -72,6 +73,14 @@ impl From<FemError> for JobFailure {
     fn from(error: FemError) -> Self {
         Self::not_prepared(&error)
     }
+}
+
+/// The failure of a crossing that may not take so many steps.
+pub(super) fn too_many_steps(TooManySteps { steps, limit }: TooManySteps) -> Failure {
+    let text = format!("{steps} time steps, the limit is {limit}");
+    Failure::new(FailureKind::TooManySteps, text)
+        .with("steps", steps as f64)
+        .with("limit", limit as f64)
 }
 
 /// An error of the mechanics with its numbers.

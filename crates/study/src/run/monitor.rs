@@ -10,7 +10,7 @@ use super::progress::{Progress, Tally};
 use super::resume_index::ResumeIndex;
 use pontoon_journal::{JournalError, fault};
 use pontoon_plan::job::Job;
-use pontoon_results::{Failure, FailureKind, JobRecord, Preparation};
+use pontoon_results::{Failure, JobRecord, Preparation};
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -121,12 +121,8 @@ impl<'a> Monitor<'a> {
     pub(super) fn passes_over(&self, job: &Job) -> Option<Failure> {
         let too_long = || {
             let crossing = job.as_crossing()?;
-            let (steps, limit) = (crossing.steps(), crossing.analysis.step_limit?);
-            let text = format!("{steps} time steps, the limit is {limit}");
-            (steps > limit).then(|| {
-                let failure = Failure::new(FailureKind::TooManySteps, text);
-                failure.with("steps", steps as f64).with("limit", limit as f64)
-            })
+            let checked = crossing.check_steps(crossing.analysis.time_step.seconds());
+            checked.err().map(super::failure::too_many_steps)
         };
         self.passed_over.get(&job.number).cloned().or_else(too_long)
     }
