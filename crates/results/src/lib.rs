@@ -40,7 +40,7 @@ mod writer;
 
 pub use arrays::CellKind;
 pub use failure::{Failure, FailureKind};
-pub use files::{OwnFiles, PAGE};
+pub use files::{OwnFiles, PAGE, replaceable};
 pub use manifest::{Manifest, SessionNote, check_own};
 pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};

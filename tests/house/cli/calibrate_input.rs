@@ -331,8 +331,25 @@ fn bridges_that_cannot_be_written_are_not_written_by_halves() {
         stderr(&output)
     );
     for out in ["modes", ".."] {
-        is_refused(&quiet(out), &["found a folder, allowed: the name of a bridge file"]);
+        is_refused(
+            &quiet(out),
+            &["found a folder, allowed: a new file, or a bridge of `pontoon calibrate`"],
+        );
     }
+    // what somebody wrote is nothing to write over
+    fs::write(stage.path("notes.txt"), "mine").unwrap();
+    for out in ["notes.txt", "modes.json", "parameters.json"] {
+        let bytes = fs::read(stage.path(out)).unwrap();
+        is_refused(
+            &quiet(out),
+            &[
+                out,
+                "found another file, allowed: a new file, or a bridge of `pontoon calibrate`",
+            ],
+        );
+        assert_eq!(fs::read(stage.path(out)).unwrap(), bytes, "{out}");
+    }
+    fs::remove_file(stage.path("notes.txt")).unwrap();
     let names = stage.names();
     let more: Vec<&String> = names.iter().filter(|name| !before.contains(name)).collect();
     assert_eq!(more, ["parameters.json"]);

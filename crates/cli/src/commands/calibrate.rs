@@ -10,8 +10,9 @@ use pontoon_judge::reference::Reference;
 use pontoon_plan::input::{Cell, Refusal, pretty};
 use pontoon_plan::study_file::read_bridge;
 use pontoon_results::labels;
-use serde_json::json;
-use std::path::Path;
+use pontoon_results::replaceable;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 /// Fits, writes the bridge and says what was found.
 pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<ExitStatus> {
@@ -22,7 +23,7 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
         .map(|path| Reference::open(path))
         .collect::<Result<Vec<_>, _>>()?;
     let parameters = Parameters::open(&arguments.parameters)?;
-    check_out(&arguments.out, &arguments.bridge)?;
+    let out = file_of(&arguments.out, &arguments.bridge)?;
     let told = |candidates: usize, least: f64| {
         if !common.quiet {
             text::note(&format!(
@@ -32,9 +33,11 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
         }
     };
     let task = CalibrationTask::new(&bridge, &references, &parameters, &told)?;
-    let (folder, name) = place(&arguments.out)?;
+    let (folder, name) = place(&out)?;
     let found = task.fit(arguments.threads.map_or(0, usize::from))?;
     let written = pretty(&found.bridge);
+    // what may have come there in the meantime
+    file_of(&arguments.out, &arguments.bridge)?;
     folder
         .write(&name, |file| std::io::Write::write_all(file, written.as_bytes()))
         .context("bridge not written")?;
@@ -52,31 +55,29 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
     })
 }
 
-/// Refuses to write over the bridge that the fit starts from.
-fn check_out(out: &Path, start: &Path) -> Result<(), Refusal> {
-    if out.canonicalize().ok() != start.canonicalize().ok() {
-        return Ok(());
+/// The file for the bridge found: not the bridge that the fit starts from, and no file that another program or a person wrote.
+fn file_of(out: &Path, start: &Path) -> Result<PathBuf, Refusal> {
+    if out.exists() && out.canonicalize().ok() == start.canonicalize().ok() {
+        let found = "the bridge that the fit starts from";
+        return Err(Refusal::new(out, "", found, "another file for the bridge found"));
     }
-    let found = "the bridge that the fit starts from";
-    Err(Refusal::new(out, "", found, "another file for the bridge found"))
+    replaceable(out, "a bridge of `pontoon calibrate`", |bytes| {
+        let document: Result<Value, _> = serde_json::from_slice(bytes);
+        let program = document.ok().map(|bridge| bridge["provenance"]["program"].clone());
+        program.is_some_and(|program| program.as_str().is_some_and(|program| program.starts_with(PROGRAM)))
+    })
 }
+
+/// How the provenance of a bridge names this program.
+const PROGRAM: &str = "pontoon calibrate";
 
 /// The folder of a file, made where it is missing, and the file's name.
 fn place(out: &Path) -> Result<(Folder, String)> {
-    let allowed = "the name of a bridge file";
-    let Some(name) = out.file_name().filter(|_| !out.is_dir()) else {
-        return Err(Refusal::new(out, "", "a folder", allowed).into());
-    };
-    let Some(name) = name.to_str() else {
-        return Err(Refusal::new(out, "", "a name that is no text", allowed).into());
-    };
-    let folder = out
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = out.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let folder = Folder::create(folder.unwrap_or(Path::new("."))).context("no place for the bridge")?;
     Ok((
-        Folder::create(folder).context("no place for the bridge")?,
-        name.to_owned(),
+        folder,
+        out.file_name().unwrap_or_default().to_string_lossy().into_owned(),
     ))
 }
 

@@ -9,7 +9,7 @@ use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use pontoon_journal::place::Folder;
 use pontoon_plan::input::Refusal;
-use pontoon_results::labels;
+use pontoon_results::{labels, replaceable};
 use serde_json::json;
 
 /// Writes the pages of the definitions that words are understood by.
@@ -18,10 +18,14 @@ pub(crate) fn man(arguments: &ManArguments, common: Common) -> Result<ExitStatus
     if to.exists() && !to.is_dir() {
         return Err(Refusal::new(to, "", "a file", "a folder for the pages").into());
     }
+    let commands = commands();
+    for command in &commands {
+        replaceable(&to.join(file_of(command)), "a page of `pontoon man`", is_page)?;
+    }
     let folder = Folder::create(to).context("no place for the pages")?;
     let mut names = Vec::new();
-    for command in commands() {
-        let name = format!("{}.1", name(&command));
+    for command in commands {
+        let name = file_of(&command);
         let page = page(command).context("no page")?;
         folder
             .write(&name, |file| file.write_all(&page))
@@ -46,6 +50,20 @@ fn commands() -> Vec<Command> {
     let commands: Vec<Command> = commands.collect();
     [vec![program], commands].concat()
 }
+
+/// The file of a command's page.
+fn file_of(command: &Command) -> String {
+    format!("{}.1", name(command))
+}
+
+/// Whether a file is a page of this program, of whatever version: it ends in the name of the manual.
+fn is_page(bytes: &[u8]) -> bool {
+    let title = |line: &[u8]| line.starts_with(b".TH pontoon") && line.trim_ascii_end().ends_with(b"pontoon");
+    bytes.split(|&byte| byte == b'\n').take(TITLE_WITHIN).any(title)
+}
+
+/// Lines of a page within which its title stands.
+const TITLE_WITHIN: usize = 10;
 
 /// The name of a command's page: `pontoon-run`.
 fn name(command: &Command) -> &str {

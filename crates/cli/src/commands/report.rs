@@ -8,21 +8,20 @@ use pontoon_journal::place::{Folder, FolderError};
 use pontoon_judge::compare::{Comparison, against_reference};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Refusal;
-use pontoon_results::{PAGE, labels};
+use pontoon_results::{PAGE, labels, replaceable};
 use pontoon_study::run::Cache;
 use pontoon_view::figures::{Figures, marks};
 use pontoon_view::report::{OpenedResults, Report, ReportSetting};
 use pontoon_view::{drawing, page};
 use serde_json::json;
-use std::fs::{self, File};
-use std::io::{BufWriter, Read, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Shapes that a page animates, from the lowest.
 const MODES: usize = 16;
 
 /// Bytes of a file in which it shows whether it is a page.
-const HEAD: u64 = 4096;
+const HEAD: usize = 4096;
 
 /// Writes figures where they are asked for, and a page unless they alone are.
 pub(crate) fn report(arguments: &ReportArguments, common: Common) -> Result<ExitStatus> {
@@ -99,42 +98,14 @@ fn page_of(arguments: &ReportArguments, common: Common) -> Result<ExitStatus> {
     Ok(if good { ExitStatus::Good } else { ExitStatus::Short })
 }
 
-/// The page's file, which is no folder and no other file that somebody may miss.
+/// The page's file.
 fn page_file(arguments: &ReportArguments) -> Result<PathBuf, Refusal> {
     let asked = arguments.out.clone().unwrap_or_else(|| arguments.results.join(PAGE));
-    // through a link to the file that it names
-    let out = fs::canonicalize(&asked).unwrap_or(asked);
-    let refuse = |found: &str| {
-        Err(Refusal::new(
-            &out,
-            "",
-            found,
-            "a new file, or a page of `pontoon report`",
-        ))
-    };
-    if out.is_dir() {
-        return refuse("a folder");
-    }
-    if out.file_name().and_then(|name| name.to_str()).is_none() {
-        return refuse("no name of a file in Unicode");
-    }
-    if out.is_symlink() {
-        return refuse("a link to nothing");
-    }
-    if out.exists() {
-        if !out.is_file() {
-            return refuse("no regular file");
-        }
-        let mut head = Vec::new();
-        let read = File::open(&out).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-        let is_page = head
-            .windows(page::MARK.len())
-            .any(|window| window == page::MARK.as_bytes());
-        if read.is_err() || !(is_page || head.is_empty()) {
-            return refuse("another file");
-        }
-    }
-    Ok(out)
+    replaceable(&asked, "a page of `pontoon report`", |bytes| {
+        let head = &bytes[..bytes.len().min(HEAD)];
+        head.windows(page::MARK.len())
+            .any(|window| window == page::MARK.as_bytes())
+    })
 }
 
 /// Writes the page whole or not at all; its size in bytes.

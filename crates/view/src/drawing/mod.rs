@@ -26,6 +26,7 @@ use crate::figures::Figures;
 use letters::{Letters, PixelsError};
 use pontoon_journal::place::{Folder, FolderError};
 use pontoon_plan::input::Refusal;
+use pontoon_results::replaceable;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -79,10 +80,7 @@ pub fn write(figures: &Figures, folder: &Path) -> Result<Vec<String>, DrawingErr
     }
     files.push((CAPTIONS.to_owned(), captions::markdown(figures).into_bytes()));
     for (name, _) in &files {
-        let path = folder.join(name);
-        if path.exists() && !earlier.contains(name) {
-            return Err(Refusal::new(&path, "", "another file", "a new file, or one of earlier figures").into());
-        }
+        replaceable(&folder.join(name), "one of earlier figures", |_| earlier.contains(name))?;
     }
     let folder = Folder::create(folder)?;
     for name in earlier.iter().filter(|old| !files.iter().any(|(name, _)| name == *old)) {
