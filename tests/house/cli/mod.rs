@@ -8,6 +8,7 @@ mod compare_formats;
 mod compare_histories;
 mod compare_input;
 mod compare_kinds;
+mod contradictions;
 mod damaged;
 mod designs;
 mod export;

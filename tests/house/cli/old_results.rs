@@ -299,13 +299,13 @@ fn rows_and_tables_that_are_gone_fall_short_and_say_so() {
 #[test]
 fn a_flag_that_turns_is_a_difference() {
     let mut stage = Stage::new();
-    let mut ran = |name: &str, freeboard: f64| {
-        stage.bridge["draft_m"] = json!(0.5);
-        stage.bridge["freeboard_m"] = json!(freeboard);
+    let mut ran = |name: &str, draft: f64| {
+        stage.bridge["draft_m"] = json!(draft);
+        stage.bridge["freeboard_m"] = json!(1.07 - draft);
         stage.ran(name);
     };
-    ran("dry", 0.5);
-    ran("wet", 0.001);
-    let (code, lines) = stage.compared("wet", "dry");
-    assert_eq!((code, fall_short(&lines)), (Some(1), vec!["jobs.deck_submerged"]));
+    ran("wet", 0.2);
+    ran("dry", 0.07);
+    let (code, lines) = stage.compared("dry", "wet");
+    assert_eq!((code, fall_short(&lines)), (Some(1), vec!["jobs.bottom_emerged"]));
 }

@@ -237,6 +237,7 @@ fn a_job_beyond_the_step_limit_fails_without_running() {
 fn the_step_limit_holds_for_each_time_step_that_is_tried() {
     let mut stage = sweep(2, 0.05);
     stage.study["analysis"]["time_step_s"] = json!("auto");
+    stage.write();
     finish(&stage, "whole");
     let steps: Vec<f64> = stage
         .numbers("whole/jobs.parquet", "steps")

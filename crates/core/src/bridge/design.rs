@@ -162,6 +162,17 @@ impl Default for Condensation {
     }
 }
 
+/// How far the sum of a draft and a freeboard may be off the depth, as both are rounded `[m]`, and as a share of it.
+const ROUNDED_M: f64 = 0.010_001;
+const ROUNDED: f64 = 0.01;
+
+/// Density of fresh water `[kg/m^3]`, by which a mass gives a draft.
+const WATER_KG_M3: f64 = 1000.0;
+
+/// How often a draft may be that of the box with the model's mass, or that one it: a hull is no box, and a model may leave
+/// out what a deck carries.
+const FULLNESS: f64 = 2.0;
+
 /// Most memory that the dense matrices of one bridge may take `[GiB]`.
 const MOST_GIB: f64 = 4.0;
 
@@ -194,6 +205,50 @@ impl BridgeDesign {
                 self.condensation.fixed_master_modes,
                 "a whole number from 0 to 400",
             ));
+        }
+        Ok(())
+    }
+
+    /// Refuses a draft and a freeboard that contradict the depth of the module, each other, its mass or its table of
+    /// buoyancies.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    pub fn check_water_line(&self) -> Result<(), InvalidInput> {
+        let conflict = |key: &str, found: f64, allowed: String| {
+            Err(InvalidInput::new(key, found, allowed).because(Problem::Conflict))
+        };
+        let depth_m = self.module.depth_m;
+        let rounded = ROUNDED_M.max(ROUNDED * depth_m);
+        for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
+            if let Some(value) = value.filter(|&value| value > depth_m) {
+                return conflict(key, value, format!("at most {depth_m}, the depth of the module"));
+            }
+        }
+        if let (Some(draft), Some(freeboard)) = (self.draft_m, self.freeboard_m)
+            && (draft + freeboard - depth_m).abs() > rounded
+        {
+            let rest = metres(depth_m - draft);
+            let allowed = format!("about {rest}, what the depth of {depth_m} leaves above the draft of {draft}");
+            return conflict("freeboard_m", freeboard, allowed);
+        }
+        let Some(draft) = self.draft_m else { return Ok(()) };
+        if let Some(table) = &self.draft_buoyancy
+            && (draft - table.still_water_draft_m).abs() > rounded
+        {
+            let still = table.still_water_draft_m;
+            let allowed = format!("about {still}, the draft of draft_buoyancy.still_water_draft_m");
+            return conflict("draft_m", draft, allowed);
+        }
+        let mass_kg = self.structural_mass_kg();
+        let of_mass = mass_kg / (WATER_KG_M3 * self.module.length_m * self.module.breadth_m);
+        if !(of_mass / FULLNESS..=of_mass * FULLNESS).contains(&draft) {
+            let [least, most] = [of_mass / FULLNESS, of_mass * FULLNESS].map(metres);
+            let allowed = format!(
+                "about {}, which the mass of the module gives ({mass_kg:.0} kg), and no less than {least} or more than {most}",
+                metres(of_mass)
+            );
+            return conflict("draft_m", draft, allowed);
         }
         Ok(())
     }
@@ -321,6 +376,11 @@ impl BridgeDesign {
             (None, None) => f64::NAN,
         }
     }
+}
+
+/// A length to the millimetre, for a message.
+fn metres(length_m: f64) -> f64 {
+    (length_m * 1e3).round() / 1e3
 }
 
 fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {

@@ -125,7 +125,8 @@ impl Documents {
             let design = match changes.applied(&study.bridge.design)? {
                 None => study.bridge.design.clone(),
                 Some(design) => {
-                    design.check().map_err(|e| changes.refusal(e))?;
+                    let checked = design.check().and_then(|()| design.check_water_line());
+                    checked.map_err(|e| changes.refusal(e))?;
                     design
                 }
             };

@@ -32,7 +32,8 @@ pub fn read_bridge(file: &Path) -> Result<BridgeFile, Refusal> {
 
 fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
     let design: BridgeDesign = typed(file, "", &document)?;
-    design.check().map_err(|e| Refusal::of(file, "", e))?;
+    let checked = design.check().and_then(|()| design.check_water_line());
+    checked.map_err(|e| Refusal::of(file, "", e))?;
     Ok(BridgeFile {
         file: file.to_owned(),
         document,
