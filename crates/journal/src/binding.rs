@@ -18,7 +18,7 @@ pub struct Binding {
     pub instruction_path: String,
     /// The share of the study's jobs that was asked for, `K/N`; none where all were.
     pub shard: Option<String>,
-    /// The bridge before axes, defaults filled in.
+    /// The bridge before axes, defaults filled in, without the words from which nothing is computed.
     pub bridge: Value,
     /// The vehicle before axes, defaults filled in.
     pub vehicle: Value,

@@ -1,6 +1,6 @@
 //! Runs that end with tables.
 
-use crate::stage::{Frame, Stage, stderr, stdout};
+use crate::stage::{Frame, Stage, is_refused, stderr, stdout};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -264,4 +264,27 @@ fn a_full_disk_ends_the_run_and_leaves_the_results_before_it() {
     assert!(left.into_iter().all(|name| !name.to_string_lossy().contains("partial")));
     let jobs = stage.table("r/jobs.parquet");
     assert_eq!(jobs.height(), 6);
+}
+
+#[test]
+fn words_that_nothing_is_computed_from_leave_results_as_they_are() {
+    let mut stage = Stage::new();
+    stage.ran("r");
+    let tables = |stage: &Stage| Frame::read(&stage.path("r/jobs.parquet"));
+    let before = tables(&stage);
+    stage.bridge["name"] = json!("another name");
+    stage.bridge["source"] = json!("told again");
+    stage.study["question"] = json!("the same, asked otherwise");
+    let run = |stage: &Stage| {
+        let words = ["run", "study.json", "--out", "r", "--quiet", "--format", "json"];
+        let output = stage.write().pontoon(&words);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        serde_json::from_str::<Value>(&stdout(&output)).unwrap()["ran"].clone()
+    };
+    assert_eq!(run(&stage), 0);
+    assert!(tables(&stage).same_cells(&before));
+    // a number is another matter
+    stage.bridge["connectors"]["gap_tension_m"] = json!(0.02);
+    let output = stage.write().pontoon(&["run", "study.json", "--out", "r", "--quiet"]);
+    is_refused(&output, &["bridge.connectors.gap_tension_m: 0.028 then, 0.02 now"]);
 }

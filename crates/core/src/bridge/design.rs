@@ -209,6 +209,17 @@ impl BridgeDesign {
         Ok(())
     }
 
+    /// The design without its words, from which nothing is computed: name, source, provenance.
+    #[must_use]
+    pub fn without_words(&self) -> Self {
+        Self {
+            name: String::new(),
+            source: None,
+            provenance: None,
+            ..self.clone()
+        }
+    }
+
     /// Refuses a draft and a freeboard that contradict the depth of the module, each other, its mass or its table of
     /// buoyancies.
     ///

@@ -198,10 +198,7 @@ impl Documents {
 fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry {
     let hash_of = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex();
     let hash = hash_of(&document).to_string();
-    let mut neutral = design.clone();
-    neutral.name = String::new();
-    neutral.source = None;
-    neutral.provenance = None;
+    let mut neutral = design.without_words();
     neutral.connectors.gap_tension_m = 0.0;
     neutral.connectors.gap_compression_m = 0.0;
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();

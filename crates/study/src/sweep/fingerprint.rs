@@ -5,7 +5,7 @@
 use super::SweepSetting;
 use crate::run::instruction_path;
 use pontoon_journal::{Binding, FORM, JournalIndex, Session};
-use pontoon_plan::input::{Document, Refusal, to_value};
+use pontoon_plan::input::{Document, Refusal, canonical_text, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
 use pontoon_results::Moment;
@@ -21,11 +21,19 @@ pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
         numerics: numerics(),
         instruction_path: instruction_path().to_owned(),
         shard: shard.map(|shard| shard.to_string()),
-        bridge: to_value(&study.bridge.design),
+        bridge: to_value(&study.bridge.design.without_words()),
         vehicle,
         analysis: to_value(&study.analysis.written()),
         record: to_value(&study.record),
     }
+}
+
+/// What tells a study and its bridge from any other that computes other numbers or leaves other rows: their words are no part
+/// of it.
+pub(super) fn hash_of_computed(study: &Study) -> String {
+    let bridge = to_value(&study.bridge.design.without_words());
+    let both = canonical_text(&study.computed()) + &canonical_text(&bridge);
+    blake3::hash(both.as_bytes()).to_hex().to_string()
 }
 
 /// This program's version and numerics key, as a journal has them.

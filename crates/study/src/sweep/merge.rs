@@ -4,9 +4,8 @@
 //! job. The merged folder is one that the whole study could have been run into: its journal holds the shards' files, and a
 //! study that has grown goes on from there.
 
-use super::crash_suspects::hash_of as hash_of_study;
 use super::ending::ending;
-use super::fingerprint::{binding, session};
+use super::fingerprint::{binding, hash_of_computed, session};
 use super::results_folder::{check_folder, instruction_paths, preparations, sessions, tell_damage};
 use super::status::study_of_index;
 use super::{SweepError, SweepSetting, Swept, Watcher};
@@ -43,7 +42,7 @@ impl Merged {
             check_folder(folder)?;
             let index = JournalIndex::read(folder)?;
             let (of_folder, ..) = study_of_index(&index, folder)?;
-            let hash = hash_of_study(&of_folder);
+            let hash = hash_of_computed(&of_folder);
             match &first {
                 None => {
                     first = Some((folder.clone(), hash));
