@@ -16,8 +16,9 @@ use serde_json::Value;
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudySpec {
-    /// Name of the study and of its folder of results: letters, digits, `_`, `-` and `.`, not beginning with `.`.
-    #[schemars(regex(pattern = r"^[A-Za-z0-9_-][A-Za-z0-9_.-]*$"))]
+    /// Name of the study and of its folder of results: letters, digits, `_`, `-` and `.`, not beginning with `.` or `-`, not
+    /// ending with `.`, and no name of a device on Windows as `con` is.
+    #[schemars(regex(pattern = r"^[A-Za-z0-9_]([A-Za-z0-9_.-]*[A-Za-z0-9_-])?$"), length(max = 200))]
     pub name: String,
     /// What the study asks, in a sentence, for whoever reads its report.
     #[serde(default)]

@@ -182,17 +182,41 @@ pub fn filled_vehicle(design: &VehicleDesign) -> Result<VehicleDesign, pontoon_c
     Ok(filled)
 }
 
+/// Longest name of a study in bytes: the name of a folder has 255, and files beside it are named after it.
+const LONGEST_NAME: usize = 200;
+
+/// Names that are devices on Windows, with any ending and in any case.
+const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
+
+/// Refuses a name of which some file system makes no folder, or a shell no word.
 fn check_name(file: &Path, name: &str) -> Result<(), Refusal> {
+    let refuse = |found: FoundValue, allowed: &str| Err(Refusal::new(file, "name", found, allowed));
+    if name.len() > LONGEST_NAME {
+        let found = format!("a name of {} bytes", name.len());
+        return refuse(
+            found.into(),
+            &format!("at most {LONGEST_NAME}: it is the name of a folder"),
+        );
+    }
     let good = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
-    if name.is_empty() || name.starts_with('.') || !name.chars().all(good) {
-        return Err(Refusal::new(
-            file,
-            "name",
+    if name.is_empty() || name.starts_with(['.', '-']) || name.ends_with('.') || !name.chars().all(good) {
+        return refuse(
             FoundValue::value(name),
-            "letters, digits, _, - and ., not beginning with .",
-        ));
+            "letters, digits, _, - and ., not beginning with . or - and not ending with .",
+        );
+    }
+    if is_device(name) {
+        let found = FoundValue::value(name).which("which is a device on Windows");
+        return refuse(found, "the name of a folder on every system");
     }
     Ok(())
+}
+
+/// Whether Windows takes a name for a device: `CON`, `nul.txt`, `com1`.
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().to_ascii_lowercase();
+    let numbered = stem.strip_suffix(|c: char| ('1'..='9').contains(&c));
+    DEVICES[..4].contains(&stem.as_str()) || numbered.is_some_and(|stem| DEVICES[4..].contains(&stem))
 }
 
 /// Refuses histories of what the bridge does not have, and the same one twice.
@@ -217,4 +241,40 @@ pub(crate) fn check_histories(file: &Path, histories: &HistoriesSpec, modules: u
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_one_of_a_folder_on_every_system() {
+        let refused = |name: &str| check_name(Path::new("s.json"), name).map_err(|e| e.to_string());
+        for name in [
+            "a",
+            "fu2005",
+            "A_b-c.d",
+            "0",
+            "_x",
+            "console",
+            "com",
+            "com0",
+            "lpt12",
+            &"x".repeat(200),
+        ] {
+            assert_eq!(refused(name), Ok(()), "{name}");
+        }
+        for name in [
+            "", ".", "..", ".x", "x.", "-x", "x ", " x", "a/b", "a\\b", "a\nb", "a\u{7f}", "\u{e9}", "a:b", "CON",
+            "nul", "Aux.1", "com1", "LPT9.txt", "prn",
+        ] {
+            let message = refused(name).unwrap_err();
+            assert!(message.starts_with("s.json: name: found "), "{message}");
+        }
+        let message = refused(&"x".repeat(201)).unwrap_err();
+        assert!(
+            message.contains("found a name of 201 bytes, allowed: at most 200"),
+            "{message}"
+        );
+    }
 }
