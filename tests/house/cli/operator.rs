@@ -5,7 +5,7 @@ use crate::stage::{Stage, stderr};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 
 const JOBS: &str = "out/jobs.parquet";
 
@@ -203,4 +203,34 @@ fn a_cache_that_cannot_be_written_costs_no_result() {
     fs::write(stage.path("file"), "x").unwrap();
     let output = stage.pontoon_with(&["run", "study.json", "--out", "out", "--quiet"], &stage.path("file"));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+/// What is set to nothing counts as not set: no cache comes into the folder where the program was called.
+#[test]
+fn a_cache_is_in_no_folder_that_is_named_by_nothing() {
+    let stage = stage(&json!({}));
+    let run = |out: &str, home: &str, caches: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_pontoon"))
+            .args(["run", "study.json", "--out", out, "--quiet"])
+            .current_dir(stage.path(""))
+            .env_remove("PONTOON_CACHE_DIR")
+            .envs([("HOME", home), ("XDG_CACHE_HOME", caches)])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    let before = stage.names();
+    run("a", "", "");
+    run("b", "here", "there");
+    let new: Vec<String> = stage
+        .names()
+        .into_iter()
+        .filter(|name| !before.contains(name))
+        .collect();
+    assert_eq!(new, ["a", "b"]);
+    let at = |name: &str| stage.path(name).display().to_string();
+    run("c", &at("home"), "");
+    assert!(stage.path("home/.cache/pontoon").is_dir());
+    run("d", &at("other"), &at("caches"));
+    assert!(stage.path("caches/pontoon").is_dir() && !stage.path("other").exists());
 }

@@ -3,6 +3,7 @@
 //! Knows a folder, names made of what an operator depends on, and how a file proves to be whole. Does not know how an
 //! operator is built. Whatever is wrong with a file, the operator is built again and the file replaced.
 
+use etcetera::BaseStrategy;
 use pontoon_core::bridge::Bridge;
 use pontoon_core::operator::{BridgeOperator, OperatorParts, SOURCES};
 use pontoon_journal::place::HiddenFile;
@@ -42,15 +43,14 @@ impl Cache {
         }
     }
 
-    /// The user's: `$PONTOON_CACHE_DIR`, `$XDG_CACHE_HOME/pontoon` or `~/.cache/pontoon`; none where the first is empty or
-    /// none is set.
+    /// The user's: `$PONTOON_CACHE_DIR`, none where that is empty; else `pontoon` in the folder of the user's caches, which on
+    /// Linux is `$XDG_CACHE_HOME`, else `~/.cache`. What is empty or no absolute path counts as not set.
     pub fn of_user() -> Option<Self> {
-        let set = |name: &str| std::env::var_os(name).map(PathBuf::from);
-        if let Some(stated) = set("PONTOON_CACHE_DIR") {
+        if let Some(stated) = std::env::var_os("PONTOON_CACHE_DIR").map(PathBuf::from) {
             return (!stated.as_os_str().is_empty()).then_some(Self { folder: stated });
         }
-        let base = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;
-        Some(Self {
+        let base = etcetera::choose_base_strategy().ok()?.cache_dir();
+        base.is_absolute().then(|| Self {
             folder: base.join("pontoon"),
         })
     }
