@@ -2,9 +2,10 @@
 //!
 //! Knows flags and their help. Does not know what they lead to.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Arg, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::ModelSpec;
+use std::any::TypeId;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -25,6 +26,49 @@ pub(crate) struct Arguments {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl Arguments {
+    /// The words as they are understood. A number may be negative, so that it is refused by its range and not as a flag.
+    pub(crate) fn words() -> clap::Command {
+        let words = Self::command();
+        let names: Vec<String> = words.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
+        let numbers = |arg: Arg| {
+            if is_number(&arg) {
+                arg.allow_negative_numbers(true)
+            } else {
+                arg
+            }
+        };
+        names.into_iter().fold(words, |words, name| {
+            words.mut_subcommand(name, |sub| sub.mut_args(numbers))
+        })
+    }
+}
+
+/// Whether the value of an argument is a number.
+fn is_number(arg: &Arg) -> bool {
+    let of = arg.get_value_parser().type_id();
+    [TypeId::of::<u16>(), TypeId::of::<usize>(), TypeId::of::<f64>()]
+        .iter()
+        .any(|number| of == *number)
+}
+
+/// A count or the number of something.
+fn whole(text: &str) -> Result<usize, NotWhole> {
+    text.parse().map_err(|_| NotWhole)
+}
+
+/// A text that is no whole number of at least 0.
+#[derive(Debug)]
+struct NotWhole;
+
+impl std::error::Error for NotWhole {}
+
+impl fmt::Display for NotWhole {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("allowed: a whole number of at least 0")
+    }
 }
 
 /// What every command takes.
@@ -158,7 +202,7 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub fresh: bool,
     /// Stops when more jobs than this have failed.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole)]
     pub max_failures: Option<usize>,
     /// Takes records that were computed on other instruction paths for its own.
     #[arg(long)]
@@ -205,7 +249,7 @@ pub(crate) struct ExplainArguments {
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
     /// Number of the job, from 0.
-    #[arg(value_name = "JOB")]
+    #[arg(value_name = "JOB", value_parser = whole)]
     pub job: usize,
 }
 
@@ -352,7 +396,7 @@ pub(crate) struct ExportArguments {
     #[arg(long, value_name = "X", requires = "load_n", conflicts_with = "load_position")]
     pub load_x_m: Option<f64>,
     /// Position of its centre, 1 to modules + 1.
-    #[arg(long, value_name = "P", requires = "load_n")]
+    #[arg(long, value_name = "P", requires = "load_n", value_parser = whole)]
     pub load_position: Option<usize>,
     /// How the connectors work under it; nonlinear where absent.
     #[arg(long, value_enum, requires = "load_n")]
@@ -364,10 +408,10 @@ pub(crate) struct ExportArguments {
     #[arg(long, value_name = "X", requires = "load_n")]
     pub gap_compression_m: Option<f64>,
     /// Number of the job, from 0; the one with the largest deflection where absent.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole)]
     pub job: Option<usize>,
     /// Time steps from one instant of a crossing to the next; as many as give about 20 instants a second where absent.
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", value_parser = whole)]
     pub every: Option<usize>,
 }
 
@@ -432,5 +476,43 @@ mod tests {
             let help = sub.render_long_help().to_string();
             assert!(help.contains("Example"), "{help}");
         }
+    }
+
+    #[test]
+    fn every_number_may_be_negative_and_is_then_refused_as_a_number() {
+        let words = Arguments::words();
+        let mut numbers = 0;
+        for sub in words.get_subcommands() {
+            for arg in sub.get_arguments().filter(|arg| is_number(arg)) {
+                assert!(arg.is_allow_negative_numbers_set(), "{} {arg}", sub.get_name());
+                numbers += 1;
+            }
+        }
+        assert!(numbers >= 13, "{numbers}");
+        for (line, told) in [
+            (
+                "export b.json --to v --load-n 1e5 --load-position -1",
+                "'-1' for '--load-position <P>': allowed: a whole",
+            ),
+            (
+                "export b.json --to v --count -1",
+                "'-1' for '--count <N>': -1 is not in 0..=1000",
+            ),
+            ("run s --threads -2", "'-2' for '--threads <N>': -2 is not in 1..=1024"),
+            (
+                "run s --max-failures -2",
+                "'-2' for '--max-failures <N>': allowed: a whole number of at least 0",
+            ),
+            (
+                "explain r -1",
+                "'-1' for '<JOB>': allowed: a whole number of at least 0",
+            ),
+        ] {
+            let refused = Arguments::words().try_get_matches_from(format!("pontoon {line}").split(' '));
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains(&format!("invalid value {told}")), "{message}");
+        }
+        let taken = "pontoon export b.json --to v --load-n -1e5 --load-x-m -1 --gap-tension-m -0.5";
+        assert!(Arguments::words().try_get_matches_from(taken.split(' ')).is_ok());
     }
 }

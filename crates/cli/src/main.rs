@@ -36,7 +36,7 @@ mod text;
 mod watching;
 
 use args::{Arguments, Command, Format};
-use clap::{CommandFactory, Parser, error::ErrorKind};
+use clap::{CommandFactory, FromArgMatches, error::ErrorKind};
 use exit_status::ExitStatus;
 use pontoon_judge::calibrate::CalibrateError;
 use pontoon_plan::input::Refusal;
@@ -47,7 +47,8 @@ use std::process::ExitCode;
 use terminal::TextStyle;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let read = Arguments::from_arg_matches(&Arguments::words().get_matches());
+    let arguments = read.unwrap_or_else(|error| error.format(&mut Arguments::words()).exit());
     let common = arguments.common;
     let compares = match &arguments.command {
         Command::Compare(_) => true,

@@ -38,6 +38,22 @@ fn what_cannot_be_shown_is_refused_with_its_reason() {
     refused(&stage, &["none"], &["none: ", "manifest.json is missing"]);
     refused(&stage, &["out", "--job", "2"], &["--job", "found 2", "2 of which"]);
     refused(&stage, &["out", "--every", "0"], &["--every", "at least 1"]);
+    for (flag, found) in [
+        ("--load-x-m", "--load-x-m: found -1, allowed: a number from 0 to 20.1"),
+        (
+            "--gap-tension-m",
+            "--gap-tension-m: found -1, allowed: a finite number of at least 0",
+        ),
+    ] {
+        let load = ["--load-n", "1e5", "--load-position", "1"];
+        let load = if flag == "--load-x-m" { &load[..2] } else { &load[..] };
+        refused(&stage, &[&[bridge], load, &[flag, "-1"]].concat(), &[found]);
+    }
+    refused(
+        &stage,
+        &[bridge, "--load-n", "-1e5", "--load-x-m", "1"],
+        &["--load-n: found -100000, allowed: a finite number above 0"],
+    );
     refused(&stage, &[bridge, "--job", "1"], &["--job", "a bridge file has no jobs"]);
     refused(
         &stage,
