@@ -153,8 +153,14 @@ pub fn within(key: &str, value: f64, from: f64, to: f64) -> Result<f64, InvalidI
     if value.is_finite() && value >= from && value <= to {
         Ok(value)
     } else {
+        let [from, to] = [from, to].map(bound);
         Err(InvalidInput::new(key, value, format!("a number from {from} to {to}")))
     }
+}
+
+/// A computed number as a message tells it, to 12 significant digits: half of 8.082 less half of 0.1 is 3.991.
+pub fn bound(x: f64) -> f64 {
+    format!("{x:.11e}").parse().unwrap_or(x)
 }
 
 /// Places closer than this are one place `[m]`: they share a line of the mesh.
@@ -177,6 +183,15 @@ pub(crate) fn apart(key: &str, places: &[f64]) -> Result<(), InvalidInput> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bounds_are_told_without_what_rounding_leaves() {
+        let (from, to) = (-0.1 - 0.2, 20.1 + 1e-14);
+        let e = within("y_m", 25.0, from, to).unwrap_err();
+        assert_eq!(e.allowed, "a number from -0.3 to 20.1");
+        assert_eq!([1e-300, 1.0 / 3.0, -0.0].map(bound), [1e-300, 0.333_333_333_333, 0.0]);
+        assert!(bound(f64::INFINITY).is_infinite());
+    }
 
     #[test]
     fn the_same_place_twice_is_refused_at_the_second() {

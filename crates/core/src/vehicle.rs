@@ -3,7 +3,7 @@
 //! Knows axles, patches and where their points stand for a given place of the vehicle. Does not know the bridge: what
 //! a point does to the deck is the track's business.
 
-use crate::input::{InvalidInput, Problem, not_negative, positive, within};
+use crate::input::{InvalidInput, Problem, bound, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -218,7 +218,7 @@ impl VehicleDesign {
         if (sum - 1.0).abs() > 1e-9 {
             return Err(InvalidInput::new(
                 "axles[*].share",
-                format!("a sum of {sum}"),
+                format!("a sum of {}", bound(sum)),
                 "shares that sum to 1",
             ));
         }

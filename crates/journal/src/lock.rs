@@ -4,7 +4,7 @@
 
 use super::JournalError;
 use std::fs::{self, File, TryLockError};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
 
@@ -53,12 +53,17 @@ impl Lock {
                     holder: holder.trim().to_owned(),
                 });
             }
-            Err(TryLockError::Error(cause)) => return Err(error(cause)),
+            Err(TryLockError::Error(cause)) => return Err(error(said(cause))),
         }
         let me = format!("process {} on {}\n", std::process::id(), super::host());
         // who holds the lock is told to others where it can be; the lock does not hang on it
         let _ = file.set_len(0).and_then(|()| file.write_all(me.as_bytes()));
         Ok(Self { _file: file })
+    }
+
+    /// Whether a process has ever taken a folder.
+    pub fn is_known(folder: &Path) -> bool {
+        folder.join(FILE).exists()
     }
 
     /// Whether a process holds a folder now.
@@ -67,9 +72,35 @@ impl Lock {
     }
 }
 
+/// Numbers by which Linux says that a file system knows no locks: ENOLCK, ENOSYS, EOPNOTSUPP.
+const NO_LOCKS: [i32; 3] = [37, 38, 95];
+
+/// What the system said, and what it means where the file system has no locks.
+fn said(cause: io::Error) -> io::Error {
+    let without = cause.kind() == io::ErrorKind::Unsupported
+        || cause.raw_os_error().is_some_and(|number| NO_LOCKS.contains(&number));
+    if !without {
+        return cause;
+    }
+    let words = format!(
+        "this file system has no locks (flock), by which one process at a time works in a folder; put the results on one that has them ({cause})"
+    );
+    io::Error::new(cause.kind(), words)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_system_without_locks_is_named() {
+        for number in NO_LOCKS {
+            let told = said(io::Error::from_raw_os_error(number)).to_string();
+            assert!(told.starts_with("this file system has no locks (flock)"), "{told}");
+        }
+        let other = said(io::Error::from_raw_os_error(5)).to_string();
+        assert!(!other.contains("flock"), "{other}");
+    }
 
     #[test]
     fn a_folder_has_one_holder_and_a_stale_file_holds_nothing() {

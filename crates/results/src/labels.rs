@@ -122,9 +122,16 @@ pub const SHOWN: usize = 5;
 /// Digits of a value of an axis in a table of the terminal.
 const LISTED: usize = 6;
 
-/// A number of a column with the digits that people read of it.
+/// Lengths that are something, and of which four decimals show nothing `[m]`; what is less is what rounding leaves.
+const LITTLE_M: std::ops::Range<f64> = 1e-9..5e-5;
+
+/// A number of a column with the digits that people read of it; a little length with an exponent, for it is not nothing.
 pub fn digits(name: &str, x: f64) -> String {
-    match Column::named(name).map_or(Digits::Significant(LISTED), |column| column.digits) {
+    let Some(column) = Column::named(name) else {
+        return number(x, LISTED);
+    };
+    match column.digits {
+        Digits::Decimals(_) if column.unit == "m" && LITTLE_M.contains(&x.abs()) => format!("{x:.1e}"),
         Digits::Decimals(decimals) => format!("{x:.decimals$}"),
         Digits::Significant(digits) => number(x, digits),
     }
@@ -297,8 +304,16 @@ mod tests {
             ("speed_m_s", Cell::Number(6.09)),
             ("speed_m_s", Cell::Whole(3)),
             ("peak_deflection_m", Cell::Nothing),
+            ("peak_deflection_m", Cell::Number(0.000_034_1)),
+            ("peak_deflection_m", Cell::Number(0.000_06)),
+            ("peak_deflection_m", Cell::Number(1e-17)),
         ];
         let texts = texts.map(|(name, cell)| listed(name, &cell));
-        assert_eq!(texts, ["0.1400", "373692", "0.40000", "6.09", "3", "-"]);
+        assert_eq!(
+            texts,
+            [
+                "0.1400", "373692", "0.40000", "6.09", "3", "-", "3.4e-5", "0.0001", "0.0000"
+            ]
+        );
     }
 }

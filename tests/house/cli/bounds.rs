@@ -140,6 +140,21 @@ fn axes_that_contradict_each_other() {
 }
 
 #[test]
+fn a_folder_that_is_refused_is_left_as_it_was() {
+    let stage = Stage::new();
+    stage.ran("r");
+    fs::create_dir(stage.path("t")).unwrap();
+    fs::copy(stage.path("r/jobs.parquet"), stage.path("t/jobs.parquet")).unwrap();
+    let output = stage.pontoon(&["run", "study.json", "--out", "t", "--quiet"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let left: Vec<_> = fs::read_dir(stage.path("t"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["jobs.parquet"]);
+}
+
+#[test]
 fn results_of_another_study_are_not_replaced() {
     let mut stage = Stage::new();
     stage.study["design"] = json!([{ "grid": { "load_n": 1e5, "speed_m_s": 15 } }]);

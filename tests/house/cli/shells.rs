@@ -190,6 +190,15 @@ fn pages_have_no_place_in_a_file() {
     );
     let output = stage.pontoon(&["man", "--to", "study.json/man"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    // nor in place of what is no page of theirs
+    fs::create_dir(stage.path("notes")).unwrap();
+    fs::write(stage.path("notes/pontoon-run.1"), "mine").unwrap();
+    is_refused(
+        &stage.pontoon(&["man", "--to", "notes"]),
+        &["notes/pontoon-run.1: found another file, allowed: a new file, or a page of `pontoon man`"],
+    );
+    assert_eq!(fs::read_dir(stage.path("notes")).unwrap().count(), 1);
+    assert_eq!(stage.pontoon(&["man", "--to", "m"]).status.code(), Some(0));
     let json = stdout(&stage.pontoon(&["man", "--to", "m", "--format", "json"]));
     let told: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(

@@ -3,7 +3,7 @@
 //! Knows that no hinge, connector or end may be dropped for want of a line. Does not know what is done with the lines.
 
 use super::BridgeDesign;
-use crate::input::{InvalidInput, SAME_PLACE_M};
+use crate::input::{InvalidInput, SAME_PLACE_M, bound};
 use crate::module::Grid;
 
 /// Refuses a grid that does not span the design's module, from 0 to its length and half its breadth to either side, or has
@@ -15,7 +15,11 @@ pub(super) fn check_fit(design: &BridgeDesign, grid: &Grid) -> Result<(), Invali
         let fits = |end: Option<f64>, place: f64| end.is_some_and(|end| (end - place).abs() <= SAME_PLACE_M);
         if !(fits(ends.0, from) && fits(ends.1, to)) {
             let found = lines.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
-            return Err(InvalidInput::new(key, found, format!("lines from {from} to {to}")));
+            return Err(InvalidInput::new(
+                key,
+                found,
+                format!("lines from {} to {}", bound(from), bound(to)),
+            ));
         }
     }
     for (key, places) in [

@@ -9,7 +9,7 @@ use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Var
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study, check_histories};
 use pontoon_core::connector::Connection;
-use pontoon_core::input::InvalidInput;
+use pontoon_core::input::{InvalidInput, bound};
 use std::collections::HashSet;
 
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
@@ -219,7 +219,7 @@ impl Short<'_> {
         };
         let passage = bridge.design.module.length_m / speed_m_s;
         if step > passage {
-            let [most, speed] = [passage, speed_m_s].map(Cell::written);
+            let [most, speed] = [passage, speed_m_s].map(|x| Cell::written(bound(x)));
             let allowed = format!("above 0 and at most {most}, the passage of one module at {speed} m/s");
             return refuse(self.time_step_found(analysis, None), allowed);
         }
@@ -297,7 +297,7 @@ impl Short<'_> {
             }
             (None, Some(x_m)) if (0.0..=design.length_m()).contains(&x_m) => Ok(StandingLoad { position: None, x_m }),
             (None, Some(x_m)) => {
-                let allowed = format!("a number from 0 to {}", design.length_m());
+                let allowed = format!("a number from 0 to {}", bound(design.length_m()));
                 Err(self.refuse(JobAxis::LoadPlace, x_m, allowed))
             }
             (at, _) => {

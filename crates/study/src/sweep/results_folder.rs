@@ -29,9 +29,13 @@ impl ResultsFolder {
         if !setting.fresh {
             pontoon_results::check_own(&setting.out, &study.name)?;
         }
+        let binding = binding(study, setting.shard);
+        // a folder that no run has ever taken is left as it is where it is refused
+        if !setting.fresh && !Lock::is_known(&setting.out) {
+            check_use(&JournalIndex::read(&setting.out)?, &binding, setting)?;
+        }
         let folder = Folder::create(&setting.out)?;
         let lock = Lock::take(&setting.out)?;
-        let binding = binding(study, setting.shard);
         let mut index = JournalIndex::read(&setting.out);
         if setting.fresh {
             if let Some(to) = archive(&setting.out, index.as_ref().ok())? {
@@ -40,10 +44,7 @@ impl ResultsFolder {
             index = JournalIndex::read(&setting.out);
         }
         let index = index?;
-        check(&index, &binding, setting)?;
-        if index.files.is_empty() {
-            refuse_without_journal(&setting.out)?;
-        }
+        check_use(&index, &binding, setting)?;
         Ok(Self {
             folder,
             index,
@@ -149,6 +150,15 @@ pub(super) fn tell_damage(index: &JournalIndex, tell: impl Fn(&str)) {
         let path = written.path.display();
         tell(&format!("{path}: begins with no whole frame; nothing of it is used"));
     }
+}
+
+/// Refuses what a folder holds and is of no use to a study.
+fn check_use(index: &JournalIndex, now: &Binding, setting: &SweepSetting) -> Result<(), Refusal> {
+    check(index, now, setting)?;
+    if index.files.is_empty() {
+        refuse_without_journal(&setting.out)?;
+    }
+    Ok(())
 }
 
 /// Refuses a journal whose records are of no use to a study.

@@ -6,6 +6,7 @@ use super::{ExportError, LoadRequest, Request};
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
+use pontoon_core::input::bound;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
 use pontoon_plan::input::{Document, Refusal, RefusalKind};
 use pontoon_plan::job::{CrossingJob, Job, Jobs, Task};
@@ -277,7 +278,7 @@ fn static_case(
     let load_x_m = match (load.load_x_m, load.load_position) {
         (Some(x_m), None) if (0.0..=design.length_m()).contains(&x_m) => x_m,
         (Some(x_m), None) => {
-            let allowed = format!("a number from 0 to {}", design.length_m());
+            let allowed = format!("a number from 0 to {}", bound(design.length_m()));
             return Err(refuse("--load-x-m", x_m.to_string(), allowed));
         }
         (None, Some(position)) if (1..=design.positions()).contains(&position) => design.position_x_m(position),
