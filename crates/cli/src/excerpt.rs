@@ -4,7 +4,7 @@
 
 use crate::terminal::TextStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, renderer::DecorStyle};
-use pontoon_plan::input::{Mark, MarkKind, Refusal, RefusalKind, mark};
+use pontoon_plan::input::{Mark, MarkKind, Refusal, RefusalKind, mark, without_mark};
 use pontoon_results::labels::printable;
 use std::fs;
 use std::ops::Range;
@@ -37,7 +37,7 @@ fn text_of(file: &Path) -> Option<String> {
     if !known.is_file() || known.len() > LARGEST || written_here {
         return None;
     }
-    fs::read_to_string(file).ok()
+    fs::read_to_string(file).ok().map(|text| without_mark(&text).to_owned())
 }
 
 /// What is said at the place.

@@ -5,7 +5,7 @@
 
 use crate::study_file::StudySpec;
 use pontoon_core::bridge::BridgeDesign;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Of a study file.
 pub fn study() -> Value {
@@ -17,8 +17,11 @@ pub fn bridge() -> Value {
     titled(schemars::schema_for!(BridgeDesign), "pontoon bridge")
 }
 
-/// A schema with its title.
+/// A schema with its title, which a file may name.
 pub fn titled(mut schema: schemars::Schema, title: &str) -> Value {
     schema.insert("title".to_owned(), title.into());
-    schema.to_value()
+    let mut schema = schema.to_value();
+    let text = "Address of this schema, for an editor; nothing is read from it.";
+    schema["properties"]["$schema"] = json!({ "type": "string", "description": text });
+    schema
 }

@@ -24,20 +24,20 @@ fn a_draft_and_a_freeboard_are_those_of_the_module() {
         "",
         "freeboard_m",
         json!(0.9),
-        &["freeboard_m: found 0.9, allowed: about 0.945, what the depth of 1.07 leaves above the draft of 0.125"],
+        &["freeboard_m: found 0.9, allowed: about 0.973, what the depth of 1.07 leaves above the draft of 0.097"],
     );
     // an axis that makes the other one wrong
-    grid("bridge.draft_m", json!([0.125, 0.2]), &["design[0].grid"]);
+    grid("bridge.draft_m", json!([0.097, 0.15]), &["design[0].grid"]);
     // rounded to centimetres they are the depth
     let mut stage = Stage::new();
-    (stage.bridge["draft_m"], stage.bridge["freeboard_m"]) = (json!(0.13), json!(0.95));
+    (stage.bridge["draft_m"], stage.bridge["freeboard_m"]) = (json!(0.1), json!(0.96));
     let output = stage.write().pontoon(&["plan", "study.json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
 #[test]
 fn a_draft_is_that_of_the_mass_and_of_the_table() {
-    for (draft, refused) in [(0.05, true), (0.1, false), (0.2, false), (0.4, true)] {
+    for (draft, refused) in [(0.04, true), (0.06, false), (0.18, false), (0.3, true)] {
         let mut stage = Stage::new();
         (stage.bridge["draft_m"], stage.bridge["freeboard_m"]) = (json!(draft), json!(1.07 - draft));
         let output = stage.write().pontoon(&["plan", "study.json"]);
@@ -47,7 +47,7 @@ fn a_draft_is_that_of_the_mass_and_of_the_table() {
             Some(if refused { 2 } else { 0 }),
             "{draft}: {told}"
         );
-        let message = format!("draft_m: found {draft}, allowed: about 0.125, which the mass of the module gives (6");
+        let message = format!("draft_m: found {draft}, allowed: about 0.097, which the mass of the module gives (5265 kg)");
         assert_eq!(told.contains(&message), refused, "{told}");
     }
     let mut stage = Stage::new();
@@ -60,7 +60,7 @@ fn a_draft_is_that_of_the_mass_and_of_the_table() {
         json!({ "draft_m": [0, 0.3], "buoyancy_n": [0, 1.2e5], "still_water_draft_m": 0.15 });
     super::refusals::refused(
         stage.write(),
-        &["draft_m: found 0.125, allowed: about 0.15, the draft of draft_buoyancy.still_water_draft_m"],
+        &["draft_m: found 0.097, allowed: about 0.15, the draft of draft_buoyancy.still_water_draft_m"],
     );
 }
 

@@ -84,6 +84,131 @@ fn bash_loads_its_script_and_completes_commands_flags_and_values() {
     }
 }
 
+/// What fish offers for a line; nothing where it is not there.
+fn offered_by_fish(stage: &Stage, line: &str) -> Option<Vec<String>> {
+    let output = Command::new("fish")
+        .args(["--no-config", "-c", &format!("source ./pontoon.fish; complete -C '{line}'")])
+        .current_dir(stage.path(""))
+        .env("HOME", stage.path(""))
+        .output()
+        .ok()?;
+    assert_eq!(stderr(&output), "", "{line}");
+    let first = |line: &str| line.split('\t').next().unwrap_or_default().to_owned();
+    Some(stdout(&output).lines().map(first).collect())
+}
+
+#[test]
+fn fish_completes_words_where_a_word_is_due_and_files_where_a_file_is() {
+    let stage = Stage::new();
+    fs::write(stage.path("pontoon.fish"), script(&stage, "fish")).unwrap();
+    fs::write(stage.path("notes.txt"), "").unwrap();
+    if offered_by_fish(&stage, "pontoon ").is_none() {
+        return;
+    }
+    let offered = |line: &str| offered_by_fish(&stage, line).unwrap();
+    let commands = commands(&stage);
+    for (line, mut expected) in [
+        ("pontoon schema ", vec!["study", "bridge", "reference", "parameters", "tables"]),
+        ("pontoon completions ", vec!["bash", "elvish", "fish", "powershell", "zsh"]),
+        ("pontoon schema st", vec!["study"]),
+        ("pontoon schema study ", vec![]),
+        ("pontoon plan --format j", vec!["json", "junit"]),
+        ("pontoon comp", vec!["compare", "completions"]),
+        ("pontoon run --max", vec!["--max-failures"]),
+        ("pontoon run --threads ", vec![]),
+        ("pontoon help ", [commands.iter().map(String::as_str).collect(), vec!["help"]].concat()),
+        ("pontoon help comp", vec!["compare", "completions"]),
+    ] {
+        let mut found = offered(line);
+        found.sort();
+        expected.sort_unstable();
+        assert_eq!(found, expected, "{line}");
+    }
+    for line in ["pontoon run ", "pontoon run --out ", "pontoon export not"] {
+        assert!(offered(line).contains(&"notes.txt".to_owned()), "{line}: {:?}", offered(line));
+    }
+    for command in &commands {
+        let offered = offered(&format!("pontoon {command} --"));
+        for flag in flags(&stage, command) {
+            assert!(offered.contains(&flag), "{command} {flag}: {offered:?}");
+        }
+        assert!(!offered.contains(&"--apart".to_owned()), "{command}: {offered:?}");
+    }
+}
+
+/// A shell at a terminal of its own that types lines and a tab, and its settings, by which it writes down what it offers.
+const ZSH_TYPES: &str = r#"
+zmodload zsh/zpty
+zpty shell 'ZDOTDIR=$PWD FPATH=$PWD:$FPATH zsh -i'
+# what is typed before there is a prompt would not be completed
+zpty -w shell ": >offered"
+repeat 200; do
+  [[ -e offered ]] && break
+  sleep 0.05
+done
+for line in "$@"; do
+  before=$(wc -l <offered)
+  zpty -w -n shell "$line"$'\t'
+  repeat 200; do
+    [[ $(wc -l <offered) != $before ]] && break
+    sleep 0.05
+  done
+  zpty -w -n shell $'\x15'" print -r -- 'END:$line' >>offered"$'\n'
+  repeat 200; do
+    grep -qsxF "END:$line" offered && break
+    sleep 0.05
+  done
+done
+zpty -d shell
+"#;
+const ZSH_SETTINGS: &str = r#"
+autoload -Uz compinit && compinit -u -D
+compadd() {
+  if [[ ${@[1,(i)(-|--)]} == *-(O|A|D)\ * ]]; then builtin compadd "$@"; return $?; fi
+  local -a hits
+  builtin compadd -A hits "$@"
+  print -rl -- $hits >>offered
+  builtin compadd "$@"
+}
+"#;
+
+#[test]
+fn zsh_completes_words_where_a_word_is_due() {
+    let stage = Stage::new();
+    for (name, text) in [
+        ("_pontoon", script(&stage, "zsh").as_str()),
+        (".zshrc", ZSH_SETTINGS),
+        ("types", ZSH_TYPES),
+    ] {
+        fs::write(stage.path(name), text).unwrap();
+    }
+    let lines = [
+        ("pontoon comp", vec!["compare", "completions"]),
+        ("pontoon schema ", vec!["bridge", "parameters", "reference", "study", "tables"]),
+        ("pontoon completions ", vec!["bash", "elvish", "fish", "powershell", "zsh"]),
+        ("pontoon help comp", vec!["compare", "completions"]),
+        ("pontoon plan --format j", vec!["json", "junit"]),
+    ];
+    let types = Command::new("zsh")
+        .args(["-f", "types"])
+        .args(lines.iter().map(|(line, _)| line))
+        .current_dir(stage.path(""))
+        .env("HOME", stage.path(""))
+        .output();
+    let Ok(output) = types else { return };
+    assert_eq!(stderr(&output), "");
+    let offered = fs::read_to_string(stage.path("offered")).unwrap();
+    let mut rest = offered.as_str();
+    for (line, expected) in lines {
+        let (of_line, behind) = rest.split_once(&format!("END:{line}\n")).unwrap_or_else(|| panic!("{line}: {offered}"));
+        let mut found: Vec<&str> = of_line.lines().filter(|word| !word.is_empty()).collect();
+        found.sort_unstable();
+        found.dedup();
+        assert_eq!(found, expected, "{line}");
+        rest = behind;
+    }
+}
+
 #[test]
 fn every_shell_has_a_script_that_names_every_command_and_its_own_shell_reads_it() {
     let stage = Stage::new();

@@ -243,11 +243,9 @@ fn tabs_line_ends_marks_and_characters_of_many_bytes_do_not_move_the_mark() {
         place(&stage(wide)),
         " --> study.json:1:42\n  |\n1 | { \"name\": \"日本\", \"bridge\": \"bridge.json\", \"analysys\": {} }\n  |                                            ^^^^^^^^^^ nearest known: analysis\n"
     );
-    let marked = place(&stage(&format!("\u{feff}{STUDY}")));
-    assert!(
-        marked.starts_with(" --> study.json:1:1\n") && marked.contains("^ allowed: JSON without one"),
-        "{marked}"
-    );
+    // what an editor writes before a text is no part of its first line
+    let marked = place(&stage(&format!("\u{feff}{}", wide)));
+    assert!(marked.starts_with(" --> study.json:1:42\n"), "{marked}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 use super::path::join_steps;
 use super::refusal::{FoundValue, Refusal, RefusalKind};
-use super::strict::{self, FaultKind, MARK, MOST_LEVELS, SyntaxFault, canonical};
+use super::strict::{self, FaultKind, MOST_LEVELS, SyntaxFault, canonical};
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
@@ -17,10 +17,20 @@ impl Document {
     /// Reads a file as one document.
     ///
     /// # Errors
-    /// [`Refusal`] where the file cannot be read, is not JSON, names a key twice or holds a number that is not finite.
+    /// [`Refusal`] where the file cannot be read, is not JSON in UTF-8, names a key twice or holds a number that is not finite.
     pub fn read(file: &Path) -> Result<Self, Refusal> {
-        let text = std::fs::read_to_string(file)
+        let bytes = std::fs::read(file)
             .map_err(|e| Refusal::new(file, "", format!("no readable file ({e})"), "a JSON file"))?;
+        let text = String::from_utf8(bytes).map_err(|no_text| {
+            let found = match no_text.as_bytes() {
+                bytes if is_utf16(bytes) => "a text in UTF-16".to_owned(),
+                _ => format!("byte {} that is no UTF-8", no_text.utf8_error().valid_up_to()),
+            };
+            Refusal::new(file, "", found, "a JSON file in UTF-8")
+        })?;
+        if is_utf16(text.as_bytes()) {
+            return Err(Refusal::new(file, "", "a text in UTF-16", "a JSON file in UTF-8"));
+        }
         Self::parse(file, &text)
     }
 
@@ -29,10 +39,12 @@ impl Document {
     /// # Errors
     /// As above.
     pub fn parse(file: &Path, text: &str) -> Result<Self, Refusal> {
+        let text = without_mark(text);
         if text.trim().is_empty() {
             return Err(Refusal::new(file, "", "an empty file", "a JSON file"));
         }
         match strict::canonical_of(text) {
+            Ok(canonical) if canonical.contains(SCHEMA) => without_schema(file, &canonical),
             Ok(canonical) => Ok(Self(canonical.into())),
             Err(fault) => Err(refusal(file, text, fault)),
         }
@@ -60,6 +72,35 @@ impl From<&Value> for Document {
     }
 }
 
+/// What an editor may write before the text of a file, and is no part of it.
+const MARK: char = '\u{feff}';
+
+/// The text of a file without a byte order mark before it.
+pub fn without_mark(text: &str) -> &str {
+    text.strip_prefix(MARK).unwrap_or(text)
+}
+
+/// Whether a text that begins in ASCII, as JSON does, is one in UTF-16.
+fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1..=255, ..] | [1..=255, 0, ..])
+}
+
+/// The key by which an editor finds the schema of a file; nothing is read from it.
+const SCHEMA: &str = "$schema";
+
+/// The document of a canonical text without the address of its schema.
+fn without_schema(file: &Path, canonical: &str) -> Result<Document, Refusal> {
+    let mut value: Value = serde_json::from_str(canonical).unwrap_or_default();
+    match value.as_object_mut().and_then(|keys| keys.shift_remove(SCHEMA)) {
+        None => Ok(Document(canonical.into())),
+        Some(Value::String(_)) => Ok(Document(value.to_string().into())),
+        Some(other) => {
+            let refused = Refusal::new(file, SCHEMA, &other, "the address of a schema, a text");
+            Err(refused.because(RefusalKind::WrongType))
+        }
+    }
+}
+
 /// The text of the canonical value, on one line.
 pub fn canonical_text(value: &Value) -> String {
     canonical(value).to_string()
@@ -76,14 +117,6 @@ fn refusal(file: &Path, text: &str, fault: SyntaxFault) -> Refusal {
         Refusal::new(file, path, found, allowed).because(RefusalKind::Syntax)
     };
     match fault.kind {
-        FaultKind::ByteOrderMark => {
-            debug_assert!(text.starts_with(MARK));
-            syntax(
-                String::new(),
-                "a byte order mark before the text".to_owned(),
-                "JSON without one",
-            )
-        }
         FaultKind::RepeatedKey(name) => {
             let found = FoundValue::value(name).which(place);
             Refusal::new(file, path, found, "each key once").because(RefusalKind::RepeatedKey)
@@ -137,7 +170,6 @@ mod tests {
         for (text, found) in [
             ("", "an empty file"),
             (" \n", "an empty file"),
-            ("\u{feff}{}", "a byte order mark before the text"),
             (
                 &"[".repeat(1000),
                 "lists and objects nested too deep (line 1, column 128)",
@@ -157,6 +189,33 @@ mod tests {
     fn as_many_levels_as_are_allowed_are_read() {
         let text = "[".repeat(MOST_LEVELS) + &"]".repeat(MOST_LEVELS);
         assert_eq!(Document::parse(Path::new("f.json"), &text).unwrap().text(), text);
+    }
+
+    #[test]
+    fn a_mark_and_the_address_of_a_schema_are_no_part_of_a_document() {
+        let read = |text: &str| Document::parse(Path::new("f.json"), text).map(|document| document.text().to_owned());
+        assert_eq!(read("\u{feff}{\"a\": 1}").unwrap(), r#"{"a":1}"#);
+        assert_eq!(read(r#"{"a": 1, "$schema": "x.json", "b": 2}"#).unwrap(), r#"{"a":1,"b":2}"#);
+        assert_eq!(read(r#"{"a": {"$schema": "x"}}"#).unwrap(), r#"{"a":{"$schema":"x"}}"#);
+        let e = refused(r#"{"$schema": 3}"#);
+        assert_eq!((e.path.as_str(), e.kind), ("$schema", RefusalKind::WrongType), "{e}");
+        // places are those of the text behind the mark
+        assert!(refused("\u{feff}{\"a\":1,}").to_string().contains("line 1, column 8"));
+    }
+
+    #[test]
+    fn a_text_of_another_encoding_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("f.json");
+        let told = |bytes: &[u8]| {
+            std::fs::write(&file, bytes).unwrap();
+            Document::read(&file).unwrap_err().found.words.clone()
+        };
+        let utf16 = |units: &mut dyn Iterator<Item = u16>| units.flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+        assert_eq!(told(&utf16(&mut "\u{feff}{}".encode_utf16())), "a text in UTF-16");
+        assert_eq!(told(&utf16(&mut "{}".encode_utf16())), "a text in UTF-16");
+        assert_eq!(told(&[0xfe, 0xff, 0, b'{', 0, b'}']), "a text in UTF-16");
+        assert_eq!(told(b"{\"a\": \"\xe9\"}"), "byte 7 that is no UTF-8");
     }
 
     #[test]

@@ -29,7 +29,7 @@ mod trouble;
 mod typed;
 
 pub use cell::Cell;
-pub use document::{Document, canonical_text};
+pub use document::{Document, canonical_text, without_mark};
 pub(crate) use path::join;
 pub use path::{DocumentPath, Obstacle, leaves};
 pub use pretty::pretty;

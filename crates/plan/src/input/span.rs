@@ -100,7 +100,7 @@ fn of_fault(text: &str, fault: strict::SyntaxFault) -> Mark {
             first.map_or(MarkKind::Key, MarkKind::Twice)
         }
         FaultKind::Syntax(message) => MarkKind::Fault(Some(message)),
-        FaultKind::ByteOrderMark | FaultKind::TooDeep | FaultKind::NotFinite => MarkKind::Fault(None),
+        FaultKind::TooDeep | FaultKind::NotFinite => MarkKind::Fault(None),
     };
     Mark {
         bytes: fault.bytes,

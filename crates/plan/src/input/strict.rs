@@ -10,9 +10,6 @@ use std::collections::HashSet;
 use std::fmt::{self, Write};
 use std::ops::Range;
 
-/// What may stand before the text of a file and is no part of it.
-pub(super) const MARK: char = '\u{feff}';
-
 /// Lists and objects within each other that the reader goes into.
 pub(super) const MOST_LEVELS: usize = 127;
 
@@ -30,8 +27,6 @@ pub(super) struct SyntaxFault {
 /// What is wrong with a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum FaultKind {
-    /// There is a byte order mark before it.
-    ByteOrderMark,
     /// Lists and objects are nested too deep.
     TooDeep,
     /// A key is there twice in one object; the second stands at the fault's bytes.
@@ -45,13 +40,6 @@ pub(super) enum FaultKind {
 /// The canonical text of a document: no blanks, whole numbers written as whole numbers (`3.0` as `3`, `-0.0` as `0`), so that
 /// equal documents have equal texts.
 pub(super) fn canonical_of(text: &str) -> Result<String, SyntaxFault> {
-    if text.starts_with(MARK) {
-        return Err(SyntaxFault {
-            bytes: 0..MARK.len_utf8(),
-            kind: FaultKind::ByteOrderMark,
-            path: Vec::new(),
-        });
-    }
     let (mut to, mut state) = (String::with_capacity(text.len()), FaultState::default());
     let mut reader = serde_json::Deserializer::from_str(text);
     let root = Copied {
@@ -68,9 +56,7 @@ pub(super) fn canonical_of(text: &str) -> Result<String, SyntaxFault> {
 
 /// What is wrong with a text, if anything is. An empty one has no place to show.
 pub(super) fn fault(text: &str) -> Option<SyntaxFault> {
-    canonical_of(text)
-        .err()
-        .filter(|fault| fault.kind == FaultKind::ByteOrderMark || !text.trim().is_empty())
+    canonical_of(text).err().filter(|_| !text.trim().is_empty())
 }
 
 /// What is known of a fault before its place is.

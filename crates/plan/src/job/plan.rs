@@ -335,7 +335,7 @@ mod tests {
         let same = [
             json!({ "bridge.connectors.stiffness_n_m": 2e7 }),
             json!({ "bridge.connectors.gap_tension_m": 0.01 }),
-            json!({ "bridge.draft_m": 0.13, "bridge.freeboard_m": 0.94 }),
+            json!({ "bridge.draft_m": 0.1, "bridge.freeboard_m": 0.97 }),
         ];
         let jobs =
             jobs(json!([{ "cases": same.map(case) }, { "cases": [case(json!({ "bridge.modules": 4 }))] }])).unwrap();
