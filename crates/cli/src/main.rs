@@ -59,6 +59,10 @@ fn main() -> ExitCode {
         let refused = "--format markdown and junit are those of a comparison: text or json";
         Arguments::command().error(ErrorKind::InvalidValue, refused).exit();
     }
+    if let Err(no_fault) = pontoon_journal::fault::check() {
+        text::note(&format!("pontoon: {}", text::printable(&no_fault.to_string())));
+        return ExitCode::from(2);
+    }
     let ended = match arguments.command {
         Command::Run(run) => commands::run::run(&run, common),
         Command::Status(status) => commands::status::status(&status, common),

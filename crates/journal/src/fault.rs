@@ -9,6 +9,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
+use thiserror::Error;
 
 /// Name of the environment's variable.
 const VARIABLE: &str = "PONTOON_FAULT";
@@ -34,9 +35,62 @@ fn asked() -> Option<&'static Fault> {
     FAULT.get_or_init(|| parse(&std::env::var(VARIABLE).ok()?)).as_ref()
 }
 
+/// The places that a fault may strike, but those of jobs, `job.NUMBER`.
+const PLACES: [&str; 20] = [
+    "aside.rename",
+    "canary",
+    "export.rename",
+    "export.renamed",
+    "export.sync",
+    "export.write",
+    "journal.begin",
+    "journal.begin.sync",
+    "journal.begun",
+    "journal.sync",
+    "journal.synced",
+    "journal.write",
+    "journal.written",
+    "merge.copy",
+    "merge.rename",
+    "tables.rename",
+    "tables.renamed",
+    "tables.sync",
+    "tables.synced",
+    "tables.write",
+];
+
+/// What is asked for and is no fault: nobody should take a run without one for a run that outlived one.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error(
+    "PONTOON_FAULT: found \"{found}\", allowed: PLACE:NUMBER:HOW, a place of {}, or job.N; a number from 1; die, short, full or error",
+    PLACES.join(", ")
+)]
+pub struct NoFault {
+    /// What the environment has.
+    pub found: String,
+}
+
+/// Checks the fault that the environment asks for, if it asks for one.
+///
+/// # Errors
+/// [`NoFault`].
+pub fn check() -> Result<(), NoFault> {
+    let Some(asked) = std::env::var_os(VARIABLE).filter(|asked| !asked.is_empty()) else {
+        return Ok(());
+    };
+    let found = asked.to_string_lossy().into_owned();
+    parse(&found).map(|_| ()).ok_or(NoFault { found })
+}
+
 fn parse(text: &str) -> Option<Fault> {
     let mut parts = text.split(':');
     let (place, number, how) = (parts.next()?, parts.next()?.parse().ok()?, parts.next()?);
+    let of_job = place
+        .strip_prefix("job.")
+        .is_some_and(|job| job.parse::<usize>().is_ok());
+    if !(of_job || PLACES.contains(&place)) || number == 0 || parts.next().is_some() {
+        return None;
+    }
     let how = match how {
         "die" => How::Die,
         "short" => How::Short,
@@ -143,7 +197,17 @@ mod tests {
             (fault.place.as_str(), fault.number, fault.how),
             ("journal.write", 3, How::Full)
         );
-        for wrong in ["", "a", "a:b:die", "a:1:sleep"] {
+        assert!(parse("job.12:1:die").is_some());
+        for wrong in [
+            "",
+            "canary",
+            "canary:b:die",
+            "canary:1:sleep",
+            "canary:0:die",
+            "canary:1:die:1",
+            "cannary:1:die",
+            "job.x:1:die",
+        ] {
             assert!(parse(wrong).is_none(), "{wrong}");
         }
     }

@@ -121,3 +121,26 @@ fn results_set_aside_by_a_process_that_dies_are_set_aside_by_the_next() {
     }
     assert!(kept.join("journal").is_dir() && kept.join("manifest.json").is_file());
 }
+
+/// A fault that no place knows would make a run look as if it had outlived one.
+#[test]
+fn a_misspelt_fault_is_refused() {
+    let stage = sweep(2, 0.05);
+    for fault in [
+        "journal.wirte:3:short",
+        "journal.write:3:shrt",
+        "journal.write",
+        "journal.write:0:die",
+    ] {
+        let output = run_with(&stage, "r", fault);
+        let told = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{fault}: {told}");
+        assert!(
+            told.starts_with(&format!(
+                "pontoon: PONTOON_FAULT: found \"{fault}\", allowed: PLACE:NUMBER:HOW"
+            )),
+            "{told}"
+        );
+        assert!(!stage.path("r").exists());
+    }
+}

@@ -13,12 +13,13 @@ use pontoon_plan::study_file::Study;
 use pontoon_results::Failure;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Folders of results with how far their runs have come.
 #[derive(Debug, Clone, Serialize)]
 pub struct Standings {
-    /// Each folder.
+    /// Each folder, once.
     pub folders: Vec<(PathBuf, Standing)>,
     /// Jobs asked for, in all folders.
     pub jobs: usize,
@@ -45,7 +46,12 @@ pub fn standings(folders: &[PathBuf]) -> Result<Standings, SweepError> {
         missing: 0,
         shards_missing: Vec::new(),
     };
+    let mut known = BTreeSet::new();
     for folder in folders {
+        // the same folder by another name is the same folder
+        if !known.insert(folder.canonicalize().unwrap_or_else(|_| folder.clone())) {
+            continue;
+        }
         let standing = match Standing::told(folder) {
             Some(told) => told,
             None => counted(folder)?,
