@@ -59,19 +59,41 @@ impl From<AnalysisError> for JobFailure {
 
 impl From<BridgeError> for JobFailure {
     fn from(error: BridgeError) -> Self {
-        Self::not_prepared(&error)
+        match error {
+            BridgeError::Fem(error) => error.into(),
+            error @ BridgeError::Design(_) => Self::not_prepared(&error),
+        }
     }
 }
 
 impl From<OperatorError> for JobFailure {
-    fn from(error: OperatorError) -> Self {
-        Self::not_prepared(&error)
+    fn from(OperatorError::Factor(error): OperatorError) -> Self {
+        error.into()
     }
 }
 
 impl From<FemError> for JobFailure {
     fn from(error: FemError) -> Self {
-        Self::not_prepared(&error)
+        let failure = Self::not_prepared(&error);
+        match keys_of(&error) {
+            Some(keys) => failure.said("", &format!(": look at {keys}")),
+            None => failure,
+        }
+    }
+}
+
+/// The keys of a study whose values may have brought an error of the finite elements about.
+fn keys_of(error: &FemError) -> Option<&'static str> {
+    match error {
+        FemError::Eigen { .. } | FemError::BadPair { .. } => Some(
+            "bridge.module.material (units: Pa, kg/m^3), the thicknesses of bridge.module (m) and \
+             bridge.condensation.fixed_master_modes",
+        ),
+        FemError::NotPositiveDefinite { .. } | FemError::BadFactor { .. } => Some(
+            "bridge.module.material, the thicknesses of bridge.module, bridge.hydrostatic_stiffness_pa_m and bridge.supports",
+        ),
+        FemError::Degenerate { .. } => Some("the sizes of bridge.module and bridge.module.mesh"),
+        FemError::Shift { .. } | FemError::OutOfMemory { .. } => None,
     }
 }
 
@@ -111,6 +133,23 @@ fn failure_of(error: &AnalysisError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_error_of_the_finite_elements_names_the_keys_that_may_have_brought_it_about() {
+        let failure = JobFailure::from(BridgeError::Fem(FemError::Eigen {
+            asked: 16,
+            converged: 0,
+        }))
+        .failure;
+        assert_eq!(failure.kind, FailureKind::NotPrepared);
+        assert!(
+            failure
+                .text
+                .starts_with("0 of 16 eigenvalues converged: look at bridge.module.material (units: Pa"),
+            "{}",
+            failure.text
+        );
+    }
 
     #[test]
     fn an_error_keeps_its_kind_its_numbers_and_its_words() {
