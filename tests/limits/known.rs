@@ -196,7 +196,8 @@ fn deflections_are_reciprocal() {
     let ready = Ready::new(&with(&design("smoke"), |d| d.modules = 4), Model::SuperElement);
     let point = Axle {
         behind_front_m: 0.0,
-        share: 1.0,
+        share: Some(1.0),
+        load_n: None,
         patch_length_m: 0.0,
         patch_width_m: 0.0,
         track_y_m: vec![0.0],

@@ -132,7 +132,8 @@ impl BeamModule {
     pub fn axle(&self, patch_length_m: f64, points: usize, inertia: Inertia) -> Vehicle {
         let axle = Axle {
             behind_front_m: 0.0,
-            share: 1.0,
+            share: Some(1.0),
+            load_n: None,
             patch_length_m,
             patch_width_m: 0.0,
             track_y_m: self.lines().to_vec(),

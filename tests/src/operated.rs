@@ -57,7 +57,8 @@ pub fn wide_axles(list: &[(f64, f64, f64, f64, [f64; 2])], inertia: Inertia, pat
     let axle =
         |&(behind_front_m, share, patch_length_m, patch_width_m, track_y_m): &(f64, f64, f64, f64, [f64; 2])| Axle {
             behind_front_m,
-            share,
+            share: Some(share),
+            load_n: None,
             patch_length_m,
             patch_width_m,
             track_y_m: track_y_m.to_vec(),

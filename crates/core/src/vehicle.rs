@@ -3,7 +3,7 @@
 //! Knows axles, patches and where their points stand for a given place of the vehicle. Does not know the bridge: what
 //! a point does to the deck is the track's business.
 
-use crate::input::{InvalidInput, Problem, bound, not_negative, positive, within};
+use crate::input::{Found, InvalidInput, Problem, bound, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -29,8 +29,13 @@ pub enum Inertia {
 pub struct Axle {
     /// Distance of the patch centre behind the vehicle's front `[m]`.
     pub behind_front_m: f64,
-    /// Share of the vehicle's weight; the shares of all axles sum to 1.
-    pub share: f64,
+    /// Share of the vehicle's weight; the shares of all axles sum to 1, within a thousandth. Either this or `load_n`, the same
+    /// for all axles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub share: Option<f64>,
+    /// Weight on the axle `[N]`; the sum of all axles is the vehicle's weight, and a study states no other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_n: Option<f64>,
     /// Length of the patch along the bridge `[m]`; 0 is a point.
     pub patch_length_m: f64,
     /// Width of the patch across the bridge `[m]`; 0 is a line.
@@ -119,6 +124,8 @@ pub struct Vehicle {
     pub patches: Vec<Patch>,
     /// Distances of the points ahead of the front `[m]`, each once; points side by side share one.
     pub along_m: Vec<f64>,
+    /// Weight `[N]`, where the axles state theirs.
+    pub weight_n: Option<f64>,
     /// Number of axles.
     pub axles: usize,
     /// How the mass takes part.
@@ -153,7 +160,8 @@ impl VehicleDesign {
             }
             None => Ok(vec![Axle {
                 behind_front_m: 0.0,
-                share: 1.0,
+                share: Some(1.0),
+                load_n: None,
                 patch_length_m: self.footprint_length_m.unwrap_or(DEFAULT_FOOTPRINT_LENGTH_M),
                 patch_width_m: 0.0,
                 track_y_m: self.track_y_m.clone().unwrap_or_else(|| DEFAULT_TRACK_Y_M.to_vec()),
@@ -185,10 +193,10 @@ impl VehicleDesign {
             ));
         }
         let half = 0.5 * deck_breadth_m;
+        let (shares, weight_n) = shares(&axles)?;
         let mut patches = Vec::new();
         for (k, axle) in axles.iter().enumerate() {
             not_negative(&key(k, "behind_front_m"), axle.behind_front_m)?;
-            positive(&key(k, "share"), axle.share)?;
             if single {
                 positive(&key(k, "patch_length_m"), axle.patch_length_m)?;
             }
@@ -207,28 +215,62 @@ impl VehicleDesign {
                     "at least one track",
                 ));
             }
-            let share = axle.share / axle.track_y_m.len() as f64;
+            let share = shares[k] / axle.track_y_m.len() as f64;
             for (t, &y) in axle.track_y_m.iter().enumerate() {
                 let reach = half - 0.5 * axle.patch_width_m;
                 within(&format!("{}[{t}]", key(k, "track_y_m")), y, -reach, reach)?;
                 patches.push(patch(k, axle, y, share, self.patch_points));
             }
         }
-        let sum: f64 = axles.iter().map(|a| a.share).sum();
-        if (sum - 1.0).abs() > 1e-9 {
-            return Err(InvalidInput::new(
-                "axles[*].share",
-                format!("a sum of {}", bound(sum)),
-                "shares that sum to 1",
-            ));
-        }
         Ok(Vehicle {
+            weight_n,
             along_m: number_places(&mut patches),
             patches,
             axles: axles.len(),
             inertia: self.inertia,
         })
     }
+}
+
+/// How far the sum of the shares may be off 1: three shares of 0.333 are 0.999.
+const ROUNDED_SHARES: f64 = 1.001e-3;
+
+/// The share of each axle, their sum 1, and the vehicle's weight `[N]` where its axles state theirs.
+fn shares(axles: &[Axle]) -> Result<(Vec<f64>, Option<f64>), InvalidInput> {
+    let by_loads = axles.first().is_some_and(|first| first.load_n.is_some());
+    let (own, other) = if by_loads {
+        ("load_n", "share")
+    } else {
+        ("share", "load_n")
+    };
+    let mut list = Vec::new();
+    for (k, axle) in axles.iter().enumerate() {
+        let key = |name: &str| format!("axles[{k}].{name}");
+        let (value, excluded) = match by_loads {
+            true => (axle.load_n, axle.share),
+            false => (axle.share, axle.load_n),
+        };
+        if let Some(excluded) = excluded {
+            let refused = InvalidInput::new(key(other), excluded, format!("{own} alone, the same for all axles"));
+            return Err(refused.because(Problem::Misplaced));
+        }
+        let Some(value) = value else {
+            let allowed = "a share of each axle, or a load_n of each";
+            let refused = InvalidInput::new(key(own), Found::Nothing, allowed);
+            return Err(refused.because(Problem::Missing));
+        };
+        list.push(positive(&key(own), value)?);
+    }
+    let sum: f64 = list.iter().sum();
+    if !by_loads && (sum - 1.0).abs() > ROUNDED_SHARES {
+        return Err(InvalidInput::new(
+            "axles[*].share",
+            format!("a sum of {}", bound(sum)),
+            "shares that sum to 1 within 0.001, or load_n in place of each share",
+        ));
+    }
+    list.iter_mut().for_each(|value| *value /= sum);
+    Ok((list, by_loads.then_some(sum)))
 }
 
 fn patch(k: usize, axle: &Axle, y: f64, share: f64, along: usize) -> Patch {

@@ -8,7 +8,7 @@ use super::parquet::TableProvenance;
 use crate::{BridgeReport, OperatorCounts, Outcome, Verification};
 use pontoon_journal::place::hash_of;
 use pontoon_plan::input::Refusal;
-use pontoon_plan::job::Job;
+use pontoon_plan::job::{Doubts, Job};
 use pontoon_plan::study_file::{ModelSpec, Study};
 use serde::Serialize;
 use serde_json::Value;
@@ -63,6 +63,8 @@ pub struct Manifest {
     pub failed: usize,
     /// Points of the designs that were equal to an earlier one.
     pub merged: usize,
+    /// Numbers of the study that look as if they were in another unit, in words.
+    pub notes: Vec<String>,
     /// Bridges whose documents differ after the axes.
     pub distinct_bridges: usize,
     /// Modules whose condensation differs: the connectors' gaps and stiffness, draft and freeboard are no part of it.
@@ -121,6 +123,7 @@ impl Manifest {
             jobs: jobs.len(),
             failed: outcome.failures.count,
             merged: study.points() - jobs.len(),
+            notes: Doubts::of(jobs).notes(),
             distinct_bridges: jobs.iter().map(|job| job.bridge.id).collect::<BTreeSet<_>>().len(),
             distinct_modules: condensed
                 .map(|job| &job.bridge.module_key)

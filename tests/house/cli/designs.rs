@@ -211,7 +211,7 @@ fn samples_that_cannot_be_drawn() {
             form(name, json!(5), json!({ "speed_m_s": [10, 5], "load_n": 1e5 })),
             &format!(".{name}.ranges.speed_m_s"),
             "[10,5]",
-            "[from, to], two numbers with from below to, or one number or word",
+            "[from, to], two numbers with from below to, {\"whole\": [from, to]}, {\"values\": [...]}, or one number or word",
         );
         bad(
             form(

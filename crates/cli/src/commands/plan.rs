@@ -20,6 +20,9 @@ pub(crate) fn plan(arguments: &PlanArguments, common: Common) -> Result<ExitStat
     let default_out = || PathBuf::from("results").join(&study.name);
     let out = arguments.out.clone().unwrap_or_else(default_out);
     let forecast = forecast(&study, &out, threads, Cache::of_user().as_ref())?;
+    if !common.quiet {
+        forecast.plan.notes.iter().for_each(|note| text::note(note));
+    }
     text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(forecast)),
         _ => text(&study, &forecast, &out.display().to_string(), TextStyle::of_results()),

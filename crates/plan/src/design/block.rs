@@ -2,7 +2,7 @@
 //!
 //! Knows what makes a design one that can be expanded: names, forms and sizes. Does not know what a point means.
 
-use super::axes::{Axis, JobAxis, Root, Varies, check_apart};
+use super::axes::{Axis, AxisValues, JobAxis, NamedAxis, Root, Varies, check_apart};
 use super::cases::{CaseRun, Cases};
 use super::condition::{Conditions, Test};
 use super::forms::{AxisMap, Design, Form, SampleSpec};
@@ -288,7 +288,12 @@ impl DesignReader<'_> {
         let read = spec.ranges.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
         let (axes, drawn): (_, Vec<SampledAxis>) = read.into_iter().unzip();
         if !drawn.iter().any(SampledAxis::is_range) {
-            let refused = Refusal::new(self.file, key, "no range", "at least one axis with a range [from, to]");
+            let refused = Refusal::new(
+                self.file,
+                key,
+                "no range",
+                "at least one axis with a range [from, to], whole or values",
+            );
             return Err(refused.because(RefusalKind::Missing));
         }
         let sample = RandomSample {
@@ -300,11 +305,27 @@ impl DesignReader<'_> {
     }
 
     fn drawn(&self, key: &str, name: &str, written: &Value) -> Result<SampledAxis, Refusal> {
-        let allowed = "[from, to], two numbers with from below to, or one number or word";
+        let allowed = "[from, to], two numbers with from below to, {\"whole\": [from, to]}, {\"values\": [...]}, or one number or word";
+        let counts = || matches!(NamedAxis::of(name).map(|axis| axis.values), Some(AxisValues::Counts));
         match written {
             Value::Number(_) | Value::String(_) | Value::Bool(_) => {
                 Ok(SampledAxis::Constant(Cell::from(written).canonical()))
             }
+            Value::Object(map) if map.len() == 1 => match map.iter().next() {
+                Some((form, ends)) if form == "whole" => self.whole(&format!("{key}.whole"), ends),
+                Some((form, Value::Array(list))) if form == "values" && !list.is_empty() => {
+                    Ok(SampledAxis::OneOf(list.iter().map(Cell::from).collect()))
+                }
+                Some((form, list)) if form == "values" => {
+                    self.refuse(format!("{key}.values"), list, "a list of at least one value")
+                }
+                Some((form, _)) => {
+                    let known = ["whole", "values"].map(str::to_owned);
+                    Err(Refusal::unknown_key(self.file, format!("{key}.{form}"), form, &known))
+                }
+                None => self.refuse(key, written, allowed),
+            },
+            Value::Array(_) if counts() => self.whole(key, written),
             _ if name == "connection" => self.refuse(key, written, "linear or nonlinear, the same for all points"),
             Value::Array(ends) => match (
                 ends.as_slice(),
@@ -321,6 +342,26 @@ impl DesignReader<'_> {
                 _ => self.refuse(key, written, allowed),
             },
             _ => self.refuse(key, written, allowed),
+        }
+    }
+
+    /// The whole numbers of `[from, to]`, both included.
+    fn whole(&self, key: &str, ends: &Value) -> Result<SampledAxis, Refusal> {
+        // beyond these, numbers of a file are no longer each a number of their own
+        const MOST: f64 = 9e15;
+        let numbers: Vec<f64> = ends
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_f64)
+            .collect();
+        match (numbers.as_slice(), ends.as_array().map(Vec::len)) {
+            (&[from, to], Some(2))
+                if from < to && [from, to].iter().all(|end| end.fract() == 0.0 && end.abs() <= MOST) =>
+            {
+                Ok(SampledAxis::Whole(from as i64, to as i64))
+            }
+            _ => self.refuse(key, ends, "[from, to], two whole numbers with from below to"),
         }
     }
 

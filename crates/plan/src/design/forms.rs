@@ -177,12 +177,27 @@ impl JsonSchema for RangeMap {
                 "type": "array", "description": "[from, to], from below to",
                 "items": { "type": "number" }, "minItems": 2, "maxItems": 2
             });
-            json!({ "anyOf": [ends, constant] })
+            let whole = json!({
+                "type": "object", "description": "A whole number from one to another, both included, each as likely.",
+                "required": ["whole"], "additionalProperties": false,
+                "properties": { "whole": { "type": "array", "items": { "type": "integer" }, "minItems": 2, "maxItems": 2 } }
+            });
+            let values = json!({
+                "type": "object", "description": "One of these values, each as likely.",
+                "required": ["values"], "additionalProperties": false,
+                "properties": { "values": { "type": "array", "minItems": 1 } }
+            });
+            json!({ "anyOf": [ends, whole, values, constant] })
         };
         object_of(
-            "Axes by name, each a range [from, to] or one value that all points have; at least one is a range.",
+            "Axes by name, each a range [from, to], whole numbers, a list of values, or one value that all points have; at least one is drawn.",
             &or(json!({ "type": "number" })),
-            &|words| words,
+            &|words| {
+                let values = json!({ "type": "array", "items": words, "minItems": 1 });
+                let drawn = json!({ "type": "object", "required": ["values"], "additionalProperties": false,
+                                    "properties": { "values": values } });
+                json!({ "anyOf": [words, drawn] })
+            },
             &or(json!({ "type": ["number", "string", "boolean"] })),
         )
     }

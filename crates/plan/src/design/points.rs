@@ -43,6 +43,10 @@ pub(super) enum SampledAxis {
     Constant(Cell<'static>),
     /// From the first to the second number.
     Range(f64, f64),
+    /// A whole number from the first to the second, each as likely.
+    Whole(i64, i64),
+    /// One of some values, each as likely.
+    OneOf(ValueColumn),
 }
 
 impl PointSource {
@@ -157,9 +161,15 @@ fn dimensions(names: &[&str]) -> Vec<usize> {
 }
 
 impl SampledAxis {
+    /// Whether it is drawn, and so has random numbers of its own.
     pub(super) fn is_range(&self) -> bool {
-        matches!(self, Self::Range(..))
+        !matches!(self, Self::Constant(_))
     }
+}
+
+/// The place of a share, 0 to 1, among so many equal parts.
+fn part(share: f64, parts: usize) -> usize {
+    ((share * parts as f64) as usize).min(parts - 1)
 }
 
 /// The values of a point whose ranges have these coordinates.
@@ -170,6 +180,11 @@ fn drawn_values<'a>(drawn: &'a [SampledAxis], mut shares: impl Iterator<Item = f
             let x = rounded(from + (to - from) * shares.next()?);
             Some(Cell::written(x.clamp(*from, *to)))
         }
+        SampledAxis::Whole(from, to) => {
+            let parts = usize::try_from(to - from).ok()?.saturating_add(1);
+            Some(Cell::Whole(from + part(shares.next()?, parts) as i64))
+        }
+        SampledAxis::OneOf(values) => Some(values.at(part(shares.next()?, values.len()))),
     };
     drawn.iter().map(value).collect()
 }

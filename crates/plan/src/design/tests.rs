@@ -260,8 +260,22 @@ fn what_is_no_sample_is_refused_by_key() {
             (json!(null), pair),
             (json!({"from": 2, "to": 20}), pair),
             (json!([-1.7e308, 1.7e308]), "ends that are not so far apart"),
+            (json!({"whole": [2, 2.5]}), "two whole numbers with from below to"),
+            (json!({"whole": [3, 2]}), "two whole numbers with from below to"),
+            (json!({"values": []}), "a list of at least one value"),
+            (json!({"vales": [1]}), "whole, values"),
         ] {
-            at(json!(2), json!({"speed_m_s": written}), "ranges.speed_m_s", "", allowed);
+            let inner = written.as_object().filter(|map| map.len() == 1);
+            let inner = inner
+                .and_then(|map| map.keys().next())
+                .map_or(String::new(), |key| format!(".{key}"));
+            at(
+                json!(2),
+                json!({"speed_m_s": written}),
+                &format!("ranges.speed_m_s{inner}"),
+                "",
+                allowed,
+            );
         }
         at(
             json!(2),
@@ -507,6 +521,24 @@ proptest! {
             for (a, b) in first.iter().zip(&last) {
                 prop_assert_eq!([a[0], a[1], a[2], a[3]], [b[2], b[1], b[3], b[0]]);
             }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_and_values_are_drawn_evenly(times in 1_usize..20, seed: u64) {
+        for form in ["latin_hypercube", "sobol"] {
+            // as many points as a power of two times the number of values
+            let count = if form == "sobol" { 64 } else { 4 * times };
+            let ranges = json!({"bridge.modules": {"whole": [3, 6]}, "load_position": [1, 4],
+                                "connection": {"values": ["linear", "nonlinear", "nonlinear", "linear"]},
+                                "speed_m_s": {"values": [5, 10, 12.5, 20]}});
+            let found = points(json!([{form: {"count": count, "seed": seed, "ranges": ranges}}]));
+            for (axis, value) in [(0, json!(3)), (0, json!(6)), (1, json!(1)), (1, json!(4)), (3, json!(12.5))] {
+                let times = found.iter().filter(|point| point[axis] == value).count();
+                prop_assert_eq!(times, count / 4, "{} {} {}", form, axis, value);
+            }
+            let linear = found.iter().filter(|point| point[2] == "linear").count();
+            prop_assert_eq!(linear, count / 2);
         }
     }
 

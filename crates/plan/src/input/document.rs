@@ -82,7 +82,10 @@ pub fn without_mark(text: &str) -> &str {
 
 /// Whether a text that begins in ASCII, as JSON does, is one in UTF-16.
 fn is_utf16(bytes: &[u8]) -> bool {
-    matches!(bytes, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1..=255, ..] | [1..=255, 0, ..])
+    matches!(
+        bytes,
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1..=255, ..] | [1..=255, 0, ..]
+    )
 }
 
 /// The key by which an editor finds the schema of a file; nothing is read from it.
@@ -195,7 +198,10 @@ mod tests {
     fn a_mark_and_the_address_of_a_schema_are_no_part_of_a_document() {
         let read = |text: &str| Document::parse(Path::new("f.json"), text).map(|document| document.text().to_owned());
         assert_eq!(read("\u{feff}{\"a\": 1}").unwrap(), r#"{"a":1}"#);
-        assert_eq!(read(r#"{"a": 1, "$schema": "x.json", "b": 2}"#).unwrap(), r#"{"a":1,"b":2}"#);
+        assert_eq!(
+            read(r#"{"a": 1, "$schema": "x.json", "b": 2}"#).unwrap(),
+            r#"{"a":1,"b":2}"#
+        );
         assert_eq!(read(r#"{"a": {"$schema": "x"}}"#).unwrap(), r#"{"a":{"$schema":"x"}}"#);
         let e = refused(r#"{"$schema": 3}"#);
         assert_eq!((e.path.as_str(), e.kind), ("$schema", RefusalKind::WrongType), "{e}");

@@ -68,14 +68,14 @@ impl Jobs<'_> {
         }
         let (task, connection, load_n) = match &analysis.analysis {
             Analysis::Crossing(crossing) => {
-                let (connection, load_n) = short.loaded(&bridge)?;
+                let (connection, load_n) = short.loaded(&bridge, &vehicle)?;
                 let speed_m_s = short.speed()?;
                 short.time_step(crossing, &bridge, &vehicle, speed_m_s)?;
                 short.damping(crossing, &bridge)?;
                 (Task::Crossing { speed_m_s }, connection, load_n)
             }
             Analysis::Static(_) => {
-                let (connection, load_n) = short.loaded(&bridge)?;
+                let (connection, load_n) = short.loaded(&bridge, &vehicle)?;
                 short.held(&bridge)?;
                 (Task::Static(short.place(&bridge)?), connection, load_n)
             }
@@ -165,9 +165,19 @@ impl Short<'_> {
     }
 
     /// How the connectors work and what the vehicle weighs.
-    fn loaded(&self, bridge: &BridgeEntry) -> Result<(Connection, f64), Refusal> {
+    fn loaded(&self, bridge: &BridgeEntry, vehicle: &VehicleEntry) -> Result<(Connection, f64), Refusal> {
         let connection = self.connection(bridge)?;
-        let load_n = self.positive(JobAxis::Load, self.required(JobAxis::Load)?)?;
+        let load_n = match vehicle.vehicle.weight_n {
+            Some(of_axles) => {
+                let weight = Cell::written(bound(of_axles));
+                self.absent(
+                    JobAxis::Load,
+                    &format!("no load beside those of the axles, {weight} N together"),
+                )?;
+                of_axles
+            }
+            None => self.positive(JobAxis::Load, self.required(JobAxis::Load)?)?,
+        };
         Ok((connection, load_n))
     }
 

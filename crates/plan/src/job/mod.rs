@@ -3,6 +3,7 @@
 //! | module | charter |
 //! |---|---|
 //! | `documents` | a point's bridge, vehicle and analysis, equal ones shared |
+//! | `doubts` | numbers that look as if they were in another unit |
 //! | `jobs` | the jobs of a study, one after the other |
 //! | `seen` | which jobs were there before |
 //! | `key` | what a job is known by from run to run |
@@ -12,6 +13,7 @@
 //! Knows every check that a single job needs. Does not run anything and writes nothing.
 
 mod documents;
+mod doubts;
 mod jobs;
 mod key;
 mod plan;
@@ -19,6 +21,7 @@ mod seen;
 mod shard;
 
 pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
+pub use doubts::Doubts;
 pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};

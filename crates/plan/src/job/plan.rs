@@ -3,7 +3,7 @@
 //! Knows what kinds of work there are. Knows roughly what a step costs, so that shards take equally long.
 //! Does not know this machine.
 
-use super::{Job, Jobs, Task};
+use super::{Doubts, Job, Jobs, Task};
 use crate::input::Refusal;
 use crate::study_file::{ModelSpec, Study};
 use serde::Serialize;
@@ -24,6 +24,8 @@ pub struct Plan {
     pub condensations: usize,
     /// Time steps of all crossings, bisected ones apart.
     pub steps: u64,
+    /// Numbers that look as if they were in another unit, in words.
+    pub notes: Vec<String>,
     /// What crossings by each solver and other jobs come to.
     #[serde(skip)]
     pub work: Work,
@@ -118,13 +120,16 @@ impl Plan {
             distinct_bridges: 0,
             condensations: 0,
             steps: 0,
+            notes: Vec::new(),
             work: Work::default(),
         };
+        let mut doubts = Doubts::default();
         let (mut bridges, mut modules) = (HashSet::new(), BTreeSet::new());
         for job in Jobs::new(study) {
             let job = job?;
             look(&job);
             plan.work.take(&job);
+            doubts.take(&job);
             plan.jobs += 1;
             plan.steps += job.steps() as u64;
             let model = job.model();
@@ -134,6 +139,7 @@ impl Plan {
         }
         plan.distinct_bridges = bridges.iter().map(|(id, _)| id).collect::<HashSet<_>>().len();
         plan.condensations = modules.len();
+        plan.notes = doubts.notes();
         Ok(plan)
     }
 }
@@ -288,6 +294,111 @@ mod tests {
             jobs.iter().map(|job| job.number).collect::<Vec<_>>(),
             (0..count).collect::<Vec<_>>()
         );
+    }
+
+    #[test]
+    fn numbers_in_another_unit_are_noted_and_not_refused() {
+        let notes = |more: Value| Doubts::of(&jobs(json!([{ "cases": [case(more)] }])).unwrap()).notes();
+        assert_eq!(notes(json!({})), Vec::<String>::new());
+        for (more, told) in [
+            (
+                json!({ "speed_m_s": 54, "analysis.time_step_s": 0.001 }),
+                "speed_m_s 54: above 30 m/s",
+            ),
+            (json!({ "load_n": 230 }), "load_n 230: below 1000 N"),
+            (json!({ "gap_tension_m": 28 }), "gap_tension_m 28: above the depth"),
+            (
+                json!({ "gap_compression_m": 5.5 }),
+                "gap_compression_m 5.5: above the depth",
+            ),
+            (
+                json!({ "bridge.module.material.youngs_modulus_pa": 200 }),
+                "bridge.module.material.youngs_modulus_pa 200: below 1e9 Pa: is it in GPa",
+            ),
+            (
+                json!({ "bridge.module.longitudinal_walls.thickness_m": 2.1, "bridge.draft_m": null,
+                        "bridge.freeboard_m": null }),
+                "bridge.module.longitudinal_walls.thickness_m 2.1: above 0.1 m: is it in mm?",
+            ),
+        ] {
+            let notes = notes(more);
+            assert!(notes.len() == 1 && notes[0].starts_with(told), "{notes:?}");
+        }
+        let three = json!([{ "grid": { "speed_m_s": [40, 50, 60], "load_n": 1e5, "analysis.time_step_s": 0.001 } }]);
+        assert_eq!(
+            Doubts::of(&jobs(three).unwrap()).notes(),
+            ["speed_m_s 40: above 30 m/s, which is 108 km/h: is it in km/h? (2 more jobs)"]
+        );
+    }
+
+    #[test]
+    fn axles_state_shares_or_loads() {
+        let axles = |a: Value, b: Value| {
+            let mut axles = [a, b];
+            for axle in &mut axles {
+                let more = json!({ "behind_front_m": 0, "patch_length_m": 0.3, "track_y_m": [0] });
+                axle.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+            }
+            json!({ "vehicle.axles": [axles] })
+        };
+        let with = |design: Value, more: Value| {
+            let mut grid = json!({ "speed_m_s": 10 });
+            for of in [design, more] {
+                grid.as_object_mut().unwrap().extend(of.as_object().unwrap().clone());
+            }
+            jobs(json!([{ "grid": grid }]))
+        };
+        let shares = |job: &Job| {
+            job.vehicle
+                .vehicle
+                .patches
+                .iter()
+                .map(|patch| patch.share)
+                .collect::<Vec<_>>()
+        };
+        let by_loads = axles(json!({ "load_n": 3e4 }), json!({ "load_n": 5e4 }));
+        let found = with(by_loads.clone(), json!({})).unwrap();
+        assert_eq!((found[0].load_n, shares(&found[0])), (8e4, vec![0.375, 0.625]));
+        assert_eq!(found[0].column("load_n"), Cell::Whole(80_000));
+        // rounded shares are shares
+        let third = |share: f64| axles(json!({ "share": share }), json!({ "share": 0.667 }));
+        let found = with(third(0.3333), json!({ "load_n": 1e5 })).unwrap();
+        assert_eq!(found[0].load_n, 1e5);
+        assert!((shares(&found[0]).iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        let load = json!({ "load_n": 1e5 });
+        for (refused, path, told) in [
+            (
+                with(by_loads, load.clone()),
+                "grid.load_n",
+                "no load beside those of the axles, 80000 N together",
+            ),
+            (
+                with(third(0.34), load.clone()),
+                "vehicle.axles[*].share",
+                "a sum of 1.007, allowed: shares that sum to 1 within 0.001",
+            ),
+            (
+                with(axles(json!({ "share": 0.4 }), json!({ "load_n": 1e5 })), load.clone()),
+                "vehicle.axles[1].load_n",
+                "share alone, the same for all axles",
+            ),
+            (
+                with(axles(json!({ "load_n": 1e5 }), json!({})), load.clone()),
+                "vehicle.axles[1].load_n",
+                "a share of each axle, or a load_n of each",
+            ),
+            (
+                with(axles(json!({ "share": 40 }), json!({ "share": 60 })), load),
+                "vehicle.axles[*].share",
+                "a sum of 100",
+            ),
+        ] {
+            let message = refused.unwrap_err().to_string();
+            assert!(
+                message.contains(told) && message.contains(path.rsplit('.').next().unwrap()),
+                "{message}"
+            );
+        }
     }
 
     #[test]

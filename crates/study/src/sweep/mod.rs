@@ -39,7 +39,7 @@ use crate::run::{Batch, Cache, CancelToken, PoolError, Progress, ResumeIndex, Ru
 use pontoon_journal::place::FolderError;
 use pontoon_journal::{JournalError, JournalWriter};
 use pontoon_plan::input::Refusal;
-use pontoon_plan::job::{Job, Shard};
+use pontoon_plan::job::{Doubts, Job, Shard};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{JobRecord, Manifest, Moment, Outcome, SummaryTable, TableProvenance, TableWriter};
 use results_folder::ResultsFolder;
@@ -170,6 +170,7 @@ pub fn sweep<'a>(
 ) -> Result<Swept<'a>, SweepError> {
     let started = Moment::now();
     let mut opened = ResultsFolder::take(study, setting, watcher)?;
+    Doubts::of(jobs).notes().iter().for_each(|note| watcher.note(note));
     let share = |shard: Shard| shard.deal(jobs).into_iter().map(|at| jobs[at].clone()).collect();
     let own: Option<Vec<Job>> = setting.shard.map(share);
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);

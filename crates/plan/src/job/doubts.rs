@@ -1,0 +1,127 @@
+//! Numbers that are allowed and yet look as if they were in another unit.
+//!
+//! Knows what bridges and vehicles are like. Refuses nothing: a person may mean what nobody else would.
+
+use super::{Job, Task};
+use pontoon_core::bridge::BridgeDesign;
+use std::collections::HashSet;
+
+/// Speed from which a vehicle on a floating bridge is a doubt `[m/s]`: 108 km/h.
+const FAST_M_S: f64 = 30.0;
+/// Weight below which a vehicle is a doubt `[N]`: that of a person.
+const LIGHT_N: f64 = 1000.0;
+/// Young's modulus below which the material of a module is a doubt `[Pa]`: wood has ten times as much.
+const SOFT_PA: f64 = 1e9;
+/// Thickness above which a plate is a doubt `[m]`.
+const THICK_M: f64 = 0.1;
+
+/// A number that is in doubt.
+#[derive(Debug)]
+struct Doubt {
+    key: &'static str,
+    /// The first such value.
+    value: f64,
+    /// Jobs that have one.
+    jobs: usize,
+    why: &'static str,
+}
+
+/// What looks as if it were in another unit, as jobs are looked at one after the other.
+#[derive(Debug, Default)]
+pub struct Doubts {
+    found: Vec<Doubt>,
+    /// Bridges that were looked at.
+    bridges: HashSet<usize>,
+}
+
+impl Doubts {
+    /// Those of some jobs.
+    pub fn of<'a>(jobs: impl IntoIterator<Item = &'a Job>) -> Self {
+        let mut doubts = Self::default();
+        jobs.into_iter().for_each(|job| doubts.take(job));
+        doubts
+    }
+
+    /// Looks at a job.
+    pub fn take(&mut self, job: &Job) {
+        if self.bridges.insert(job.bridge.id) {
+            self.bridge(&job.bridge.design);
+        }
+        if let Task::Crossing { speed_m_s } = job.task {
+            let fast = speed_m_s > FAST_M_S;
+            self.note(
+                fast,
+                "speed_m_s",
+                speed_m_s,
+                "above 30 m/s, which is 108 km/h: is it in km/h?",
+            );
+        }
+        if job.task != Task::Modes {
+            let light = job.load_n < LIGHT_N;
+            self.note(
+                light,
+                "load_n",
+                job.load_n,
+                "below 1000 N, the weight of a person: is it in kN?",
+            );
+        }
+        let depth_m = job.bridge.design.module.depth_m;
+        if let Some((tension, compression)) = job.gaps_m() {
+            for (key, gap) in [("gap_tension_m", tension), ("gap_compression_m", compression)] {
+                self.note(gap > depth_m, key, gap, "above the depth of a module: is it in mm?");
+            }
+        }
+    }
+
+    fn bridge(&mut self, design: &BridgeDesign) {
+        let module = &design.module;
+        let modulus = module.material.youngs_modulus_pa;
+        let key = "bridge.module.material.youngs_modulus_pa";
+        self.note(modulus < SOFT_PA, key, modulus, "below 1e9 Pa: is it in GPa or MPa?");
+        for (key, thickness) in [
+            ("bridge.module.deck_thickness_m", module.deck_thickness_m),
+            ("bridge.module.bottom_thickness_m", module.bottom_thickness_m),
+            ("bridge.module.side_thickness_m", module.side_thickness_m),
+            ("bridge.module.end_thickness_m", module.end_thickness_m),
+            (
+                "bridge.module.longitudinal_walls.thickness_m",
+                module.longitudinal_walls.thickness_m,
+            ),
+            (
+                "bridge.module.transverse_walls.thickness_m",
+                module.transverse_walls.thickness_m,
+            ),
+        ] {
+            self.note(thickness > THICK_M, key, thickness, "above 0.1 m: is it in mm?");
+        }
+    }
+
+    fn note(&mut self, doubted: bool, key: &'static str, value: f64, why: &'static str) {
+        if !doubted {
+            return;
+        }
+        match self.found.iter_mut().find(|doubt| doubt.key == key) {
+            Some(doubt) => doubt.jobs += 1,
+            None => self.found.push(Doubt {
+                key,
+                value,
+                jobs: 1,
+                why,
+            }),
+        }
+    }
+
+    /// In words, a line each.
+    pub fn notes(&self) -> Vec<String> {
+        let told = |doubt: &Doubt| {
+            let of_bridge = doubt.key.starts_with("bridge.");
+            let many = match doubt.jobs {
+                1 => String::new(),
+                more if of_bridge => format!(" ({} more bridges)", more - 1),
+                more => format!(" ({} more jobs)", more - 1),
+            };
+            format!("{} {}: {}{many}", doubt.key, doubt.value, doubt.why)
+        };
+        self.found.iter().map(told).collect()
+    }
+}
