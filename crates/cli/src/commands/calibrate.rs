@@ -44,6 +44,9 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
     for failed in &found.failed {
         text::note(&format!("failed inside the bounds: {failed}"));
     }
+    for far in far_off(&found.checks) {
+        text::note(&far);
+    }
     text::result(&match common.format {
         Format::Json => format!("{:#}\n", json!(found)),
         _ => text(&found, &arguments.out),
@@ -117,6 +120,25 @@ fn text(found: &Calibration, out: &Path) -> String {
     )
 }
 
+/// Tolerances by which a check of the best fit may be off before that is told: a model that fits is off by one or two.
+const FAR: f64 = 3.0;
+
+/// The checks that the best fit still misses by many tolerances, the farthest first.
+fn far_off(checks: &[FittedCheck]) -> Vec<String> {
+    let mut far: Vec<&FittedCheck> = checks.iter().filter(|check| check.residual_after.abs() > FAR).collect();
+    far.sort_by(|a, b| b.residual_after.abs().total_cmp(&a.residual_after.abs()));
+    let told = |check: &&FittedCheck| {
+        let times = labels::all_digits(check.residual_after.abs(), 2);
+        format!(
+            "the best fit misses {} by {times} tolerances: {} found, {} expected",
+            check.id,
+            labels::all_digits(check.after, FITTED),
+            labels::all_digits(check.expected, FITTED)
+        )
+    };
+    far.iter().map(told).collect()
+}
+
 /// A row a check: what it is off before and after.
 fn checks(checks: &[FittedCheck]) -> String {
     let share = |x: f64| {
@@ -175,4 +197,30 @@ fn correlation(found: &Calibration) -> String {
         std::iter::once(name).chain(cells).collect()
     });
     text::table(&heads, &rows.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checks_that_the_best_fit_misses_by_many_tolerances_are_told_the_farthest_first() {
+        let check = |id: &str, after: f64| FittedCheck {
+            id: id.to_owned(),
+            expected: 1.0,
+            tolerance: 0.1,
+            before: 0.0,
+            after,
+            residual_before: -10.0,
+            residual_after: (after - 1.0) / 0.1,
+        };
+        let told = far_off(&[check("near", 1.1), check("far", 1.5), check("farthest", -0.2)]);
+        assert_eq!(
+            told,
+            [
+                "the best fit misses farthest by 12 tolerances: -0.200000 found, 1.00000 expected",
+                "the best fit misses far by 5.0 tolerances: 1.50000 found, 1.00000 expected",
+            ]
+        );
+    }
 }
