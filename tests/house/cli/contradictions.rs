@@ -1,6 +1,6 @@
 //! Numbers of a bridge that contradict each other, and the bridges that come with the program.
 
-use super::refusals::{bridge, grid};
+use super::refusals::{bridge, study};
 use crate::stage::{Stage, stderr};
 use pontoon_plan::study_file::read_bridge;
 use serde_json::json;
@@ -27,7 +27,12 @@ fn a_draft_and_a_freeboard_are_those_of_the_module() {
         &["freeboard_m: found 0.9, allowed: about 0.973, what the depth of 1.07 leaves above the draft of 0.097"],
     );
     // an axis that makes the other one wrong
-    grid("bridge.draft_m", json!([0.097, 0.15]), &["design[0].grid"]);
+    study(
+        "/design/0/grid",
+        "bridge.draft_m",
+        json!([0.097, 0.15]),
+        &["design[0].grid (bridge.freeboard_m): found 0.973, allowed: about 0.92, what the depth"],
+    );
     // rounded to centimetres they are the depth
     let mut stage = Stage::new();
     (stage.bridge["draft_m"], stage.bridge["freeboard_m"]) = (json!(0.1), json!(0.96));
@@ -47,7 +52,8 @@ fn a_draft_is_that_of_the_mass_and_of_the_table() {
             Some(if refused { 2 } else { 0 }),
             "{draft}: {told}"
         );
-        let message = format!("draft_m: found {draft}, allowed: about 0.097, which the mass of the module gives (5265 kg)");
+        let message =
+            format!("draft_m: found {draft}, allowed: about 0.097, which the mass of the module gives (5265 kg)");
         assert_eq!(told.contains(&message), refused, "{told}");
     }
     let mut stage = Stage::new();

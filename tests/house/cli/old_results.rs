@@ -299,6 +299,7 @@ fn rows_and_tables_that_are_gone_fall_short_and_say_so() {
 #[test]
 fn a_flag_that_turns_is_a_difference() {
     let mut stage = Stage::new();
+    stage.study["design"][0]["grid"]["load_n"] = json!(300_000);
     let mut ran = |name: &str, draft: f64| {
         stage.bridge["draft_m"] = json!(draft);
         stage.bridge["freeboard_m"] = json!(1.07 - draft);

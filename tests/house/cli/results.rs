@@ -284,3 +284,39 @@ fn words_that_nothing_is_computed_from_leave_results_as_they_are() {
     assert_eq!(run(&stage), 0);
     assert!(tables(&stage).same_cells(&before));
 }
+
+#[test]
+fn numbers_in_another_unit_are_noted_on_the_terminal_and_in_the_manifest() {
+    let mut stage = Stage::new();
+    stage.study["design"] = json!([{ "grid": { "load_n": 230, "speed_m_s": 54 } }]);
+    stage.study["analysis"]["tail_s"] = json!(0.1);
+    stage.write();
+    let expected = ["speed_m_s 54: above 30 m/s", "load_n 230: below 1000 N"];
+    let mut told = vec![stderr(&stage.pontoon(&["plan", "study.json"]))];
+    let output = stage.pontoon(&["run", "study.json", "--out", "r"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    told.extend([stderr(&output), stage.manifest("r")["notes"].to_string()]);
+    for told in told {
+        assert!(expected.iter().all(|note| told.contains(note)), "{told}");
+    }
+    assert_eq!(stderr(&stage.pontoon(&["plan", "study.json", "--quiet"])), "");
+}
+
+#[test]
+fn every_file_may_name_its_schema() {
+    let mut stage = Stage::new();
+    (stage.study["$schema"], stage.bridge["$schema"]) = ("study.schema.json".into(), "bridge.schema.json".into());
+    stage.ran("r");
+    let of = json!({ "select": { "table": "jobs", "column": "job", "where": { "job": 0 } } });
+    let check = json!({ "id": "a", "value": { "of": of, "expected": 0, "absolute_tolerance": 0 } });
+    stage.json(
+        "reference.json",
+        &json!({ "$schema": "x", "name": "r", "source": "a book", "checks": [check] }),
+    );
+    let output = stage.pontoon(&["compare", "r", "--with", "reference.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for of in ["study", "bridge", "reference", "parameters"] {
+        let schema: Value = serde_json::from_str(&stdout(&stage.pontoon(&["schema", of]))).unwrap();
+        assert_eq!(schema["properties"]["$schema"]["type"], "string", "{of}");
+    }
+}

@@ -87,7 +87,11 @@ fn bash_loads_its_script_and_completes_commands_flags_and_values() {
 /// What fish offers for a line; nothing where it is not there.
 fn offered_by_fish(stage: &Stage, line: &str) -> Option<Vec<String>> {
     let output = Command::new("fish")
-        .args(["--no-config", "-c", &format!("source ./pontoon.fish; complete -C '{line}'")])
+        .args([
+            "--no-config",
+            "-c",
+            &format!("source ./pontoon.fish; complete -C '{line}'"),
+        ])
         .current_dir(stage.path(""))
         .env("HOME", stage.path(""))
         .output()
@@ -108,15 +112,24 @@ fn fish_completes_words_where_a_word_is_due_and_files_where_a_file_is() {
     let offered = |line: &str| offered_by_fish(&stage, line).unwrap();
     let commands = commands(&stage);
     for (line, mut expected) in [
-        ("pontoon schema ", vec!["study", "bridge", "reference", "parameters", "tables"]),
-        ("pontoon completions ", vec!["bash", "elvish", "fish", "powershell", "zsh"]),
+        (
+            "pontoon schema ",
+            vec!["study", "bridge", "reference", "parameters", "tables"],
+        ),
+        (
+            "pontoon completions ",
+            vec!["bash", "elvish", "fish", "powershell", "zsh"],
+        ),
         ("pontoon schema st", vec!["study"]),
         ("pontoon schema study ", vec![]),
         ("pontoon plan --format j", vec!["json", "junit"]),
         ("pontoon comp", vec!["compare", "completions"]),
         ("pontoon run --max", vec!["--max-failures"]),
         ("pontoon run --threads ", vec![]),
-        ("pontoon help ", [commands.iter().map(String::as_str).collect(), vec!["help"]].concat()),
+        (
+            "pontoon help ",
+            [commands.iter().map(String::as_str).collect(), vec!["help"]].concat(),
+        ),
         ("pontoon help comp", vec!["compare", "completions"]),
     ] {
         let mut found = offered(line);
@@ -125,7 +138,11 @@ fn fish_completes_words_where_a_word_is_due_and_files_where_a_file_is() {
         assert_eq!(found, expected, "{line}");
     }
     for line in ["pontoon run ", "pontoon run --out ", "pontoon export not"] {
-        assert!(offered(line).contains(&"notes.txt".to_owned()), "{line}: {:?}", offered(line));
+        assert!(
+            offered(line).contains(&"notes.txt".to_owned()),
+            "{line}: {:?}",
+            offered(line)
+        );
     }
     for command in &commands {
         let offered = offered(&format!("pontoon {command} --"));
@@ -184,8 +201,14 @@ fn zsh_completes_words_where_a_word_is_due() {
     }
     let lines = [
         ("pontoon comp", vec!["compare", "completions"]),
-        ("pontoon schema ", vec!["bridge", "parameters", "reference", "study", "tables"]),
-        ("pontoon completions ", vec!["bash", "elvish", "fish", "powershell", "zsh"]),
+        (
+            "pontoon schema ",
+            vec!["bridge", "parameters", "reference", "study", "tables"],
+        ),
+        (
+            "pontoon completions ",
+            vec!["bash", "elvish", "fish", "powershell", "zsh"],
+        ),
         ("pontoon help comp", vec!["compare", "completions"]),
         ("pontoon plan --format j", vec!["json", "junit"]),
     ];
@@ -200,7 +223,9 @@ fn zsh_completes_words_where_a_word_is_due() {
     let offered = fs::read_to_string(stage.path("offered")).unwrap();
     let mut rest = offered.as_str();
     for (line, expected) in lines {
-        let (of_line, behind) = rest.split_once(&format!("END:{line}\n")).unwrap_or_else(|| panic!("{line}: {offered}"));
+        let (of_line, behind) = rest
+            .split_once(&format!("END:{line}\n"))
+            .unwrap_or_else(|| panic!("{line}: {offered}"));
         let mut found: Vec<&str> = of_line.lines().filter(|word| !word.is_empty()).collect();
         found.sort_unstable();
         found.dedup();

@@ -40,11 +40,17 @@ fn fish(generated: &str) -> String {
         for words in words.filter(|words| !words.is_empty()) {
             let names: Vec<&str> = words.iter().map(PossibleValue::get_name).collect();
             let name = command.get_name();
-            let none_yet = format!("__fish_pontoon_using_subcommand {name}; and not {SEEN} {}", names.join(" "));
+            let none_yet = format!(
+                "__fish_pontoon_using_subcommand {name}; and not {SEEN} {}",
+                names.join(" ")
+            );
             for word in words.iter().filter(|word| !word.is_hide_set()) {
                 let help = word.get_help().map(|help| help.to_string().replace('\'', "\\'"));
                 let help = help.map_or(String::new(), |help| format!(" -d '{help}'"));
-                script += &format!("complete -c pontoon -n \"{none_yet}\" -f -a \"{}\"{help}\n", word.get_name());
+                script += &format!(
+                    "complete -c pontoon -n \"{none_yet}\" -f -a \"{}\"{help}\n",
+                    word.get_name()
+                );
             }
             script += &format!("complete -c pontoon -n \"__fish_pontoon_using_subcommand {name}\" -f\n");
         }
