@@ -127,7 +127,7 @@ fn results_set_aside_by_a_process_that_dies_are_set_aside_by_the_next() {
 fn a_misspelt_fault_is_refused() {
     let stage = sweep(2, 0.05);
     for fault in [
-        "journal.wirte:3:short",
+        "journal.writes:3:short",
         "journal.write:3:shrt",
         "journal.write",
         "journal.write:0:die",
