@@ -79,6 +79,25 @@ fn shards_of_a_study_that_has_grown_are_merged() {
     same_tables(&stage, "m", &tables(&stage, "whole"));
 }
 
+/// Nothing is computed from a bridge's name and source, nor from what a study asks.
+#[test]
+fn shards_whose_words_differ_are_merged() {
+    let mut stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    for (shard, words) in [("0/2", "first"), ("1/2", "then")] {
+        (stage.bridge["source"], stage.study["question"]) = (json!(words), json!(words));
+        stage.write();
+        let output = run(&stage, &format!("s{}", &shard[..1]), &["--shard", shard]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let output = merge(&stage, &["s0".to_owned(), "s1".to_owned()], "m");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(
+        stage.numbers("m/jobs.parquet", "peak_deflection_m"),
+        stage.numbers("whole/jobs.parquet", "peak_deflection_m")
+    );
+}
+
 #[test]
 fn shards_of_a_study_that_has_shrunk_or_grown_in_one_share_alone_are_merged() {
     let mut stage = sweep(3, 0.05);
