@@ -13,6 +13,7 @@ OpenSees' equation solvers and algorithms the fastest on these chains stand here
 
 import argparse
 import json
+import math
 import os
 import platform
 import resource
@@ -28,6 +29,9 @@ import peers
 SPEEDS_M_S = [15.0, 7.0]
 MODES = 20
 EQUATIONS, ALGORITHM = "ProfileSPD", "KrylovNewton"
+# what preparing bridges of so many modules may take, and how it may grow
+MODULES = {30: None, 60: None, 120: 20.0, 200: 60.0}
+ASKED_EXPONENT, ASKED_MEMORY_GB = 2.3, 4.0
 ASKED_LONE, ASKED_FULL, ASKED_THREADS, ASKED_SWEEP_S = 300.0, 1000.0, 1.9, 60.0
 VEHICLE = {
     "footprint_length_m": peers.FOOTPRINT_M,
@@ -206,6 +210,40 @@ def compare_modes(table, rounds):
     )
 
 
+# ---- preparation
+
+
+def compare_preparation(table):
+    """All that a crossing of a longer and longer bridge needs before its first step, on all threads, nothing cached."""
+    times = {}
+    for modules, asked in MODULES.items():
+        note(f"preparation, {modules} modules")
+        case = {"connection": "linear", "bridge.modules": modules, "speed_m_s": 15, "load_n": 2e5}
+        study = {
+            "name": "preparation",
+            "bridge": str(peers.BRIDGE),
+            "analysis": {"kind": "crossing", "tail_s": 0},
+            "design": [{"cases": [case]}],
+        }
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "study.json").write_text(json.dumps(study))
+            words = [os.environ["PONTOON"], "run", "study.json", "--out", "r", "--quiet"]
+            environment = os.environ | {"PONTOON_CACHE_DIR": ""}
+            subprocess.run(words, cwd=folder, check=True, stdout=subprocess.DEVNULL, env=environment)
+            times[modules] = json.loads((Path(folder) / "r" / "manifest.json").read_text())["offline_s"]
+        # the largest of all processes so far, which is this one's
+        gigabytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
+        holds = asked is None or (times[modules] <= asked and gigabytes <= ASKED_MEMORY_GB)
+        wanted = "" if asked is None else f"under {asked:g} s, {ASKED_MEMORY_GB:g} GB"
+        figure = f"{times[modules]:.1f} s, {gigabytes:.1f} GB"
+        table.row(f"preparation of {modules} modules of fu2005", figure, "", figure, wanted, holds)
+    logs = [(math.log(modules), math.log(seconds)) for modules, seconds in times.items()]
+    means = [sum(values) / len(logs) for values in zip(*logs, strict=True)]
+    slope = sum((m - means[0]) * (s - means[1]) for m, s in logs) / sum((m - means[0]) ** 2 for m, _ in logs)
+    name = "exponent of preparation against modules, " + ", ".join(map(str, MODULES))
+    table.row(name, f"{slope:.2f}", "", f"{slope:.2f}", f"at most {ASKED_EXPONENT}", slope <= ASKED_EXPONENT)
+
+
 # ---- the sweep
 
 
@@ -281,7 +319,7 @@ def compare_threads(table, rounds, jobs, solver, inertia):
 def main():
     """Measures the parts that are asked for; exit status 1 where a figure falls short."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("part", nargs="?", default="all", choices=["crossing", "modes", "sweep", "all"])
+    parser.add_argument("part", nargs="?", default="all", choices=["crossing", "modes", "preparation", "sweep", "all"])
     parser.add_argument("--jobs", type=int, default=10_000, help="crossings of the sweep")
     parser.add_argument("--rounds", type=int, default=3, help="how often crossings and modes are measured")
     parser.add_argument("--sweep-rounds", type=int, default=1, help="how often the sweep is")
@@ -300,6 +338,8 @@ def main():
             compare_crossings(table, options.rounds)
         if options.part in ("modes", "all"):
             compare_modes(table, options.rounds)
+        if options.part in ("preparation", "all"):
+            compare_preparation(table)
         if options.part in ("sweep", "all"):
             compare_threads(table, options.sweep_rounds, options.jobs, options.solver, options.inertia)
     rounds = f"{options.rounds} round(s) in turns, of the sweep {options.sweep_rounds}"

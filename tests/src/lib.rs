@@ -18,6 +18,7 @@ use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, BridgeDesign, Condensation, Ends, Model, PreparedModule};
 use pontoon_core::connector::Connection;
 use pontoon_core::response::{CrossingResponse, Quantity, Record, StaticResponse};
+use pontoon_core::stop::Stop;
 use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
 use std::path::Path;
 use std::sync::Arc;
@@ -123,7 +124,10 @@ impl Ready {
 
     /// Rayleigh coefficients of 5 % at the first two bending modes.
     pub fn rayleigh(&self) -> Rayleigh {
-        rayleigh(0.05, bending_frequencies_hz(&self.free).expect("two bending modes"))
+        rayleigh(
+            0.05,
+            bending_frequencies_hz(&self.free, Stop::never()).expect("two bending modes"),
+        )
     }
 
     /// The lowest modes, floating free.

@@ -5,7 +5,7 @@
 //!
 //! | floor | module | charter |
 //! |---|---|---|
-//! | 0 | [`conventions`], [`input`], [`response`] | axes, units, signs; what a refused number looks like; peaks, histories and the energy balance, data that every floor above fills |
+//! | 0 | [`conventions`], [`input`], [`response`], [`stop`] | axes, units, signs; what a refused number looks like; whether to stop; peaks, histories and the energy balance, data that every floor above fills |
 //! | 1 | [`fem`] | shells, beams, assembly, factorisation, eigenvalues; has never heard of a bridge |
 //! | 2 | [`module`], [`water`], [`superelement`] | the pontoon's geometry to finite elements, hydrostatics and added mass, condensation |
 //! | 3 | [`connector`], [`vehicle`], [`bridge`] | the gap law, the wheels, and the one place where they all meet |
@@ -24,6 +24,7 @@ pub mod module;
 pub mod operator;
 pub mod response;
 mod scheme;
+pub mod stop;
 pub mod superelement;
 pub mod vehicle;
 pub mod water;

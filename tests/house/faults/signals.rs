@@ -57,6 +57,28 @@ fn an_interrupt_ends_the_run_resumable_and_a_question_does_not() {
     }
 }
 
+/// A bridge of 120 modules is prepared for some twenty seconds; an interrupt in the midst of it is answered at once.
+#[test]
+fn an_interrupt_during_preparation_does_not_wait_for_it() {
+    let mut stage = sweep(2, 0.01);
+    stage.bridge["modules"] = 120.into();
+    stage.write();
+    let child = begin(&stage, "r", &[]);
+    let began = Instant::now();
+    while !stage.path("r/journal").exists() {
+        assert!(began.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(2500));
+    let asked = Instant::now();
+    send(&child, "-INT");
+    let output = ended(child);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(told.contains("interrupted: 0 of 48 jobs are recorded"), "{told}");
+    assert!(asked.elapsed() < Duration::from_secs(5), "{:?}", asked.elapsed());
+}
+
 #[test]
 fn a_second_interrupt_ends_the_run_at_once() {
     // by the reference solver at a short step: a job takes seconds

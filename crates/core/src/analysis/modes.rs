@@ -4,8 +4,9 @@
 
 use super::AnalysisError;
 use crate::bridge::Bridge;
-use crate::fem::{EigenPairs, SparseRow, SymmetricMatrix, lowest_modes};
+use crate::fem::{EigenPairs, SparseRow, SymmetricMatrix, lowest_modes_unless};
 pub use crate::scheme::Rayleigh;
+use crate::stop::Stop;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -45,7 +46,11 @@ const RIGID_SHARE: f64 = 0.95;
 /// # Errors
 /// [`AnalysisError::Factor`].
 pub fn modes(bridge: &Bridge, count: usize) -> Result<(Vec<Mode>, EigenPairs), AnalysisError> {
-    let mut pairs = lowest_modes(&linear_stiffness(bridge)?, &bridge.m, count, SHIFT)?;
+    modes_unless(bridge, count, Stop::never())
+}
+
+fn modes_unless(bridge: &Bridge, count: usize, stop: Stop<'_>) -> Result<(Vec<Mode>, EigenPairs), AnalysisError> {
+    let mut pairs = lowest_modes_unless(&linear_stiffness(bridge)?, &bridge.m, count, SHIFT, stop)?;
     name_unrestored(bridge, &mut pairs);
     let mut names = ShapeNames::default();
     let modes = (0..pairs.lambda.len())
@@ -155,13 +160,13 @@ const SEARCHED: [usize; 3] = [16, 64, 192];
 ///
 /// # Errors
 /// [`AnalysisError::ModeMissing`] where the lowest modes hold no two, as for a single module.
-pub fn bending_frequencies_hz(free: &Bridge) -> Result<[f64; 2], AnalysisError> {
+pub fn bending_frequencies_hz(free: &Bridge, stop: Stop<'_>) -> Result<[f64; 2], AnalysisError> {
     let mut missing = Err(AnalysisError::ModeMissing {
         name: "vertical bending 1".to_owned(),
         searched: 0,
     });
     for searched in SEARCHED.map(|count| count.min(free.dofs())) {
-        let (modes, _) = modes(free, searched)?;
+        let (modes, _) = modes_unless(free, searched, stop)?;
         let find = |n: usize| {
             let name = format!("vertical bending {n}");
             let mode = modes.iter().find(|m| m.name == name).map(|m| m.frequency_hz);

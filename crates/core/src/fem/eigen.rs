@@ -6,6 +6,7 @@ use super::inertia::count_below;
 use super::lanczos::{BlockLanczos, Ritz, SymmetricOperator};
 use super::probe::{diagonal, largest, sizes};
 use super::{Factor, FemError, SymmetricMatrix};
+use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, Par};
 
@@ -22,7 +23,7 @@ pub struct EigenPairs {
 const CONVERGED: f64 = 1e-9;
 
 /// Residual that rounding leaves of an operator of norm 1: no pair is asked for more.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 
 /// How far above rounding and the eigensolver's own limits a pair's errors may be.
 const PAIR_MARGIN: f64 = 100.0;
@@ -31,10 +32,10 @@ const PAIR_MARGIN: f64 = 100.0;
 const GUARD: usize = 2;
 
 /// Relative distance of neighbouring eigenvalues from which a shift between them tells them apart.
-const GAP: f64 = 1e-6;
+pub(super) const GAP: f64 = 1e-6;
 
 /// Inverse eigenvalues `mu = s / (lambda + s)` below this belong to a mass that is not there.
-const MASSLESS: f64 = 1e-13;
+pub(super) const MASSLESS: f64 = 1e-13;
 
 impl EigenPairs {
     /// Measures each pair of `K x = lambda M x` against K and M themselves and refuses the set where one is off; gives the
@@ -54,38 +55,54 @@ impl EigenPairs {
     /// # Errors
     /// [`FemError::BadPair`].
     pub fn probe(&self, k: &SymmetricMatrix, m: &SymmetricMatrix, s: f64) -> Result<f64, FemError> {
-        let (dofs, count) = (k.order(), self.lambda.len());
+        self.probe_from(0, k, m, s)
+    }
+
+    /// The probe of the pairs from one on, against all before.
+    pub(super) fn probe_from(
+        &self,
+        first: usize,
+        k: &SymmetricMatrix,
+        m: &SymmetricMatrix,
+        s: f64,
+    ) -> Result<f64, FemError> {
+        let (dofs, all) = (k.order(), self.lambda.len());
+        let count = all - first;
+        let probed = self.shapes.as_ref().subcols(first, count);
         let product = |a: &SymmetricMatrix| {
             let mut ax = Mat::<f64>::zeros(dofs, count);
-            a.multiply_columns(self.shapes.as_ref(), ax.as_mut());
+            a.multiply_columns(probed, ax.as_mut());
             ax
         };
         let (kx, mx) = (product(k), product(m));
         let sizes = sizes(diagonal(k).zip(diagonal(m)).map(|(k, m)| k + s * m));
-        let mut gram = Mat::<f64>::zeros(count, count);
+        let mut gram = Mat::<f64>::zeros(all, count);
         let shapes_t = self.shapes.transpose();
         matmul(gram.as_mut(), Accum::Replace, shapes_t, mx.as_ref(), 1.0, Par::Seq);
         let mut share: f64 = 0.0;
-        for (j, lambda) in self.lambda.iter().enumerate() {
+        for (j, lambda) in self.lambda[first..].iter().enumerate() {
             let (mut left, mut energy, mut parts) = (0.0, 0.0, 0.0);
             for (i, size) in sizes.iter().enumerate() {
-                let (x, kx) = (self.shapes[(i, j)], kx[(i, j)]);
+                let (x, kx) = (probed[(i, j)], kx[(i, j)]);
                 left += ((kx - lambda * mx[(i, j)]) / size).powi(2);
                 energy += x * kx;
                 parts += (x * size).powi(2);
             }
             let scale = lambda + s;
-            let unit = |i: usize| if i == j { 1.0 } else { 0.0 };
+            let unit = |i: usize| if i == first + j { 1.0 } else { 0.0 };
             let allowed = PAIR_MARGIN * (CONVERGED + ROUNDING * scale / s + f64::EPSILON * parts / scale);
             for (measure, found) in [
                 ("residual", (left / scale).sqrt()),
                 ("eigenvalue", (energy - lambda).abs() / scale),
-                ("orthonormality", largest((0..=j).map(|i| gram[(i, j)] - unit(i)))),
+                (
+                    "orthonormality",
+                    largest((0..=first + j).map(|i| gram[(i, j)] - unit(i))),
+                ),
             ] {
                 let holds = found <= allowed;
                 if !holds {
                     return Err(FemError::BadPair {
-                        mode: j + 1,
+                        mode: first + j + 1,
                         dofs,
                         measure,
                         found,
@@ -112,6 +129,17 @@ impl EigenPairs {
 /// converge or M has fewer modes, [`FemError::BadFactor`] where the check finds no sigma at which it can count,
 /// [`FemError::BadPair`] where a mode fails [`EigenPairs::probe`].
 pub fn lowest_modes(k: &SymmetricMatrix, m: &SymmetricMatrix, count: usize, s: f64) -> Result<EigenPairs, FemError> {
+    lowest_modes_unless(k, m, count, s, Stop::never())
+}
+
+/// [`lowest_modes`] unless a stop is asked for.
+pub(crate) fn lowest_modes_unless(
+    k: &SymmetricMatrix,
+    m: &SymmetricMatrix,
+    count: usize,
+    s: f64,
+    stop: Stop<'_>,
+) -> Result<EigenPairs, FemError> {
     let n = k.order();
     if !(s.is_finite() && s > 0.0) {
         return Err(FemError::Shift { value: s });
@@ -119,10 +147,10 @@ pub fn lowest_modes(k: &SymmetricMatrix, m: &SymmetricMatrix, count: usize, s: f
     let factor = Factor::new("K + s M of modes", &SymmetricMatrix::combine(&[(1.0, k), (s, m)])?)?;
     let operator = ShiftInvert { m, factor: &factor, s };
     let count = count.min(n);
-    let (mu, mut shapes) = if n < 4 * count + 240 {
+    let (mu, mut shapes) = if is_small(n, count) {
         dense(&operator, count)?
     } else {
-        krylov(k, &operator, count)?
+        krylov(k, &operator, count, stop)?
     };
     let modes = mu.iter().filter(|&&mu| mu > MASSLESS).count();
     if modes < count {
@@ -145,8 +173,18 @@ pub fn lowest_modes(k: &SymmetricMatrix, m: &SymmetricMatrix, count: usize, s: f
     Ok(pairs)
 }
 
+/// Whether all eigenvalues are computed at once.
+pub(super) fn is_small(n: usize, count: usize) -> bool {
+    n < 4 * count + 240
+}
+
 /// The largest eigenvalues of the operator, counted, and their vectors.
-fn krylov(k: &SymmetricMatrix, operator: &ShiftInvert<'_>, count: usize) -> Result<(Vec<f64>, Mat<f64>), FemError> {
+fn krylov(
+    k: &SymmetricMatrix,
+    operator: &ShiftInvert<'_>,
+    count: usize,
+    stop: Stop<'_>,
+) -> Result<(Vec<f64>, Mat<f64>), FemError> {
     let most = 10 * count + 400;
     // a Ritz problem costs the cube of the basis: one after each growth by a seventh costs less than the growth
     let mut next = count + count / 4 + 8 * GUARD;
@@ -154,6 +192,7 @@ fn krylov(k: &SymmetricMatrix, operator: &ShiftInvert<'_>, count: usize) -> Resu
     let mut converged = 0;
     while lanczos.size() < most && lanczos.can_grow() {
         while lanczos.size() < next && lanczos.can_grow() {
+            stop.check()?;
             lanczos.grow();
         }
         next = lanczos.size() + lanczos.size() / 7;

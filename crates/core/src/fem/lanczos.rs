@@ -142,6 +142,17 @@ impl<'a, A: SymmetricOperator> BlockLanczos<'a, A> {
         })
     }
 
+    /// The Ritz vectors `Q s` of some pairs.
+    pub(super) fn chosen(&self, ritz: &Ritz, pairs: &[usize]) -> Mat<f64> {
+        let s = Mat::from_fn(self.seen, pairs.len(), |i, j| ritz.vectors[(i, pairs[j])]);
+        let ritz = Ritz {
+            values: Vec::new(),
+            residuals: Vec::new(),
+            vectors: s,
+        };
+        self.vectors(&ritz, pairs.len())
+    }
+
     /// The first `count` Ritz vectors `Q s`.
     pub(super) fn vectors(&self, ritz: &Ritz, count: usize) -> Mat<f64> {
         let n = self.operator.order();

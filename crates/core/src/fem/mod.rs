@@ -17,9 +17,11 @@ mod probe;
 mod section;
 mod shell;
 mod sparse;
+mod windows;
 
 pub use assembly::{MassKind, assemble};
 pub use beam::{Beam, BeamSection};
+pub(crate) use eigen::lowest_modes_unless;
 pub use eigen::{EigenPairs, lowest_modes};
 pub use factor::Factor;
 pub use frame::QuadFrame;
@@ -29,12 +31,28 @@ pub(crate) use probe::{allowed, diagonal, hold, pattern, residual, sizes};
 pub use section::ShellSection;
 pub use shell::Shell;
 pub use sparse::{SparseRow, SymmetricMatrix};
+pub use windows::{ModeSearch, ONE_SEARCH};
 
+use crate::stop::Stop;
 use thiserror::Error;
+
+impl Stop<'_> {
+    /// Goes on unless a stop is asked for.
+    pub(crate) fn check(self) -> Result<(), FemError> {
+        if self.is_asked() {
+            Err(FemError::Stopped)
+        } else {
+            Ok(())
+        }
+    }
+}
 
 /// Why finite elements gave no answer.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FemError {
+    /// Somebody wished it to stop.
+    #[error("stopped")]
+    Stopped,
     /// A matrix that must be positive definite is not.
     #[error("matrix of {dofs} degrees of freedom is not positive definite (pivot {pivot})")]
     NotPositiveDefinite {

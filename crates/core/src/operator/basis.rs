@@ -4,18 +4,25 @@
 
 use super::cutoff::{Cutoff, CutoffJudge};
 use super::persist::{NumberReader, OperatorParts};
+use super::residual_rows::{Columns, ResidualRows, dot, residual_of_deck};
 use crate::bridge::{Bridge, Track};
-use crate::fem::{Factor, FemError, SparseRow, SymmetricMatrix, lowest_modes};
+use crate::fem::{EigenPairs, Factor, FemError, ModeSearch, ONE_SEARCH, SparseRow, SymmetricMatrix};
+use crate::stop::Stop;
 use faer::Mat;
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use thiserror::Error;
 
 /// Shift of eigenproblem and flexibilities `[1/s^2]`, the square of 0.1 Hz: a bridge that nothing holds along has an operator
 /// as well. It changes residual flexibilities by less than `SHIFT / omega^2` of themselves, 1e-4 at 10 Hz.
 const SHIFT: f64 = 0.4;
 
-/// Modes computed at first; doubled until enough.
+/// Fewest modes computed at first, and how many a module: most bridges need about this many.
 const FIRST_MODES: usize = 64;
+const FIRST_MODES_OF_MODULE: usize = 4;
+
+/// Rows of the judge that a thread takes at once.
+const JUDGED_AT_ONCE: usize = 64;
 
 /// Why a bridge has no operator.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -106,40 +113,60 @@ impl BridgeOperator {
     /// # Errors
     /// [`OperatorError::Factor`].
     pub fn new(bridge: &Bridge, tolerance: f64) -> Result<Self, OperatorError> {
+        Self::new_unless(bridge, tolerance, Stop::never())
+    }
+
+    /// Builds the operator unless a stop is asked for.
+    ///
+    /// # Errors
+    /// As [`BridgeOperator::new`], and [`FemError::Stopped`].
+    pub fn new_unless(bridge: &Bridge, tolerance: f64, stop: Stop<'_>) -> Result<Self, OperatorError> {
         let factor = Factor::new("K + s M of the operator", &shifted(bridge)?)?;
         let track = Track::new(bridge);
-        let mut count = FIRST_MODES.min(bridge.dofs());
         let judged = judged_rows(bridge, &track);
-        let solved = columns(&factor, &judged);
-        let judge_of = |row: usize, column: &[f64]| judged[row].dot(column);
-        let flexibility = (0..judged.len()).map(|i| judge_of(i, column(&solved, i))).collect();
-        let dynamic = (0..judged.len())
-            .map(|i| bridge.m.form(column(&solved, i), column(&solved, i)))
+        let solved = Columns::solved(&factor, &judged, stop)?;
+        let flexibility = (0..judged.len()).map(|i| judged[i].dot(solved.column(i))).collect();
+        let every: Vec<&[f64]> = (0..judged.len()).map(|i| solved.column(i)).collect();
+        let dynamic = every
+            .par_chunks(JUDGED_AT_ONCE)
+            .flat_map_iter(|x| bridge.m.forms(x))
             .collect();
+        drop(solved);
         let mut judge = CutoffJudge {
             flexibility,
             dynamic,
             shapes: Mat::zeros(0, 0),
         };
+        let of_modules = FIRST_MODES_OF_MODULE * bridge.design().modules;
+        let first = of_modules.clamp(FIRST_MODES, ONE_SEARCH).min(bridge.dofs());
+        let mut search = ModeSearch::new(&bridge.k, &bridge.m, first, SHIFT, stop)?;
         loop {
-            let pairs = lowest_modes(&bridge.k, &bridge.m, count, SHIFT)?;
+            let pairs = search.pairs();
             judge.shapes = Mat::from_fn(judged.len(), pairs.lambda.len(), |i, k| {
                 dot(&judged[i], &pairs.shapes, k)
             });
-            match judge.fewest(&pairs, SHIFT, tolerance) {
-                Ok(cutoff) => return Ok(Self::of(bridge, track, &factor, &pairs.lambda, &pairs.shapes, cutoff)),
+            match judge.fewest(pairs, SHIFT, tolerance) {
+                Ok(cutoff) => return Ok(Self::of(bridge, track, &factor, pairs, cutoff, stop)?),
                 // every mode there is: nothing is left out but rounding
-                Err(cutoff) if count >= bridge.dofs() => {
-                    return Ok(Self::of(bridge, track, &factor, &pairs.lambda, &pairs.shapes, cutoff));
+                Err(cutoff) if pairs.lambda.len() >= bridge.dofs() => {
+                    return Ok(Self::of(bridge, track, &factor, pairs, cutoff, stop)?);
                 }
-                Err(_) => count = (2 * count).min(bridge.dofs()),
+                Err(_) => search.extend()?,
             }
         }
     }
 
     /// The operator with the modes that a cut-off keeps.
-    fn of(bridge: &Bridge, track: Track, factor: &Factor, lambda: &[f64], shapes: &Mat<f64>, cutoff: Cutoff) -> Self {
-        let (m, design, lambda) = (cutoff.modes, bridge.design(), &lambda[..cutoff.modes]);
+    fn of(
+        bridge: &Bridge,
+        track: Track,
+        factor: &Factor,
+        pairs: &EigenPairs,
+        cutoff: Cutoff,
+        stop: Stop<'_>,
+    ) -> Result<Self, FemError> {
+        let (m, design, shapes) = (cutoff.modes, bridge.design(), &pairs.shapes);
+        let lambda = &pairs.lambda[..m];
         let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
         let (rows, observed) = observed(bridge);
         let (places, inside) = inside(bridge);
@@ -151,19 +178,26 @@ impl BridgeOperator {
             modules: design.modules,
         };
         let (nc, nv, ni) = (connectors.len(), observed.len(), inside.len());
-        let all = ResidualRows::new(factor, [connectors, observed, inside].concat(), lambda, shapes);
-        let deck = all.deck(&track, shapes);
+        let all = ResidualRows::new(
+            factor,
+            [connectors, observed, inside].concat(),
+            (lambda, SHIFT),
+            shapes,
+            stop,
+        )?;
+        let deck = all.deck(&track)?;
         let near = track.stations() / design.modules;
-        Self {
+        let r_bb = all.among(0, nc, 0, nc);
+        Ok(Self {
             sizes,
             rows,
             cutoff,
             omega2: lambda.to_vec(),
-            r_bb: DMatrix::from_fn(nc, nc, |i, j| all.among(i.min(j), i.max(j))),
-            r_vb: DMatrix::from_fn(nv, nc, |i, j| all.among(nc + i, j)),
-            r_inside_b: DMatrix::from_fn(ni, nc, |i, j| all.among(nc + nv + i, j)),
-            inside_bounds: all.bounds(&sizes, &deck),
-            r_deck: residual_of_deck(factor, &track, shapes, lambda, near),
+            r_bb: DMatrix::from_fn(nc, nc, |i, j| r_bb[(i.min(j), i.max(j))]),
+            r_vb: all.among(nc, nv, 0, nc),
+            r_inside_b: all.among(nc + nv, ni, 0, nc),
+            inside_bounds: inside_bounds(&all, lambda, &sizes, &deck),
+            r_deck: residual_of_deck(factor, &track, shapes, (lambda, SHIFT), near, stop)?,
             near,
             breadth_m: design.module.breadth_m,
             b: all.phi.rows(0, nc).into_owned(),
@@ -172,7 +206,7 @@ impl BridgeOperator {
             places,
             deck,
             track,
-        }
+        })
     }
 
     /// What was left out.
@@ -331,72 +365,26 @@ fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
         && sizes.modes <= bridge.dofs()
 }
 
-/// Rows of connectors, observed rows and edges inside modules, with what the modes leave out between them (O3).
-struct ResidualRows<'a> {
-    rows: Vec<SparseRow>,
-    /// Their values on the modes.
-    phi: DMatrix<f64>,
-    /// `K^-1` of each.
-    solved: Mat<f64>,
-    lambda: &'a [f64],
-}
-
-impl<'a> ResidualRows<'a> {
-    fn new(factor: &Factor, rows: Vec<SparseRow>, lambda: &'a [f64], shapes: &Mat<f64>) -> Self {
-        Self {
-            phi: DMatrix::from_fn(rows.len(), lambda.len(), |i, k| dot(&rows[i], shapes, k)),
-            solved: columns(factor, &rows),
-            rows,
-            lambda,
-        }
-    }
-
-    /// R between a row with its modal values and one of these.
-    fn between(&self, row: &SparseRow, own: &dyn Fn(usize) -> f64, other: usize) -> f64 {
-        let whole = row.dot(column(&self.solved, other));
-        let of_mode = |(k, lambda): (usize, &f64)| own(k) * self.phi[(other, k)] / (lambda + SHIFT);
-        let of_modes: f64 = self.lambda.iter().enumerate().map(of_mode).sum();
-        whole - of_modes
-    }
-
-    /// R between two of these.
-    fn among(&self, i: usize, j: usize) -> f64 {
-        self.between(&self.rows[i], &|k| self.phi[(i, k)], j)
-    }
-
-    /// For each track column its influence: `phi`, then R with all rows.
-    fn deck(&self, track: &Track, shapes: &Mat<f64>) -> Vec<f64> {
-        let influence = |c: usize| {
-            let row = SparseRow(vec![(track.dof(c), 1.0)]);
-            let phi: Vec<f64> = (0..self.lambda.len()).map(|k| shapes[(track.dof(c), k)]).collect();
-            let r = (0..self.rows.len()).map(|j| self.between(&row, &|k| phi[k], j));
-            let r: Vec<f64> = r.collect();
-            [phi, r].concat()
-        };
-        (0..track.lines() * track.stations()).flat_map(influence).collect()
-    }
-
-    /// Bounds of the edges inside each module, see [`BridgeOperator::inside_bounds`].
-    fn bounds(&self, sizes: &Sizes, deck: &[f64]) -> Vec<[f64; 3]> {
-        let first = sizes.connectors + sizes.observed;
-        let modal = |i: usize| {
-            let of_mode = |(k, lambda): (usize, &f64)| self.phi[(first + i, k)].powi(2) / lambda.max(1.0);
-            self.lambda.iter().enumerate().map(of_mode).sum::<f64>()
-        };
-        let of_module = |j: usize| {
-            let own = j * sizes.inside..(j + 1) * sizes.inside;
-            let influence = deck
-                .chunks_exact(sizes.influence())
-                .flat_map(|r| &r[sizes.followed()..][own.clone()]);
-            let residual = own.clone().map(|i| self.among(first + i, first + i));
-            [
-                own.clone().map(modal).fold(0.0, f64::max).sqrt(),
-                residual.fold(0.0, f64::max).sqrt(),
-                influence.fold(0.0, |most, r| r.abs().max(most)),
-            ]
-        };
-        (0..sizes.modules).map(of_module).collect()
-    }
+/// Bounds of the edges inside each module, see [`BridgeOperator::inside_bounds`].
+fn inside_bounds(all: &ResidualRows<'_>, lambda: &[f64], sizes: &Sizes, deck: &[f64]) -> Vec<[f64; 3]> {
+    let first = sizes.connectors + sizes.observed;
+    let modal = |i: usize| {
+        let of_mode = |(k, lambda): (usize, &f64)| all.phi[(first + i, k)].powi(2) / lambda.max(1.0);
+        lambda.iter().enumerate().map(of_mode).sum::<f64>()
+    };
+    let of_module = |j: usize| {
+        let own = j * sizes.inside..(j + 1) * sizes.inside;
+        let influence = deck
+            .chunks_exact(sizes.influence())
+            .flat_map(|r| &r[sizes.followed()..][own.clone()]);
+        let residual = own.clone().map(|i| all.own(first + i));
+        [
+            own.clone().map(modal).fold(0.0, f64::max).sqrt(),
+            residual.fold(0.0, f64::max).sqrt(),
+            influence.fold(0.0, |most, r| r.abs().max(most)),
+        ]
+    };
+    (0..sizes.modules).map(of_module).collect()
 }
 
 /// The rows that are followed through every step: positions, deck corners, and where a draft is given bottom corners.
@@ -413,37 +401,6 @@ fn observed(bridge: &Bridge) -> (Observed, Vec<SparseRow>) {
     };
     let parts: [&[SparseRow]; 3] = [&bridge.positions, &bridge.deck_corners, bottom];
     (rows, parts.concat())
-}
-
-/// R among the deck's nodes: for each column `lines * (2 near + 1)` numbers.
-fn residual_of_deck(factor: &Factor, track: &Track, shapes: &Mat<f64>, lambda: &[f64], near: usize) -> Vec<f64> {
-    let (lines, stations, width) = (track.lines(), track.stations(), 2 * near + 1);
-    let mut all = vec![0.0; lines * stations * lines * width];
-    // rows of phi / sqrt(lambda + SHIFT), side by side
-    let scaled: Vec<Vec<f64>> = (0..lines * stations)
-        .map(|c| {
-            (0..lambda.len())
-                .map(|k| shapes[(track.dof(c), k)] / (lambda[k] + SHIFT).sqrt())
-                .collect()
-        })
-        .collect();
-    for line in 0..lines {
-        let rows: Vec<SparseRow> = (0..stations)
-            .map(|s| SparseRow(vec![(track.dof(line * stations + s), 1.0)]))
-            .collect();
-        let solved = columns(factor, &rows);
-        for s in 0..stations {
-            let (own, whole) = (line * stations + s, column(&solved, s));
-            for other_line in 0..lines {
-                for t in s.saturating_sub(near)..(s + near + 1).min(stations) {
-                    let other = other_line * stations + t;
-                    let modal: f64 = scaled[own].iter().zip(&scaled[other]).map(|(a, b)| a * b).sum();
-                    all[(own * lines + other_line) * width + t + near - s] = whole[track.dof(other)] - modal;
-                }
-            }
-        }
-    }
-    all
 }
 
 /// `K + SHIFT M`.
@@ -480,24 +437,4 @@ fn inside(bridge: &Bridge) -> (Vec<f64>, Vec<SparseRow>) {
         }
     }
     (places[1..along - 1].to_vec(), rows)
-}
-
-/// `A^-1 r^T` of each row.
-fn columns(factor: &Factor, rows: &[SparseRow]) -> Mat<f64> {
-    let mut columns = Mat::<f64>::zeros(factor.order(), rows.len());
-    for (j, row) in rows.iter().enumerate() {
-        for &(i, v) in &row.0 {
-            columns[(i, j)] += v;
-        }
-    }
-    factor.solve_columns(columns.as_mut());
-    columns
-}
-
-fn column(columns: &Mat<f64>, j: usize) -> &[f64] {
-    columns.col(j).try_as_col_major().map_or(&[], |c| c.as_slice())
-}
-
-fn dot(row: &SparseRow, shapes: &Mat<f64>, k: usize) -> f64 {
-    row.0.iter().map(|&(i, v)| v * shapes[(i, k)]).sum()
 }

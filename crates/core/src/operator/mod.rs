@@ -27,6 +27,7 @@ mod moving_masses;
 mod panel;
 mod persist;
 mod residual;
+mod residual_rows;
 mod rider_block;
 mod small_matrix;
 mod step;

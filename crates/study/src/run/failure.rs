@@ -93,7 +93,7 @@ fn keys_of(error: &FemError) -> Option<&'static str> {
             "bridge.module.material, the thicknesses of bridge.module, bridge.hydrostatic_stiffness_pa_m and bridge.supports",
         ),
         FemError::Degenerate { .. } => Some("the sizes of bridge.module and bridge.module.mesh"),
-        FemError::Shift { .. } | FemError::OutOfMemory { .. } => None,
+        FemError::Shift { .. } | FemError::OutOfMemory { .. } | FemError::Stopped => None,
     }
 }
 

@@ -13,6 +13,7 @@ use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
 use pontoon_core::operator::BridgeOperator;
+use pontoon_core::stop::Stop;
 use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
 use rayon::prelude::*;
@@ -123,7 +124,7 @@ impl SharedModels {
             cancel,
             &crossings,
             |job| Some(damping_key(job)),
-            |job| models.damping_of(job),
+            |job| models.damping_of(job, cancel),
         );
         progress.stage("solvers: factors");
         let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
@@ -140,7 +141,9 @@ impl SharedModels {
             |job| models.crossing_solver(job),
         );
         progress.stage("operators: modes and what they leave out");
-        models.operators = each(cancel, &crossings, operator_key, |job| models.operator(job, cache));
+        models.operators = each(cancel, &crossings, operator_key, |job| {
+            models.operator(job, cache, cancel)
+        });
         models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| {
             models.operator_solver(job)
         });
@@ -173,11 +176,12 @@ impl SharedModels {
         Ok(Bridge::new(&job.bridge.design, &module, ends)?)
     }
 
-    fn damping_of(&self, crossing: &CrossingJob<'_>) -> Result<Damping, JobFailure> {
+    fn damping_of(&self, crossing: &CrossingJob<'_>, cancel: &CancelToken) -> Result<Damping, JobFailure> {
+        let asked = || cancel.is_asked();
         let damping = crossing.analysis.damping;
         let frequencies_hz = match damping.frequencies_hz {
             Some(stated) => stated,
-            None => bending_frequencies_hz(&self.bridge(crossing.job, Ends::Free)?)
+            None => bending_frequencies_hz(&self.bridge(crossing.job, Ends::Free)?, Stop::when(&asked))
                 .map_err(|e| JobFailure::from(e).said("damping: ", "; state analysis.damping.frequencies_hz"))?,
         };
         Ok(Damping {
@@ -187,7 +191,12 @@ impl SharedModels {
     }
 
     /// The operator of a crossing, from the cache where it is there whole, else built and kept.
-    fn operator(&self, crossing: &CrossingJob<'_>, cache: Option<&Cache>) -> Result<BridgeOperator, JobFailure> {
+    fn operator(
+        &self,
+        crossing: &CrossingJob<'_>,
+        cache: Option<&Cache>,
+        cancel: &CancelToken,
+    ) -> Result<BridgeOperator, JobFailure> {
         let (Some(tolerance), Some(key)) = (crossing.operator_tolerance(), operator_key(crossing)) else {
             return Err(JobFailure::of_program("an operator of the reference solver"));
         };
@@ -202,7 +211,8 @@ impl SharedModels {
             CacheLookup::Nothing => 0,
         };
         made.built.fetch_add(1, Ordering::Relaxed);
-        let operator = BridgeOperator::new(&bridge, tolerance)?;
+        let asked = || cancel.is_asked();
+        let operator = BridgeOperator::new_unless(&bridge, tolerance, Stop::when(&asked))?;
         if let Some(cache) = cache {
             // a cache that cannot be written costs time at the next run, and nothing else
             let _ = cache.write(&name, &operator);
@@ -401,10 +411,11 @@ fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
         .into_par_iter()
         .with_max_len(1)
         .map(|(key, job)| {
-            let made = if cancel.is_asked() {
-                Err(Failure::new(FailureKind::Stopped, "not prepared: the run was stopped").into())
-            } else {
-                guarded(|| make(job))
+            let stopped = || Failure::new(FailureKind::Stopped, "not prepared: the run was stopped").into();
+            let made = match cancel.is_asked() {
+                true => Err(stopped()),
+                // what is under way gives up at a stop
+                false => guarded(|| make(job)).map_err(|failure| if cancel.is_asked() { stopped() } else { failure }),
             };
             (key, made.map(Arc::new))
         })

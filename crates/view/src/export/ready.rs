@@ -7,6 +7,7 @@ use super::subject::CrossingWanted;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::{bending_frequencies_hz, rayleigh};
 use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
+use pontoon_core::stop::Stop;
 use std::sync::Arc;
 
 /// A bridge with its mesh.
@@ -42,7 +43,7 @@ impl Ready {
         let damping = crossing.analysis.damping;
         let frequencies_hz = match damping.frequencies_hz {
             Some(stated) => stated,
-            None => bending_frequencies_hz(&Bridge::new(design, &module, Ends::Free)?)?,
+            None => bending_frequencies_hz(&Bridge::new(design, &module, Ends::Free)?, Stop::never())?,
         };
         let settings = CrossingSettings {
             time_step_s: wanted.time_step_s,

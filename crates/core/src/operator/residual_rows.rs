@@ -1,0 +1,274 @@
+//! What the modes leave out: residual flexibilities between rows of the bridge (O3).
+//!
+//! Knows rows, modes and a factor. Does not know which rows are connectors and which are looked at.
+//!
+//! Work is cut into blocks of one size on any number of threads, so that these do not change a bit.
+
+use crate::bridge::Track;
+use crate::fem::{Factor, FemError, SparseRow};
+use crate::stop::Stop;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatMut, Par};
+use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+/// Rows with their values on the modes and their flexibility.
+pub(super) struct ResidualRows<'a> {
+    rows: Vec<SparseRow>,
+    /// Their values on the modes.
+    pub(super) phi: DMatrix<f64>,
+    /// `K^-1` of each.
+    solved: Columns,
+    /// lambda of the modes with the shift of K.
+    shifted: Vec<f64>,
+    shapes: &'a Mat<f64>,
+    stop: Stop<'a>,
+}
+
+impl<'a> ResidualRows<'a> {
+    /// Rows on the modes `shapes` of eigenvalues lambda; `factor` is that of K with a shift.
+    ///
+    /// # Errors
+    /// [`FemError::Stopped`], as of everything here that may fail.
+    pub(super) fn new(
+        factor: &Factor,
+        rows: Vec<SparseRow>,
+        (lambda, shift): (&[f64], f64),
+        shapes: &'a Mat<f64>,
+        stop: Stop<'a>,
+    ) -> Result<Self, FemError> {
+        Ok(Self {
+            phi: DMatrix::from_fn(rows.len(), lambda.len(), |i, k| dot(&rows[i], shapes, k)),
+            solved: Columns::solved(factor, &rows, stop)?,
+            rows,
+            shifted: lambda.iter().map(|lambda| lambda + shift).collect(),
+            shapes,
+            stop,
+        })
+    }
+
+    /// R between a row with its values `own` on the modes and these from `first` on, as many as `r` has room for.
+    fn between(&self, row: &SparseRow, own: &[f64], first: usize, r: &mut [f64]) {
+        Arch::new().dispatch(SumsOfModes(self, own, first, r));
+        for (j, r) in (first..).zip(r) {
+            *r = row.dot(self.solved.column(j)) - *r;
+        }
+    }
+
+    /// What the modes have: `sum of own phi / (lambda + shift)`.
+    #[inline(always)]
+    fn of_modes(&self, own: &[f64], first: usize, sums: &mut [f64]) {
+        let (rows, many) = (self.rows.len(), sums.len());
+        sums.fill(-0.0);
+        for (k, (own, shifted)) in own.iter().zip(&self.shifted).enumerate() {
+            let phi = &self.phi.as_slice()[k * rows + first..][..many];
+            for (sum, phi) in sums.iter_mut().zip(phi) {
+                *sum += own * phi / shifted;
+            }
+        }
+    }
+
+    /// R of the rows of one range with those of another, the latter's in a row each.
+    pub(super) fn among(&self, first: usize, count: usize, of: usize, many: usize) -> DMatrix<f64> {
+        let row = |i: usize| {
+            let own: Vec<f64> = self.phi.row(first + i).iter().copied().collect();
+            let mut r = vec![0.0; many];
+            self.between(&self.rows[first + i], &own, of, &mut r);
+            r
+        };
+        let rows: Vec<Vec<f64>> = (0..count).into_par_iter().map(row).collect();
+        DMatrix::from_fn(count, many, |i, j| rows[i][j])
+    }
+
+    /// R of a row with itself.
+    pub(super) fn own(&self, i: usize) -> f64 {
+        self.among(i, 1, i, 1)[(0, 0)]
+    }
+
+    /// For each track column its influence: `phi`, then R with all rows.
+    pub(super) fn deck(&self, track: &Track) -> Result<Vec<f64>, FemError> {
+        let (m, many) = (self.shifted.len(), self.rows.len());
+        let (width, further) = (m + many, self.further_modes());
+        let mut deck = vec![0.0; track.columns() * width];
+        let blocks = deck.par_chunks_mut(width.max(1) * BLOCK).enumerate();
+        blocks.try_for_each(|(block, of_block)| {
+            self.stop.check()?;
+            let node = |c: usize| track.dof(block * BLOCK + c);
+            for (c, influence) in of_block.chunks_exact_mut(width).enumerate() {
+                let (phi, sums) = influence.split_at_mut(m);
+                for (k, phi) in phi.iter_mut().enumerate() {
+                    *phi = self.shapes[(node(c), k)];
+                }
+                Arch::new().dispatch(SumsOfModes(self, &phi[..m.min(ONE_BY_ONE)], 0, sums));
+            }
+            if let Some(further) = &further {
+                add_further(further, m, of_block, width);
+            }
+            for (c, influence) in of_block.chunks_exact_mut(width).enumerate() {
+                let row = SparseRow(vec![(node(c), 1.0)]);
+                for (j, r) in influence[m..].iter_mut().enumerate() {
+                    *r = row.dot(self.solved.column(j)) - *r;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(deck)
+    }
+
+    /// `phi / (lambda + shift)` of the modes that are not summed one by one, rows x modes; none where there are no such.
+    fn further_modes(&self) -> Option<Mat<f64>> {
+        let further = self.shifted.get(ONE_BY_ONE..).filter(|further| !further.is_empty())?;
+        let entry = |i: usize, k: usize| self.phi[(i, ONE_BY_ONE + k)] / further[k];
+        Some(Mat::from_fn(self.rows.len(), further.len(), entry))
+    }
+}
+
+/// Adds what the further modes have to the sums of influences, which stand behind the m values on the modes.
+fn add_further(further: &Mat<f64>, m: usize, influences: &mut [f64], width: usize) {
+    let count = influences.len() / width;
+    let mut all = MatMut::from_column_major_slice_mut(influences, width, count);
+    let own = all.as_ref().subrows(ONE_BY_ONE, m - ONE_BY_ONE).to_owned();
+    let sums = all.as_mut().subrows_mut(m, width - m);
+    matmul(sums, Accum::Add, further.as_ref(), own.as_ref(), 1.0, Par::Seq);
+}
+
+/// R among the deck's nodes: for each column `lines * (2 near + 1)` numbers.
+pub(super) fn residual_of_deck(
+    factor: &Factor,
+    track: &Track,
+    shapes: &Mat<f64>,
+    (lambda, shift): (&[f64], f64),
+    near: usize,
+    stop: Stop<'_>,
+) -> Result<Vec<f64>, FemError> {
+    let (lines, stations, width) = (track.lines(), track.stations(), 2 * near + 1);
+    let mut all = vec![0.0; lines * stations * lines * width];
+    // phi / sqrt(lambda + shift), mode after mode
+    let nodes = lines * stations;
+    let mut scaled = vec![0.0; lambda.len() * nodes];
+    scaled
+        .par_chunks_mut(nodes.max(1))
+        .enumerate()
+        .for_each(|(k, of_mode)| {
+            let root = (lambda[k] + shift).sqrt();
+            for (c, scaled) in of_mode.iter_mut().enumerate() {
+                *scaled = shapes[(track.dof(c), k)] / root;
+            }
+        });
+    for (line, of_line) in all.chunks_exact_mut(stations * lines * width).enumerate() {
+        let blocks = of_line.par_chunks_mut(SOLVED_AT_ONCE * lines * width).enumerate();
+        blocks.try_for_each(|(block, of_block)| {
+            let station = block * SOLVED_AT_ONCE;
+            let many = of_block.len() / (lines * width);
+            let unit = |s: usize| SparseRow(vec![(track.dof(line * stations + s), 1.0)]);
+            let rows: Vec<SparseRow> = (station..station + many).map(unit).collect();
+            let solved = Columns::solved(factor, &rows, stop)?;
+            for (i, of_node) in of_block.chunks_exact_mut(lines * width).enumerate() {
+                let (s, whole) = (station + i, solved.column(i));
+                let (first, end) = (s.saturating_sub(near), (s + near + 1).min(stations));
+                for (other_line, r) in of_node.chunks_exact_mut(width).enumerate() {
+                    let (r, other) = (&mut r[first + near - s..][..end - first], other_line * stations + first);
+                    Arch::new().dispatch(ProductsOfModes {
+                        scaled: &scaled,
+                        nodes,
+                        own: line * stations + s,
+                        other,
+                        sums: r,
+                    });
+                    for (t, r) in (other..).zip(r) {
+                        *r = whole[track.dof(t)] - *r;
+                    }
+                }
+            }
+            Ok(())
+        })?;
+    }
+    Ok(all)
+}
+
+/// [`ResidualRows::of_modes`] with the machine's vectors; a closure would leave their instructions behind.
+struct SumsOfModes<'a>(&'a ResidualRows<'a>, &'a [f64], usize, &'a mut [f64]);
+
+impl WithSimd for SumsOfModes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.of_modes(self.1, self.2, self.3);
+    }
+}
+
+/// Sums over the modes of the products of a node with those from another on, modes after each other with `nodes` numbers
+/// each.
+struct ProductsOfModes<'a> {
+    scaled: &'a [f64],
+    nodes: usize,
+    own: usize,
+    other: usize,
+    sums: &'a mut [f64],
+}
+
+impl WithSimd for ProductsOfModes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let many = self.sums.len();
+        self.sums.fill(-0.0);
+        for of_mode in self.scaled.chunks_exact(self.nodes) {
+            let own = of_mode[self.own];
+            for (sum, b) in self.sums.iter_mut().zip(&of_mode[self.other..][..many]) {
+                *sum += own * b;
+            }
+        }
+    }
+}
+
+/// Modes that are summed one by one. All further ones of a long bridge are one product of matrices, ten times as fast;
+/// the numbers of bridges that have no more hang on the order of this sum.
+const ONE_BY_ONE: usize = 128;
+
+/// Columns that are solved for at once. The library blocks its products by their number, so that the bits of a solution hang
+/// on it a little.
+const SOLVED_AT_ONCE: usize = 512;
+
+/// Influences that are computed at once.
+const BLOCK: usize = 32;
+
+/// Columns side by side.
+pub(super) struct Columns {
+    numbers: Vec<f64>,
+    order: usize,
+}
+
+impl Columns {
+    /// `A^-1 r^T` of each row.
+    pub(super) fn solved(factor: &Factor, rows: &[SparseRow], stop: Stop<'_>) -> Result<Self, FemError> {
+        let order = factor.order();
+        let mut numbers = vec![0.0; order * rows.len()];
+        let block = |(block, rows): (&mut [f64], &[SparseRow])| {
+            stop.check()?;
+            for (column, row) in block.chunks_exact_mut(order).zip(rows) {
+                for &(i, v) in &row.0 {
+                    column[i] += v;
+                }
+            }
+            factor.solve_columns(MatMut::from_column_major_slice_mut(block, order, rows.len()));
+            Ok(())
+        };
+        let blocks = numbers.par_chunks_mut(order.max(1) * SOLVED_AT_ONCE);
+        blocks.zip(rows.par_chunks(SOLVED_AT_ONCE)).try_for_each(block)?;
+        Ok(Self { numbers, order })
+    }
+
+    /// A column.
+    pub(super) fn column(&self, j: usize) -> &[f64] {
+        &self.numbers[j * self.order..][..self.order]
+    }
+}
+
+/// A row on a mode.
+pub(super) fn dot(row: &SparseRow, shapes: &Mat<f64>, k: usize) -> f64 {
+    row.0.iter().map(|&(i, v)| v * shapes[(i, k)]).sum()
+}
