@@ -31,6 +31,9 @@ pub struct Mode {
 /// Shift of the eigenproblem `[1/s^2]`: the square of 0.1 Hz, below the 0.3 Hz at which bridges heave.
 const SHIFT: f64 = 0.4;
 
+/// Motions of a floating bridge that nothing restores: surge, sway and yaw.
+const UNRESTORED: usize = 3;
+
 /// Below this frequency a mode is a motion that nothing restores `[Hz]`.
 const RIGID_BELOW_HZ: f64 = 1e-3;
 
@@ -50,8 +53,13 @@ pub fn modes(bridge: &Bridge, count: usize) -> Result<(Vec<Mode>, EigenPairs), A
 }
 
 fn modes_unless(bridge: &Bridge, count: usize, stop: Stop<'_>) -> Result<(Vec<Mode>, EigenPairs), AnalysisError> {
-    let mut pairs = lowest_modes_unless(&linear_stiffness(bridge)?, &bridge.m, count, SHIFT, stop)?;
+    // fewer would be mixtures of the motions that nothing restores
+    let searched = count.max(UNRESTORED + 1);
+    let mut pairs = lowest_modes_unless(&linear_stiffness(bridge)?, &bridge.m, searched, SHIFT, stop)?;
     name_unrestored(bridge, &mut pairs);
+    pairs.lambda.truncate(count);
+    let kept = pairs.lambda.len();
+    pairs.shapes = pairs.shapes.subcols(0, kept).to_owned();
     let mut names = ShapeNames::default();
     let modes = (0..pairs.lambda.len())
         .map(|j| {
@@ -107,8 +115,8 @@ pub fn largest_made_one(mut motion: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
 /// are turned into surge, sway and yaw.
 fn name_unrestored(bridge: &Bridge, pairs: &mut EigenPairs) {
     let below = (2.0 * PI * RIGID_BELOW_HZ).powi(2);
-    if pairs.lambda.len() < 3 || pairs.lambda[2].abs() > below || pairs.lambda.get(3).is_some_and(|l| l.abs() <= below)
-    {
+    let unrestored = pairs.lambda.iter().take_while(|lambda| lambda.abs() <= below).count();
+    if unrestored != UNRESTORED {
         return;
     }
     let mut basis: Vec<Vec<f64>> = Vec::new();
