@@ -10,6 +10,7 @@ use pontoon_plan::job::{Plan, Share};
 use pontoon_plan::study_file::Study;
 use serde::Serialize;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// What a study will take.
 #[derive(Debug, Clone, Serialize)]
@@ -19,10 +20,13 @@ pub struct Forecast {
     pub plan: Plan,
     /// What a folder of results holds of it; null where it has no journal.
     pub found: Option<RecordedJobs>,
-    /// Time that the jobs not recorded will take `[s]`; null where the few that were tried failed or are too long to try.
+    /// Time that the jobs not recorded will take `[s]`; null where the few that were tried failed or are too long to try, and
+    /// where trying them was given up.
     pub expected_seconds: Option<f64>,
     /// Jobs that were tried for it.
     pub tried: usize,
+    /// Whether trying jobs was given up after ten seconds.
+    pub time_not_probed: bool,
     /// Threads that it reckons with.
     pub threads: usize,
 }
@@ -40,11 +44,21 @@ pub struct RecordedJobs {
     pub refused: Vec<String>,
 }
 
-/// Checks every job of a study, looks into the folder of its results, and tries a few jobs.
+/// How long jobs are prepared for being tried.
+const PROBED: Duration = Duration::from_secs(10);
+
+/// Checks every job of a study, looks into the folder of its results, and tries a few jobs, for ten seconds at most. `planned`
+/// is told what is known before that.
 ///
 /// # Errors
 /// [`SweepError::Refused`] of the first job that is refused; [`SweepError::Journal`].
-pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cache>) -> Result<Forecast, SweepError> {
+pub fn forecast(
+    study: &Study,
+    folder: &Path,
+    threads: usize,
+    cache: Option<&Cache>,
+    planned: impl FnOnce(&Plan, Option<&RecordedJobs>),
+) -> Result<Forecast, SweepError> {
     let index = JournalIndex::read(folder)?;
     let now = binding(study, None);
     let refused = results_folder::bindings(&index)
@@ -66,13 +80,15 @@ pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cac
         missing,
         refused,
     });
+    planned(&plan, found.as_ref());
     let (mut tried, mut seconds) = (0, Some(0.0));
+    let deadline = Instant::now() + PROBED;
     if missing > 0 {
         // costs of all jobs, then the part of them that is missing
         let threads = threads.min(plan.jobs).max(1) as f64;
         let mut bridge_s: f64 = 0.0;
         for share in plan.work.shares() {
-            let measured = measure(study, &share.first, cache);
+            let measured = measure(study, &share.first, cache, deadline);
             tried += measured.map_or(0, |m| m.jobs);
             bridge_s = measured.map_or(bridge_s, |m| bridge_s.max(m.bridge_s));
             seconds = seconds.zip(measured).map(|(sum, m)| sum + share_s(share, &m) / threads);
@@ -85,6 +101,7 @@ pub fn forecast(study: &Study, folder: &Path, threads: usize, cache: Option<&Cac
         found,
         expected_seconds: seconds,
         tried,
+        time_not_probed: seconds.is_none() && Instant::now() >= deadline,
         threads,
     })
 }
