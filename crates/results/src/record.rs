@@ -69,8 +69,10 @@ pub struct Summary {
     pub bottom_emerged: Option<bool>,
     /// Whether a module's deck went below the water.
     pub deck_submerged: Option<bool>,
-    /// Smallest contact force of an axle `[N]`.
+    /// Smallest contact force of an axle, once its points have settled on their modules `[N]`; null where none ever has.
     pub min_contact_force_n: Option<f64>,
+    /// Whether the time step is too long for the patches of a vehicle with inertia; null where the program found the step.
+    pub step_warning: Option<bool>,
     /// Time step that the program has found for the job, where it was to find one `[s]`.
     pub time_step_s: Option<f64>,
     /// Time steps.
@@ -89,6 +91,8 @@ pub struct Summary {
     pub verify_compression: Option<f64>,
     /// How far the largest tension is off, as a share of that force.
     pub verify_tension: Option<f64>,
+    /// How far the smallest contact force of an axle is off, as a share of the vehicle's weight.
+    pub verify_contact: Option<f64>,
     /// Whether all are within their tolerances.
     pub verify_held: Option<bool>,
 }

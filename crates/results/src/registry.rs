@@ -359,6 +359,9 @@ fn reason(record: &JobRecord) -> Cell<'_> {
             let text = format!("at half the time step; at its own: {}", retried.text);
             Cell::Word(Cow::Owned(text))
         }
+        (None, None) if record.summary.steps.is_some() && record.summary.min_contact_force_n.is_none() => {
+            "min_contact_force_n is null: no axle has been on its modules for 50 ms".into()
+        }
         (None, None) => Cell::Nothing,
     }
 }
@@ -400,7 +403,8 @@ pub const COLUMNS: &[Column] = &[
         .card(plain_card("longest influential length")),
     of_job("bottom_emerged", Flags, ("bottom emerged", "whether a corner of a module's bottom rose above the water; null unless the bridge has `draft_m`"), |r| r.summary.bottom_emerged.into()),
     of_job("deck_submerged", Flags, ("deck submerged", "whether a corner of a module's deck went below the water; null unless the bridge has `freeboard_m`"), |r| r.summary.deck_submerged.into()),
-    of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle; below zero it would have lifted off"), |r| r.summary.min_contact_force_n.into()).unit("N").role(ColumnRole::Listed),
+    of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle, from 50 ms after its last point came onto a module; below zero it would have lifted off; with gaps impacts make it depend on the time step; null where no axle has been on its modules so long"), |r| r.summary.min_contact_force_n.into()).unit("N").role(ColumnRole::Listed),
+    of_job("step_warning", Flags, ("step warning", "whether the vehicle goes more than half of its shortest patch in a time step, so that peaks may be far too large; vehicles with inertia and a stated time step"), |r| r.summary.step_warning.into()).role(ColumnRole::Listed),
     of_job("time_step_s", Numbers, ("time step", "time step found for the job"), |r| r.summary.time_step_s.into()).unit("s").when(When::AutoTimeStep).role(ColumnRole::Listed),
     of_job("steps", Counts, ("steps", "time steps"), |r| r.summary.steps.into()).role(ColumnRole::Listed),
     of_job("newton_iterations", Counts, ("newton iterations", "Newton solutions"), |r| r.summary.newton_iterations.into()),
@@ -410,6 +414,7 @@ pub const COLUMNS: &[Column] = &[
     of_job("verify_deflection", Numbers, ("verify deflection", "how far the operator's largest deflection is off, a share of the reference solver's"), |r| r.summary.verify_deflection.into()).when(When::Verify).role(ColumnRole::Listed),
     of_job("verify_compression", Numbers, ("verify compression", "how far the operator's largest compression is off, a share of the job's largest joint force"), |r| r.summary.verify_compression.into()).when(When::Verify),
     of_job("verify_tension", Numbers, ("verify tension", "how far the operator's largest tension is off, a share of the job's largest joint force"), |r| r.summary.verify_tension.into()).when(When::Verify),
+    of_job("verify_contact", Numbers, ("verify contact", "how far the smallest contact force of an axle is off, as a share of the vehicle's weight; judged with a linear connection only"), |r| r.summary.verify_contact.into()).when(When::Verify),
     of_job("verify_held", Flags, ("verify held", "whether all are within their tolerances"), |r| r.summary.verify_held.into()).when(When::Verify),
     measure("structural_mass_kg", "structural mass", "structural mass of a module", |r| r.summary.structural_mass_kg.into()).unit("kg").when(When::Modes),
 

@@ -21,7 +21,7 @@ const JOBS: &str = "job status reason failure connection gap_tension_m gap_compr
     peak_deflection_position peak_deflection_time_s peak_uplift_m peak_uplift_position peak_uplift_time_s \
     peak_compression_n peak_compression_joint peak_tension_n peak_tension_joint peak_edge_deflection_m peak_roll_rad \
     static_peak_deflection_m dynamic_amplification influential_length_m bottom_emerged deck_submerged \
-    min_contact_force_n steps newton_iterations contact_switches energy_residual numerical_dissipation";
+    min_contact_force_n step_warning steps newton_iterations contact_switches energy_residual numerical_dissipation";
 
 #[test]
 fn any_number_of_threads_writes_the_same_bytes() {

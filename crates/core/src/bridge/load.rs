@@ -29,16 +29,16 @@ pub(crate) struct Load {
     pub weight: SparseRow,
     /// The masses.
     pub riders: Vec<Rider>,
-    /// Weight of each axle that is on the bridge `[N]`, and whether all its points are.
+    /// Weight of each axle that is on the bridge `[N]`, and whether the contact force of all its points has settled.
     pub axles: Vec<(f64, bool)>,
 }
 
 impl Load {
-    /// A vehicle of weight `load_n` with its front at `front_x_m`. A point off the bridge neither loads nor weighs.
+    /// A vehicle of weight `load_n` with its front at `front_x_m`, moving at `speed_m_s`. A point off the bridge neither loads nor weighs.
     /// Equation (V1).
-    pub(crate) fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64) -> Self {
+    pub(crate) fn new(track: &Track, vehicle: &Vehicle, load_n: f64, front_x_m: f64, speed_m_s: f64) -> Self {
         let mut load = Self {
-            placement: VehiclePlacement::new(track, vehicle, front_x_m),
+            placement: VehiclePlacement::new(track, vehicle, front_x_m, speed_m_s),
             axles: vec![(0.0, true); vehicle.axles],
             ..Self::default()
         };
@@ -46,8 +46,8 @@ impl Load {
         for patch in &vehicle.patches {
             let mut mean: Vec<(usize, f64)> = Vec::new();
             for point in &patch.points {
+                load.axles[patch.axle].1 &= load.placement.is_settled(point.along);
                 let Some(row) = load.placement.row(track, point) else {
-                    load.axles[patch.axle].1 = false;
                     continue;
                 };
                 let w = load_n * point.share;

@@ -8,6 +8,10 @@ use super::track::DeckCell;
 use crate::fem::SparseRow;
 use crate::vehicle::{Patch, Vehicle, WheelPoint};
 
+/// How long a point has to be on a module before its contact force tells anything `[s]`. It comes onto the module at rest, with
+/// a contact force that hangs on the time step; what that leaves has died away to a thousandth by then.
+const SETTLING_S: f64 = 0.05;
+
 /// A vehicle's place on the track.
 /// Equation (V1).
 #[derive(Debug, Clone, Default)]
@@ -16,20 +20,23 @@ pub(crate) struct VehiclePlacement {
     pub front_x_m: f64,
     /// The cell at each of the vehicle's places along; none off the bridge.
     cells: Vec<Option<DeckCell>>,
+    /// Distance that a point covers on a module while its contact force settles `[m]`.
+    settling_m: f64,
 }
 
 impl VehiclePlacement {
-    /// A vehicle with its front at `front_x_m`.
-    pub(crate) fn new(track: &Track, vehicle: &Vehicle, front_x_m: f64) -> Self {
+    /// A vehicle with its front at `front_x_m`, moving at `speed_m_s`.
+    pub(crate) fn new(track: &Track, vehicle: &Vehicle, front_x_m: f64, speed_m_s: f64) -> Self {
         let mut placement = Self::default();
-        placement.place(track, vehicle, front_x_m);
+        placement.place(track, vehicle, front_x_m, speed_m_s);
         placement
     }
 
-    /// Puts the vehicle's front at `front_x_m`.
+    /// Puts the vehicle's front at `front_x_m`, moving at `speed_m_s`.
     #[inline(always)]
-    pub(crate) fn place(&mut self, track: &Track, vehicle: &Vehicle, front_x_m: f64) {
+    pub(crate) fn place(&mut self, track: &Track, vehicle: &Vehicle, front_x_m: f64, speed_m_s: f64) {
         self.front_x_m = front_x_m;
+        self.settling_m = SETTLING_S * speed_m_s;
         self.cells.clear();
         for ahead_m in &vehicle.along_m {
             self.cells.push(track.cell(front_x_m + ahead_m));
@@ -40,6 +47,12 @@ impl VehiclePlacement {
     #[inline(always)]
     pub(crate) fn cell(&self, along: usize) -> Option<DeckCell> {
         self.cells[along]
+    }
+
+    /// Whether the contact force at one of the vehicle's places along has settled since it came onto its module.
+    #[inline(always)]
+    pub(crate) fn is_settled(&self, along: usize) -> bool {
+        self.cells[along].is_some_and(|cell| cell.in_module_m >= self.settling_m)
     }
 
     /// Place of a point along the bridge `[m]`.

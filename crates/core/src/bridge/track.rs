@@ -96,11 +96,13 @@ impl Track {
             return None;
         }
         let module = ((x_m / self.module_length_m) as usize).min(self.modules - 1);
-        let (ix, fraction, length_m) = interval(&self.lines_x, x_m - module as f64 * self.module_length_m);
+        let in_module_m = x_m - module as f64 * self.module_length_m;
+        let (ix, fraction, length_m) = interval(&self.lines_x, in_module_m);
         Some(DeckCell {
             station: module * self.lines_x.len() + ix,
             fraction,
             length_m,
+            in_module_m,
         })
     }
 
@@ -131,6 +133,8 @@ pub(crate) struct DeckCell {
     pub fraction: f64,
     /// Their distance `[m]`.
     pub length_m: f64,
+    /// Distance of the place from the left end of its module `[m]`.
+    pub in_module_m: f64,
 }
 
 impl DeckCell {

@@ -42,7 +42,7 @@ pub(super) struct Lane {
     placement: VehiclePlacement,
     pub(super) contact: ContactSystem,
     pub(super) masses: MovingMasses,
-    /// Weight on each axle that is on the bridge `[N]`, and whether all its points are.
+    /// Weight on each axle that is on the bridge `[N]`, and whether the contact force of all its points has settled.
     pub(super) axles: Vec<(f64, bool)>,
     pub(super) inertia: Vec<f64>,
     /// Downward forces on stations of the lines of the weights, then of the masses.
@@ -105,7 +105,7 @@ impl Lane {
         };
         let front_x_m = crossing.speed_m_s * self.time_s;
         self.placement
-            .place(&operator.track, &crossing.wheels.vehicle, front_x_m);
+            .place(&operator.track, &crossing.wheels.vehicle, front_x_m, crossing.speed_m_s);
         self.axles.fill((0.0, true));
         self.weights.clear();
         for (line, of) in crossing.wheels.weights.iter().enumerate() {
@@ -228,8 +228,8 @@ fn place_weights(
 ) {
     let own = weights.len();
     for point in &of.points {
+        axles[point.axle].1 &= placement.is_settled(point.along);
         let Some(cell) = placement.cell(point.along) else {
-            axles[point.axle].1 = false;
             continue;
         };
         let w = load_n * point.share;

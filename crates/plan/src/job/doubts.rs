@@ -1,4 +1,4 @@
-//! Numbers that are allowed and yet look as if they were in another unit.
+//! Numbers that are allowed and yet look as if they were in another unit, or go beyond what the model is valid for.
 //!
 //! Knows what bridges and vehicles are like. Refuses nothing: a person may mean what nobody else would.
 
@@ -26,7 +26,7 @@ struct Doubt {
     why: &'static str,
 }
 
-/// What looks as if it were in another unit, as jobs are looked at one after the other.
+/// What looks wrong, as jobs are looked at one after the other.
 #[derive(Debug, Default)]
 pub struct Doubts {
     found: Vec<Doubt>,
@@ -54,6 +54,15 @@ impl Doubts {
                 "speed_m_s",
                 speed_m_s,
                 "above 30 m/s, which is 108 km/h: is it in km/h?",
+            );
+        }
+        if let Some(crossing) = job.as_crossing() {
+            self.note(
+                crossing.is_step_long() == Some(true),
+                "analysis.time_step_s",
+                crossing.analysis.time_step.seconds(),
+                "the vehicle goes more than half of its shortest patch in a time step, so that peaks may be far too large: take a \
+                 smaller step or \"auto\" (column step_warning)",
             );
         }
         if job.task != Task::Modes {

@@ -34,6 +34,7 @@ use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolve
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::connector::Connection;
 use pontoon_core::response::Record;
+use pontoon_core::vehicle::Inertia;
 use std::sync::Arc;
 
 /// A job of a study.
@@ -116,6 +117,16 @@ impl<'a> CrossingJob<'a> {
             self.speed_m_s,
             self.analysis.tail_s,
         )
+    }
+
+    /// Whether the vehicle goes more than half of its shortest patch in a time step, where its mass rides along and the step is
+    /// stated: the deck then answers to jumps of the mass and no longer to its motion. None where the program finds the step.
+    pub fn is_step_long(&self) -> Option<bool> {
+        let vehicle = &self.job.vehicle.vehicle;
+        let shortest_m = vehicle.patches.iter().map(|p| p.length_m).fold(f64::INFINITY, f64::min);
+        let goes_m = self.speed_m_s * self.analysis.time_step.seconds();
+        let long = vehicle.inertia != Inertia::None && goes_m > 0.5 * shortest_m;
+        self.analysis.time_step.tolerance().is_none().then_some(long)
     }
 
     /// Whether it may be run at a time step `[s]`.

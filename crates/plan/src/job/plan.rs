@@ -306,6 +306,10 @@ mod tests {
                 "speed_m_s 54: above 30 m/s",
             ),
             (json!({ "load_n": 230 }), "load_n 230: below 1000 N"),
+            (
+                json!({ "speed_m_s": 20, "analysis.time_step_s": 0.1 }),
+                "analysis.time_step_s 0.1: the vehicle goes more than half of its shortest patch in a time step",
+            ),
             (json!({ "gap_tension_m": 28 }), "gap_tension_m 28: above the depth"),
             (
                 json!({ "gap_compression_m": 5.5 }),

@@ -10,7 +10,7 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::response::{CrossingResponse, ForcePeaks, JointPeaks, Peak, PositionPeaks, Quantity, Record};
 use pontoon_core::vehicle::Vehicle;
-use pontoon_plan::job::{CrossingJob, Job};
+use pontoon_plan::job::CrossingJob;
 use pontoon_results::{ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, JobRecord, PositionRow, Summary};
 
 /// A job's record or why it failed.
@@ -20,7 +20,7 @@ pub(super) type JobResult = Result<JobRecord, JobFailure>;
 pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, models: &SharedModels) -> JobResult {
     let solver = models.crossing(crossing)?;
     let response = solver.solve(crossing.vehicle(), &crossing.input(record))?;
-    recorded(crossing.job, response, models)
+    recorded(crossing, response, models)
 }
 
 /// Solves a crossing that failed once more at half its time step.
@@ -46,7 +46,7 @@ pub(super) fn again_at_half_step(
         let behind = format!("; at half the time step: {error}");
         JobFailure::from(failed.failure.clone().said("", &behind))
     })?;
-    let mut record = recorded(crossing.job, again, models)?;
+    let mut record = recorded(crossing, again, models)?;
     record.retried = Some(failed.failure.clone());
     Ok(record)
 }
@@ -84,7 +84,7 @@ pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models:
     };
     let record = |((crossing, _), answer): (&(CrossingJob<'_>, Record), Result<SteppedResponse, JobFailure>)| {
         let (response, time_step_s) = answer?;
-        let mut record = recorded(crossing.job, response, models)?;
+        let mut record = recorded(crossing, response, models)?;
         record.summary.time_step_s = time_step_s;
         Ok(record)
     };
@@ -171,9 +171,12 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
     of_joint.fold(0.0, f64::max)
 }
 
-fn recorded(job: &Job, response: CrossingResponse, models: &SharedModels) -> JobResult {
+fn recorded(crossing: &CrossingJob<'_>, response: CrossingResponse, models: &SharedModels) -> JobResult {
+    let job = crossing.job;
     let static_peaks_m = models.creeping_peaks_m(job)?;
-    Ok(rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice)))
+    let mut record = rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice));
+    record.summary.step_warning = crossing.is_step_long();
+    Ok(record)
 }
 
 fn extreme(peak: Peak) -> Extreme {

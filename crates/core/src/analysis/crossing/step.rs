@@ -151,7 +151,8 @@ impl Stepper<'_> {
 
     /// The vehicle where it is at a time.
     fn load(&self, time_s: f64) -> Load {
-        Load::new(self.track, self.vehicle, self.load_n, self.speed_m_s * time_s)
+        let front_x_m = self.speed_m_s * time_s;
+        Load::new(self.track, self.vehicle, self.load_n, front_x_m, self.speed_m_s)
     }
 
     /// All forces of the balance at alpha that do not wait for the new instant.

@@ -39,7 +39,13 @@ impl CreepingLoad {
         };
         let mut unit = DMatrix::zeros(influence.nrows(), places_m.len());
         for (&x, mut unit) in places_m.iter().zip(unit.column_iter_mut()) {
-            let load = Load::new(flexibility.track(), &weight_alone, 1.0, x - vehicle.centre_ahead_m());
+            let load = Load::new(
+                flexibility.track(),
+                &weight_alone,
+                1.0,
+                x - vehicle.centre_ahead_m(),
+                0.0,
+            );
             for &(column, force) in &load.weight.0 {
                 unit.axpy(force, &influence.column(column), 1.0);
             }

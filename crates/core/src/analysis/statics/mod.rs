@@ -171,7 +171,7 @@ impl StaticSolver {
 
     fn load(&self, vehicle: &Vehicle, case: &StaticCase, centre_x_m: f64) -> Load {
         let front_x_m = centre_x_m - vehicle.centre_ahead_m();
-        Load::new(self.flexibility.track(), vehicle, case.load_n, front_x_m)
+        Load::new(self.flexibility.track(), vehicle, case.load_n, front_x_m, 0.0)
     }
 
     /// Between the first zero crossings left and right of the load, interpolated between nodes.
