@@ -4,7 +4,7 @@
 //! fuzzer, or the test that replays what is kept (`tests/house/corpus.rs`). Whatever the bytes are, each function returns;
 //! what a reader says of them is not judged here.
 
-use pontoon_journal::{FOLDER, JournalIndex};
+use pontoon_journal::{FOLDER, JournalIndex, keep_document, read_document};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::Document;
 use pontoon_plan::job::Jobs;
@@ -34,6 +34,15 @@ const STUDY: &str = r#"{
   "name": "fuzz", "bridge": "bridge.json", "analysis": { "kind": "crossing" },
   "design": [ { "grid": { "connection": ["linear", "nonlinear"], "speed_m_s": [5, 10], "load_n": 1e5 } } ]
 }"#;
+
+/// The documents that the kept journals are of.
+const DOCUMENTS: [&str; 5] = [
+    include_str!("../documents/211f2d99ffd7f1cff109afa89c9a8a6c4e9e7e629b83f459e78ef6f7aacc65ee.json"),
+    include_str!("../documents/2f466b6fefa491c572134cbcf5a645609f7cad803621af2d5a2825f889643347.json"),
+    include_str!("../documents/8a9cbf071197bca0ef8be5e75f13d8358aff5e7a774efc1699f1355e13b64198.json"),
+    include_str!("../documents/9e9d064134f66af144527f13f9d86a0f96e9ef7c1544e2ee562818553f79ec45.json"),
+    include_str!("../documents/c5df729ef4e8c564c73bc8ef3c248e85db16316a0a7779abc61ab73ee48f5061.json"),
+];
 
 /// Jobs that are made of a study.
 const MOST_JOBS: usize = 1000;
@@ -69,6 +78,9 @@ pub fn reference(folder: &Path, bytes: &[u8]) {
 pub fn journal(folder: &Path, bytes: &[u8]) {
     let file = folder.join(FOLDER).join("0000000000000001-00000001.pontoon");
     let _ = fs::create_dir(folder.join(FOLDER));
+    for text in DOCUMENTS {
+        let _ = keep_document(folder, &Document::of_canonical(text.to_owned()).hash(), text);
+    }
     let mended = mended(bytes);
     if mended != bytes {
         written(&file, bytes);
@@ -142,7 +154,10 @@ fn explained(folder: &Path, index: &JournalIndex, any: usize) {
     let Some(session) = index.files.iter().find_map(|written| written.session.as_ref()) else {
         return;
     };
-    let [study, bridge] = [&session.study, &session.bridge].map(Document::from);
+    let document = |hash: &str| read_document(folder, hash).map(Document::of_canonical);
+    let (Ok(study), Ok(bridge)) = (document(&session.study_blake3), document(&session.bridge_blake3)) else {
+        return;
+    };
     if has_many_points(folder, &study, bridge.clone()) {
         return;
     }

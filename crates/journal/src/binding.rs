@@ -50,12 +50,10 @@ pub struct Session {
     /// Whether jobs were solved one by one, apart, because processes had died with them.
     #[serde(default)]
     pub apart: bool,
-    /// The study's document.
-    pub study: Value,
-    /// Hash of the study's document, as its tables carry it.
+    /// Hash of the study's document, under which its text stands beside the journal.
     pub study_blake3: String,
-    /// The bridge's document, as its file has it.
-    pub bridge: Value,
+    /// Hash of the bridge's document.
+    pub bridge_blake3: String,
 }
 
 /// How a process ended by itself.

@@ -36,9 +36,11 @@ fn asked() -> Option<&'static Fault> {
 }
 
 /// The places that a fault may strike, but those of jobs, `job.NUMBER`.
-const PLACES: [&str; 20] = [
+const PLACES: [&str; 22] = [
     "aside.rename",
     "canary",
+    "documents.rename",
+    "documents.write",
     "export.rename",
     "export.renamed",
     "export.sync",

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `frame` | a frame of bytes that is whole or is not there |
 //! | `binding` | what the records of a journal are bound to, and who wrote them |
+//! | `documents` | the documents that a run is of, each once under its hash |
 //! | `writer`, `journal_index` | a file of the journal under way; what a journal holds |
 //! | `progress` | how far a run has come, for those who ask from outside |
 //! | `lock` | one process at a time in a folder |
@@ -23,13 +24,14 @@
 //! | kind | payload |
 //! |---|---|
 //! | 1 | [`Binding`], JSON: the first frame of a file |
-//! | 2 | [`Session`], JSON: who writes, when, for which study |
+//! | 2 | [`Session`], JSON: who writes, when, for which study, by the hashes of its documents |
 //! | 3 | a record: key of the job (16 bytes), 1 where it failed else 0, milliseconds since 1970 (8 bytes), what it left |
 //! | 4 | keys of jobs about to be solved together |
 //! | 5 | [`SessionEnd`], JSON: the process came to its own end |
 //! | 6 | what jobs share, prepared: JSON |
 
 mod binding;
+mod documents;
 pub mod fault;
 mod frame;
 mod journal_index;
@@ -39,6 +41,7 @@ mod progress;
 mod writer;
 
 pub use binding::{Binding, Session, SessionEnd};
+pub use documents::{DOCUMENTS, document_file, keep_document, read_document};
 pub use frame::{Damage, LONGEST};
 pub use journal_index::{JournalIndex, RecordEntry, RecordLocation};
 pub use lock::Lock;
@@ -50,7 +53,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Version of the journal's form.
-pub const FORM: u32 = 2;
+pub const FORM: u32 = 3;
 
 /// Name of the journal's folder in a folder of results.
 pub const FOLDER: &str = "journal";
@@ -103,6 +106,14 @@ pub enum JournalError {
         path: PathBuf,
         /// Its form.
         found: u64,
+    },
+    /// A document of the run is not there, or not whole.
+    #[error("{}: a document of this run that cannot be read: {cause}; the same run again writes it", path.display())]
+    Document {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
     },
     /// A record that was whole when the journal was opened.
     #[error("{}: the record at byte {at} is damaged", path.display())]

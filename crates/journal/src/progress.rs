@@ -52,6 +52,12 @@ impl ProgressFile {
     }
 }
 
+/// What of a manifest tells which study its tables are of; the rest is passed over unread.
+#[derive(Debug, Deserialize)]
+struct ManifestHead {
+    study_blake3: String,
+}
+
 /// How far a run has come.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Standing {
@@ -103,8 +109,8 @@ impl Standing {
         self.running = Lock::is_held(folder);
         // a share leaves no tables; a whole run's are of the study that its manifest names
         let manifest = || fs::read(folder.join(MANIFEST)).ok();
-        let manifest = || serde_json::from_slice::<serde_json::Value>(&manifest()?).ok();
-        let whole = self.shard.is_some() || manifest().is_some_and(|told| told["study_blake3"] == study_blake3);
+        let manifest = || serde_json::from_slice::<ManifestHead>(&manifest()?).ok();
+        let whole = self.shard.is_some() || manifest().is_some_and(|told| told.study_blake3 == study_blake3);
         self.state = match ended {
             _ if self.running => "running",
             _ if self.missing == 0 && whole => "complete",

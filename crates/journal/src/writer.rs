@@ -399,9 +399,8 @@ mod tests {
             jobs: 1,
             known: 0,
             apart: false,
-            study: Value::Null,
             study_blake3: String::new(),
-            bridge: Value::Null,
+            bridge_blake3: String::new(),
         };
         JournalWriter::begin(folder, &binding, &session, 0).unwrap()
     }

@@ -13,12 +13,13 @@
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
-//! | `table`, `results` | tables to read |
+//! | `table`, `results`, `documents`, `results_error` | tables to read; the documents that they are of; why they cannot be read |
 //!
 //! Knows columns, provenance, and how a folder proves to be whole. Does not know how a record came about. The only crate that
 //! knows the table library. Tables hold nothing that changes from run to run; the manifest does.
 
 mod arrays;
+mod documents;
 mod failure;
 mod files;
 mod frame;
@@ -32,6 +33,7 @@ mod preparation;
 mod record;
 mod registry;
 mod results;
+mod results_error;
 mod summary;
 mod table;
 mod varying;
@@ -39,16 +41,18 @@ mod verification;
 mod writer;
 
 pub use arrays::CellKind;
+pub use documents::{RunDocuments, keep_documents};
 pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE, replaceable};
-pub use manifest::{Manifest, SessionNote, check_own};
+pub use manifest::{DocumentPlace, Manifest, SessionNote, check_own};
 pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::TableProvenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
 pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PositionRow, Summary};
 pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, QUANTITIES, SpeedFigure, When, registered};
-pub use results::{Results, ResultsError};
+pub use results::Results;
+pub use results_error::ResultsError;
 pub use summary::SummaryTable;
 pub use table::{ColumnKind, Table, TableName};
 pub use varying::Seen;

@@ -6,10 +6,11 @@ use super::files::MANIFEST;
 use super::moment::Moment;
 use super::parquet::TableProvenance;
 use crate::{BridgeReport, OperatorCounts, Outcome, Verification};
+use pontoon_journal::document_file;
 use pontoon_journal::place::hash_of;
-use pontoon_plan::input::Refusal;
+use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::job::{Doubts, Job};
-use pontoon_plan::study_file::{ModelSpec, Study};
+use pontoon_plan::study_file::{Kind, ModelSpec, Study};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -38,6 +39,24 @@ pub struct SessionNote {
     pub ended: String,
 }
 
+/// Where a document stands beside the tables.
+#[derive(Debug, Clone, Serialize)]
+pub struct DocumentPlace {
+    /// Its file, in the folder of results.
+    pub file: String,
+    /// Bytes of it.
+    pub bytes: usize,
+}
+
+impl DocumentPlace {
+    fn of(document: &Document) -> Self {
+        Self {
+            file: document_file(&document.hash()),
+            bytes: document.text().len(),
+        }
+    }
+}
+
 /// What `manifest.json` holds.
 #[derive(Debug, Clone, Serialize)]
 pub struct Manifest {
@@ -47,14 +66,14 @@ pub struct Manifest {
     pub commit: Option<String>,
     /// Name of the study.
     pub name: String,
-    /// The study's document.
-    pub study: Value,
+    /// What the study asks of the bridge.
+    pub kind: Kind,
     /// Hash of the study's document on one line.
     pub study_blake3: String,
-    /// The bridge's document, before the axes.
-    pub bridge: Value,
-    /// Hash of the bridge's document on one line.
+    /// Hash of the bridge's document, before the axes, on one line.
     pub bridge_blake3: String,
+    /// Where these documents stand.
+    pub documents: BTreeMap<&'static str, DocumentPlace>,
     /// Seeds of the designs, in the order of the study's file.
     pub seeds: Vec<u64>,
     /// Jobs.
@@ -115,10 +134,13 @@ impl Manifest {
             version: crate::VERSION,
             commit: provenance.commit.clone(),
             name: study.name.clone(),
-            study: study.document.value(),
+            kind: study.analysis.kind(),
             study_blake3: study.document.hash(),
-            bridge: study.bridge.document.value(),
             bridge_blake3: study.bridge.document.hash(),
+            documents: BTreeMap::from([
+                ("study", DocumentPlace::of(&study.document)),
+                ("bridge", DocumentPlace::of(&study.bridge.document)),
+            ]),
             seeds: study.seeds.clone(),
             jobs: jobs.len(),
             failed: outcome.failures.count,

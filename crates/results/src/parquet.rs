@@ -7,6 +7,7 @@ use pontoon_journal::fault::Watched;
 use pontoon_journal::place::{Folder, FolderError, Partial};
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
+use std::collections::HashSet;
 use std::io::{self, BufWriter};
 
 /// Most rows of a row group, the table library's own number: what a reader takes at a time.
@@ -21,30 +22,28 @@ pub struct TableProvenance {
     pub instruction_paths: Vec<String>,
 }
 
-/// What every table of a study carries: nothing of it changes from run to run.
+/// What every table of a study carries: nothing of it changes from run to run, and nothing of it grows with the study, as
+/// readers refuse a file that says too much of itself. The documents themselves stand beside the tables under their hashes.
 pub(super) fn metadata(study: &Study, jobs: &[Job], of: &TableProvenance) -> Vec<(String, String)> {
-    let (study_text, study_hash) = (study.document.text().to_owned(), study.document.hash());
-    let bridge = &study.bridge.document;
-    let (bridge_text, bridge_hash) = (bridge.text().to_owned(), bridge.hash());
-    let mut hashes: Vec<&str> = Vec::new();
-    let mut seen = std::collections::HashSet::new();
+    let (mut seen, mut bridges) = (HashSet::new(), blake3::Hasher::new());
     for job in jobs {
         if seen.insert(job.bridge.id) {
-            hashes.push(&job.bridge.hash);
+            bridges.update(job.bridge.hash.as_bytes());
+            bridges.update(b" ");
         }
     }
-    let seeds: Vec<String> = study.seeds.iter().map(ToString::to_string).collect();
     let pairs = [
         ("pontoon.version", crate::VERSION.to_owned()),
         ("pontoon.commit", of.commit.clone().unwrap_or_default()),
         ("pontoon.instruction_path", of.instruction_paths.join("; ")),
         ("pontoon.jobs", jobs.len().to_string()),
-        ("pontoon.seeds", seeds.join(" ")),
-        ("pontoon.study", study_text),
-        ("pontoon.study_blake3", study_hash),
-        ("pontoon.bridge", bridge_text),
-        ("pontoon.bridge_blake3", bridge_hash),
-        ("pontoon.bridges_after_axes_blake3", hashes.join(" ")),
+        ("pontoon.study_blake3", study.document.hash()),
+        ("pontoon.bridge_blake3", study.bridge.document.hash()),
+        ("pontoon.distinct_bridges", seen.len().to_string()),
+        (
+            "pontoon.bridges_after_axes_blake3",
+            bridges.finalize().to_hex().to_string(),
+        ),
     ];
     pairs.map(|(key, value)| (key.to_owned(), value)).to_vec()
 }

@@ -3,14 +3,16 @@
 //! Knows how a folder proves that it holds one whole run: its manifest names each table's hash. Does not know what is
 //! read of it.
 
+use super::documents::RunDocuments;
 use super::files::MANIFEST;
 use super::frame::read;
 use super::layout::Layout;
 use super::registry::Column;
+use super::results_error::ResultsError;
 use super::table::{Table, TableName};
 use crate::JobRecord;
 use pontoon_journal::place::hash_of;
-use pontoon_plan::input::{Document, Refusal};
+use pontoon_plan::input::Refusal;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
 use serde_json::Value;
@@ -20,23 +22,6 @@ use std::io;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use thiserror::Error;
-
-/// Why results could not be read.
-#[derive(Debug, Error)]
-pub enum ResultsError {
-    /// There are none in that folder.
-    #[error(transparent)]
-    Refused(#[from] Refusal),
-    /// They are not what their manifest says, or cannot be read.
-    #[error("{}: damaged results: {found}; run the study again", file.display())]
-    Damaged {
-        /// The file.
-        file: PathBuf,
-        /// What is wrong with it.
-        found: String,
-    },
-}
 
 /// The tables of one run.
 #[derive(Debug, Clone)]
@@ -45,12 +30,11 @@ pub struct Results {
     pub name: String,
     /// Where they stand, for messages.
     pub place: PathBuf,
-    /// The study's document.
-    pub study: Value,
-    /// The bridge's document, before the axes.
-    pub bridge: Value,
+    /// The study and the bridge, read when they are asked for.
+    pub documents: RunDocuments,
     /// What its manifest says; null of a run that has just ended, or has not.
     pub manifest: Value,
+    kind: Kind,
     tables: BTreeMap<TableName, Table>,
     on_disk: BTreeMap<TableName, PathBuf>,
     jobs: Table,
@@ -63,12 +47,15 @@ pub struct Results {
 const SCANNED: usize = 1 << 18;
 
 impl Results {
-    /// Reads a folder of results.
+    /// Reads a folder of results with its documents.
     ///
     /// # Errors
     /// [`ResultsError::Refused`] where the folder holds no results, [`ResultsError::Damaged`] where they are not whole.
     pub fn read(folder: &Path) -> Result<Self, ResultsError> {
-        Self::read_some(folder, &TableName::ALL)
+        let results = Self::read_some(folder, &TableName::ALL)?;
+        // verdicts stand on them too
+        results.documents.bridge_and_vehicle()?;
+        Ok(results)
     }
 
     /// Reads a folder of results with some tables alone in memory, that of jobs always; the others are there to be scanned.
@@ -97,15 +84,17 @@ impl Results {
         let hashes = manifest["tables"]
             .as_object()
             .ok_or_else(|| damaged(&file, "no hashes of its tables, as an earlier version left none"))?;
-        for document in ["study", "bridge"] {
-            let hash = Document::from(&manifest[document]).hash();
-            if manifest[format!("{document}_blake3")].as_str() != Some(&hash) {
-                return Err(damaged(&file, &format!("a {document} that is not the one of its hash")));
-            }
-        }
-        if manifest["study"]["name"].as_str() != Some(name) {
-            return Err(damaged(&file, &format!("'{name}', which is not the study's name")));
-        }
+        let documents = RunDocuments::of_manifest(folder, name, &manifest).map_err(|found| damaged(&file, &found))?;
+        let told = match &manifest["documents"] {
+            Value::Null => &manifest["study"]["analysis"]["kind"],
+            _ => &manifest["kind"],
+        };
+        let kind = match told.as_str() {
+            Some("static") => Kind::Static,
+            Some("modes") => Kind::Modes,
+            Some("crossing") => Kind::Crossing,
+            _ => return Err(damaged(&file, "no kind of its study")),
+        };
         let (mut tables, mut on_disk) = (BTreeMap::new(), BTreeMap::new());
         for table in TableName::ALL {
             let path = folder.join(table.file());
@@ -146,8 +135,8 @@ impl Results {
         Ok(Self {
             name: name.to_owned(),
             place: folder.to_owned(),
-            study: manifest["study"].clone(),
-            bridge: manifest["bridge"].clone(),
+            documents,
+            kind,
             manifest: manifest.clone(),
             tables,
             on_disk,
@@ -169,8 +158,8 @@ impl Results {
         Self {
             name: study.name.clone(),
             place: place.to_owned(),
-            study: study.document.value(),
-            bridge: study.bridge.document.value(),
+            documents: RunDocuments::of_study(study),
+            kind: study.analysis.kind(),
             manifest: Value::Null,
             on_disk: BTreeMap::new(),
             tables,
@@ -241,11 +230,7 @@ impl Results {
 
     /// What the study asks of the bridge.
     pub fn kind(&self) -> Kind {
-        match self.study["analysis"]["kind"].as_str() {
-            Some("static") => Kind::Static,
-            Some("modes") => Kind::Modes,
-            _ => Kind::Crossing,
-        }
+        self.kind
     }
 
     /// The columns of the table of jobs that are axes.

@@ -2,6 +2,7 @@
 //!
 //! Knows in which order files come into place. Keeps no record: what is kept of a job is its line of the summary.
 
+use super::documents::keep_documents;
 use super::files::{MANIFEST, SUMMARY};
 use super::layout::Layout;
 use super::manifest::{self, Manifest};
@@ -36,6 +37,7 @@ impl<'a> TableWriter<'a> {
         folder: &Folder,
         provenance: &TableProvenance,
     ) -> Result<Self, FolderError> {
+        keep_documents(folder.path(), study)?;
         let layout = Layout::new(study, jobs);
         let metadata = metadata(study, jobs, provenance);
         let file = |name: TableName| {

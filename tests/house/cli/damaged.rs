@@ -66,6 +66,34 @@ fn good(stage: &Stage) -> String {
     stdout(&output)
 }
 
+/// The file of a document of the results in `r`, within their folder.
+fn document_file(stage: &Stage, document: &str) -> String {
+    let manifest = stage.manifest("r");
+    manifest["documents"][document]["file"].as_str().unwrap().to_owned()
+}
+
+/// As they were before documents had files of their own.
+#[test]
+fn results_with_their_documents_in_the_manifest_are_read() {
+    let stage = stage();
+    let good = good(&stage);
+    let mut manifest = stage.manifest("r");
+    for document in ["study", "bridge"] {
+        let text = fs::read_to_string(stage.path("r").join(document_file(&stage, document))).unwrap();
+        manifest[document] = serde_json::from_str(&text).unwrap();
+    }
+    manifest
+        .as_object_mut()
+        .unwrap()
+        .retain(|key, _| key != "documents" && key != "kind");
+    stage.json("r/manifest.json", &manifest);
+    fs::remove_dir_all(stage.path("r/documents")).unwrap();
+    assert!(same_or_refused(&stage, &good, "", "an older manifest"));
+    manifest["bridge"]["modules"] = json!(4);
+    stage.json("r/manifest.json", &manifest);
+    assert!(!same_or_refused(&stage, &good, "manifest.json", "another bridge"));
+}
+
 #[test]
 fn files_cut_short_are_refused() {
     let stage = stage();
@@ -118,12 +146,27 @@ fn one_bit_flipped_anywhere_never_makes_another_table() {
 fn every_digit_of_the_documents_that_verdicts_stand_on_is_kept() {
     let stage = stage();
     let good = good(&stage);
+    for (document, from, to) in [
+        ("bridge", "\"length_m\":6.7", "\"length_m\":6.8"),
+        ("bridge", "\"modules\":3", "\"modules\":4"),
+        ("study", "\"footprint_length_m\":3.35", "\"footprint_length_m\":3.36"),
+        ("study", "\"name\":\"smoke\"", "\"name\":\"smoky\""),
+    ] {
+        let file = document_file(&stage, document);
+        let path = stage.path("r").join(&file);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from), "{from}: {text}");
+        fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        assert!(!same_or_refused(&stage, &good, &file, to), "{to}");
+        fs::remove_file(&path).unwrap();
+        assert!(!same_or_refused(&stage, &good, &file, "deleted"), "{to}");
+        // the same run writes it again
+        stage.ran("r");
+        assert!(same_or_refused(&stage, &good, &file, "restored"), "{to}");
+    }
     let path = stage.path("r/manifest.json");
     let text = fs::read_to_string(&path).unwrap();
     for (from, to) in [
-        ("\"length_m\": 6.7", "\"length_m\": 6.8"),
-        ("\"modules\": 3", "\"modules\": 4"),
-        ("\"footprint_length_m\": 3.35", "\"footprint_length_m\": 3.36"),
         ("\"name\": \"smoke\"", "\"name\": \"smoky\""),
         ("\"jobs\": 2", "\"jobs\": 3"),
         ("\"jobs.parquet\"", "\"jobz.parquet\""),
@@ -174,8 +217,8 @@ fn a_manifest_without_hashes_is_that_of_another_version() {
     for key in [
         "tables",
         "name",
-        "study",
-        "bridge",
+        "kind",
+        "documents",
         "study_blake3",
         "bridge_blake3",
         "jobs",

@@ -99,12 +99,53 @@ fn files_carry_where_they_come_from() {
             .clone()
             .unwrap()
     };
-    let bridge: Value = serde_json::from_str(&value("pontoon.bridge")).unwrap();
-    assert_eq!(bridge["module"]["length_m"], stage.bridge["module"]["length_m"]);
     let manifest = stage.manifest("r");
+    for (document, written) in [("bridge", &stage.bridge), ("study", &stage.study)] {
+        let place = &manifest["documents"][document];
+        let text = fs::read(stage.path("r").join(place["file"].as_str().unwrap())).unwrap();
+        assert_eq!(place["bytes"], text.len());
+        let hash = blake3::hash(&text).to_hex().to_string();
+        assert_eq!(value(&format!("pontoon.{document}_blake3")), hash);
+        let kept: Value = serde_json::from_slice(&text).unwrap();
+        assert_eq!(kept["name"], written["name"]);
+    }
     for key in ["study_blake3", "bridge_blake3", "version"] {
         assert_eq!(manifest[key], json!(value(&format!("pontoon.{key}"))), "{key}");
     }
+}
+
+/// Readers of the tables refuse a footer of more than 100 MB.
+#[test]
+fn nothing_that_a_table_or_manifest_says_of_itself_grows_with_the_study() {
+    let said = |question: usize, bridges: usize, designs: usize| {
+        let mut stage = Stage::new();
+        stage.study["question"] = "q".repeat(question).into();
+        stage.bridge["source"] = "s".repeat(question).into();
+        stage.study["analysis"] = json!({ "kind": "static" });
+        stage.study["record"] = json!({ "positions": false, "connectors": false });
+        let loads = |seed: usize| json!({ "sobol": { "count": 1, "seed": seed, "ranges": { "load_n": [1e5, 2e5], "load_position": [1, 2] } } });
+        stage.study["design"] = (0..designs).map(loads).collect();
+        let stiffness: Vec<f64> = (0..bridges).map(|i| 2e7 + i as f64).collect();
+        let grid =
+            json!({ "grid": { "load_n": 1e5, "load_position": 1, "bridge.connectors.stiffness_n_m": stiffness } });
+        stage.study["design"].as_array_mut().unwrap().push(grid);
+        stage.ran("r");
+        let table = stage.table("r/jobs.parquet");
+        let pairs = table.metadata.key_value_metadata().clone().unwrap();
+        let own = pairs.iter().filter(|pair| pair.key.starts_with("pontoon."));
+        let footer: usize = own
+            .map(|pair| pair.key.len() + pair.value.as_ref().map_or(0, String::len))
+            .sum();
+        (footer, stage.manifest("r").to_string().len())
+    };
+    let (small, large) = (said(1, 1, 1), said(1_000_000, 40, 40));
+    assert!(large.0 < small.0 + 50, "footers of {} and {} bytes", small.0, large.0);
+    assert!(
+        large.1 < small.1 + 60_000,
+        "manifests of {} and {} bytes",
+        small.1,
+        large.1
+    );
 }
 
 #[test]

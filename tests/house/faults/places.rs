@@ -4,7 +4,9 @@ use super::sweep::{command, finish, records, run, run_with, same_tables, sweep, 
 use crate::stage::stderr;
 
 /// Places that a run passes, with the passages at which it dies.
-const PLACES: [(&str, &[usize]); 12] = [
+const PLACES: [(&str, &[usize]); 14] = [
+    ("documents.write", &[1, 2]),
+    ("documents.rename", &[1, 2]),
     ("journal.begin", &[1]),
     ("journal.begin.sync", &[1]),
     ("journal.write", &[1, 2, 3, 5, 8]),
@@ -26,7 +28,10 @@ fn a_process_that_dies_at_any_place_loses_nothing() {
     let expected = tables(&stage, "whole");
     for (place, passages) in PLACES {
         for passage in passages {
-            let ways: &[&str] = if matches!(place, "journal.begin" | "journal.write" | "tables.write") {
+            let ways: &[&str] = if matches!(
+                place,
+                "documents.write" | "journal.begin" | "journal.write" | "tables.write"
+            ) {
                 &["die", "short"]
             } else {
                 &["die"]
@@ -98,8 +103,8 @@ fn results_set_aside_by_a_process_that_dies_are_set_aside_by_the_next() {
     stage.write();
     finish(&stage, "whole");
     let expected = tables(&stage, "whole");
-    // four tables, summary, manifest, journal: each process moves one more
-    for _ in 0..6 {
+    // four tables, summary, manifest, documents, journal: each process moves one more
+    for _ in 0..7 {
         let fault = "aside.rename:2:die";
         let words = ["run", "study.json", "--out", "r", "--quiet", "--fresh"];
         let output = command(&stage, &words).env("PONTOON_FAULT", fault).output().unwrap();

@@ -13,7 +13,7 @@ pub(crate) use judge::ReferenceJudge;
 pub use tolerances::Tolerances;
 
 use crate::reference::Reference;
-use pontoon_plan::input::{Document, Refusal};
+use pontoon_plan::input::Refusal;
 use pontoon_plan::study_file::Study;
 use pontoon_results::Results;
 
@@ -39,11 +39,8 @@ pub fn against_reference(results: &Results, reference: &Reference) -> Result<Com
 /// What of a study has changed since its results.
 fn changes(results: &Results, study: &Study) -> Vec<String> {
     let now = [("study", &study.document), ("bridge", &study.bridge.document)];
-    let then = [&results.study, &results.bridge];
-    let differ = now
-        .iter()
-        .zip(then)
-        .filter(|((_, now), then)| **now != Document::from(*then));
+    let then = results.documents.hashes();
+    let differ = now.iter().zip(then).filter(|((_, now), then)| now.hash() != *then);
     differ
         .map(|((what, _), _)| format!("the {what} has changed since these results: run it again"))
         .collect()

@@ -38,8 +38,13 @@ pub struct Moments {
 pub fn moments_of(results: &Results, row: usize, position: usize) -> Result<Moments, NoValue> {
     let speed_m_s = results.jobs().number("speed_m_s", row).ok_or(NoValue::NoSpeed)?;
     let file = Path::new("results");
-    let bridge: BridgeDesign = typed_value(file, "", &document(results, row, Root::Bridge, &results.bridge)?)?;
-    let written = match &results.study["vehicle"] {
+    let documents = results.documents.bridge_and_vehicle();
+    let [bridge, vehicle] = documents.map_err(|damaged| {
+        let allowed = "the documents of a run that its folder keeps";
+        Refusal::new(&results.place, "", damaged.to_string(), allowed)
+    })?;
+    let bridge: BridgeDesign = typed_value(file, "", &document(results, row, Root::Bridge, bridge)?)?;
+    let written = match vehicle {
         Value::Null => to_value(&VehicleDesign::default()),
         vehicle => vehicle.clone(),
     };

@@ -50,6 +50,11 @@ impl Document {
         }
     }
 
+    /// The document of a text that a document had, see [`Self::text`].
+    pub fn of_canonical(text: String) -> Self {
+        Self(text.into())
+    }
+
     /// The text.
     pub fn text(&self) -> &str {
         &self.0

@@ -3,7 +3,7 @@
 //! Knows which files of a folder are results. Removes nothing: a later `mv` brings everything back.
 
 use super::SweepError;
-use pontoon_journal::{FOLDER, JournalError, JournalIndex};
+use pontoon_journal::{DOCUMENTS, FOLDER, JournalError, JournalIndex};
 use pontoon_results::{OwnFiles, PAGE};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,8 @@ const ASIDE: &str = "aside";
 /// with the same wish goes on moving. Tells where to; nothing where there is nothing to move.
 pub(super) fn archive(folder: &Path, index: Option<&JournalIndex>) -> Result<Option<PathBuf>, SweepError> {
     let mut list = OwnFiles::in_folder(folder);
-    let journal = folder.join(FOLDER);
-    if journal.exists() {
-        list.push(journal);
-    }
+    let rest = [DOCUMENTS, FOLDER].map(|name| folder.join(name));
+    list.extend(rest.into_iter().filter(|path| path.exists()));
     if list.is_empty() {
         return Ok(None);
     }
@@ -57,7 +55,10 @@ pub(super) fn archive(folder: &Path, index: Option<&JournalIndex>) -> Result<Opt
 fn name(index: Option<&JournalIndex>) -> String {
     let mut hasher = blake3::Hasher::new();
     for written in index.into_iter().flat_map(|index| &index.files) {
-        let parts = (&written.binding, written.session.as_ref().map(|session| &session.study));
+        let parts = (
+            &written.binding,
+            written.session.as_ref().map(|session| &session.study_blake3),
+        );
         hasher.update(serde_json::to_string(&parts).unwrap_or_default().as_bytes());
     }
     hasher.finalize().to_hex()[..12].to_owned()

@@ -2,9 +2,9 @@
 //!
 //! Knows which of a study's numbers are no part of a job's key but of every record. Does not know files of journals.
 
-use super::SweepSetting;
+use super::{SweepError, SweepSetting};
 use crate::run::instruction_path;
-use pontoon_journal::{Binding, FORM, JournalIndex, Session};
+use pontoon_journal::{Binding, FORM, JournalIndex, Session, document_file, read_document};
 use pontoon_plan::input::{Document, Refusal, canonical_text, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
@@ -77,20 +77,18 @@ pub(super) fn session(
         jobs,
         known,
         apart,
-        study: study.document.value(),
         study_blake3: study.document.hash(),
-        bridge: study.bridge.document.value(),
+        bridge_blake3: study.bridge.document.hash(),
     }
 }
 
-/// The study that a session worked on; `folder` stands for its file in messages.
+/// The study that a session worked on, from its documents in the folder.
 ///
 /// # Errors
-/// [`Refusal`] where this program cannot read it any more.
-pub(super) fn study_of(session: &Session, folder: &Path) -> Result<Study, Refusal> {
-    Study::of_documents(
-        &folder.join("study.json"),
-        Document::from(&session.study),
-        Document::from(&session.bridge),
-    )
+/// [`SweepError::Refused`] where this program cannot read it any more; [`SweepError::Journal`] where a document is not there.
+pub(super) fn study_of(session: &Session, folder: &Path) -> Result<Study, SweepError> {
+    let document = |hash: &str| read_document(folder, hash).map(Document::of_canonical);
+    let file = folder.join(document_file(&session.study_blake3));
+    let (study, bridge) = (document(&session.study_blake3)?, document(&session.bridge_blake3)?);
+    Ok(Study::of_documents(&file, study, bridge)?)
 }

@@ -121,6 +121,7 @@ pub fn merge<'a>(
     check_consistent(&indexes, folders)?;
     let folder = Folder::create(&setting.out)?;
     let _lock = Lock::take(&setting.out)?;
+    pontoon_results::keep_documents(&setting.out, study)?;
     watcher.stage("journals");
     for source in folders.iter().filter(|source| **source != setting.out) {
         copy_journal(source, &setting.out)?;
@@ -155,7 +156,8 @@ pub fn merge<'a>(
     manifest.sessions = sessions(&index);
     // the journal's last word is the whole study's
     let asked = session(study, setting, setting.threads, jobs.len(), jobs.len(), false);
-    let last = JournalIndex::newest(&index).filter(|(then, of)| then.shard.is_none() && of.study == asked.study);
+    let last =
+        JournalIndex::newest(&index).filter(|(then, of)| then.shard.is_none() && of.study_blake3 == asked.study_blake3);
     if last.is_none() {
         let writer = JournalWriter::begin(&setting.out, &now, &asked, outcome.failures.count)?;
         writer.end(&ending("complete".to_owned(), 0.0, 0.0))?;

@@ -174,6 +174,7 @@ pub fn sweep<'a>(
     let share = |shard: Shard| shard.deal(jobs).into_iter().map(|at| jobs[at].clone()).collect();
     let own: Option<Vec<Job>> = setting.shard.map(share);
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);
+    pontoon_results::keep_documents(opened.folder.path(), study)?;
     let passed_over = crash_suspects::settle(&mut opened, study, asked, cancel, watcher)?;
     let resume_index = ResumeIndex::new(&opened.index, asked);
     results_folder::tell_damage(&opened.index, |what| match resume_index.known() < asked.len() {

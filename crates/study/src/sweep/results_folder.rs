@@ -7,7 +7,7 @@ use super::fingerprint::binding;
 use super::{SweepError, SweepSetting, Watcher};
 use pontoon_journal::place::Folder;
 use pontoon_journal::{Binding, Damage, FOLDER, JournalIndex, Lock, Session, SessionEnd};
-use pontoon_plan::input::{Document, Refusal};
+use pontoon_plan::input::Refusal;
 use pontoon_plan::study_file::Study;
 use pontoon_results::{OwnFiles, Preparation, SessionNote};
 use std::collections::BTreeSet;
@@ -57,8 +57,8 @@ impl ResultsFolder {
     pub(super) fn is_of(&self, study: &Study) -> bool {
         self.index.newest().is_some_and(|(then, session)| {
             then.shard == self.binding.shard
-                && Document::from(&session.study) == study.document
-                && Document::from(&session.bridge) == study.bridge.document
+                && session.study_blake3 == study.document.hash()
+                && session.bridge_blake3 == study.bridge.document.hash()
         })
     }
 

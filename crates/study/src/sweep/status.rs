@@ -169,11 +169,7 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
     check_folder(folder)?;
     let index = JournalIndex::read(folder)?;
     let (study, binding, _) = study_of_index(&index, folder)?;
-    let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>()?;
-    let Some(job) = jobs.get(number) else {
-        let allowed = format!("0 to {}", jobs.len().saturating_sub(1));
-        return Err(Refusal::new(folder, "job", number, allowed).into());
-    };
+    let job = &job_of(&study, folder, number)?;
     let key = record_key(job);
     let axes = study.axis_columns().into_iter();
     let axes = axes.map(|name| (name.clone(), job.column(&name).value())).collect();
@@ -217,6 +213,8 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
             told.why = "recorded: it does not run again".to_owned();
         }
         None => {
+            let jobs = shard.map(|_| Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>());
+            let jobs = jobs.transpose()?.unwrap_or_default();
             let elsewhere = shard.filter(|shard| !shard.deal(&jobs).contains(&number));
             told.why = match (elsewhere, deaths) {
                 (Some(shard), _) => format!("not of the share {shard}: another one runs it"),
@@ -227,6 +225,20 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
         }
     }
     Ok(told)
+}
+
+/// A job by its number; the others are made and forgotten, as there may be a million of them.
+fn job_of(study: &Study, folder: &Path, number: usize) -> Result<Job, Refusal> {
+    let (mut count, mut jobs) = (0, Jobs::new(study));
+    for job in &mut jobs {
+        let job = job?;
+        if job.number == number {
+            return Ok(job);
+        }
+        count += 1;
+    }
+    let allowed = format!("0 to {}", count.max(1) - 1);
+    Err(Refusal::new(folder, "job", number, allowed))
 }
 
 /// The study of a folder's journal as its last process had it, and that process.

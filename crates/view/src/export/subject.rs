@@ -8,7 +8,7 @@ use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::bound;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
-use pontoon_plan::input::{Document, Refusal, RefusalKind};
+use pontoon_plan::input::{Refusal, RefusalKind};
 use pontoon_plan::job::{CrossingJob, Job, Jobs, Task};
 use pontoon_plan::study_file::{ModelSpec, Study, read_bridge};
 use pontoon_results::{Results, Table};
@@ -130,9 +130,8 @@ impl Subject {
 
     fn of_results(source: &Path, request: &Request) -> Result<Self, ExportError> {
         let results = Results::read(source)?;
-        let documents = [&results.study, &results.bridge].map(Document::from);
-        let [study, bridge] = documents;
-        let study = Study::of_documents(source, study, bridge)?;
+        let (study, bridge) = (results.documents.study()?, results.documents.bridge()?);
+        let study = Study::of_documents(source, study.clone(), bridge.clone())?;
         let (job, row) = job_of(source, &results, &study, request.job)?;
         let modes = modes_of(&job, request);
         let crossing = job.as_crossing().map(|crossing| CrossingWanted {

@@ -3,7 +3,7 @@
 //! Knows what a reader must be told of a run that is not done. Does not know pages.
 
 use super::Item;
-use pontoon_plan::input::{Document, Refusal};
+use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{Results, ResultsError, TableName};
@@ -37,7 +37,7 @@ impl OpenedResults {
     /// [`ResultsError`]: a folder with neither, tables that are not whole.
     pub fn open(folder: &Path, whole: bool) -> Result<Self, ResultsError> {
         match Results::read_some(folder, if whole { &TableName::ALL } else { &NEEDED }) {
-            Ok(results) => Ok(Self::of_results(results)),
+            Ok(results) => Self::of_results(results),
             Err(ResultsError::Refused(refused)) => match partial_results(folder) {
                 Ok(found) => Ok(Self::of_journal(folder, found)),
                 Err(SweepError::Refused(_)) => Err(refused.into()),
@@ -47,9 +47,10 @@ impl OpenedResults {
         }
     }
 
-    fn of_results(results: Results) -> Self {
+    fn of_results(results: Results) -> Result<Self, ResultsError> {
         let file = results.place.join("manifest.json");
-        let [study, bridge] = [&results.study, &results.bridge].map(Document::from);
+        let documents = &results.documents;
+        let (study, bridge) = (documents.study()?.clone(), documents.bridge()?.clone());
         let read = Study::of_documents(&file, study, bridge);
         let mut notes = Vec::new();
         let study = read.map_err(|refused| notes.push(unreadable(&refused))).ok();
@@ -81,13 +82,13 @@ impl OpenedResults {
                 table.1.as_str().unwrap_or_default(),
             ));
         }
-        Self {
+        Ok(Self {
             results,
             study,
             missing: 0,
             notes,
             provenance,
-        }
+        })
     }
 
     fn of_journal(folder: &Path, found: PartialResults) -> Self {
