@@ -1,7 +1,9 @@
-//! The page of a report: template, style, script and data in one file.
+//! The page of a report: template, style, script and data in one file, and what it says where its script may not run.
 //!
 //! Knows where in the template each belongs and that no text of the data may end its element. Does not know what the data
 //! says: `crates/view/page/README.md` tells.
+
+mod still;
 
 use crate::report::Report;
 use std::io::{self, Write};
@@ -25,6 +27,7 @@ pub fn write(report: &Report, to: &mut dyn Write) -> io::Result<()> {
         match place {
             "style" => to.write_all(STYLE.as_bytes())?,
             "script" => to.write_all(SCRIPT.as_bytes())?,
+            "still" => still::write(report, to)?,
             "data" => serde_json::to_writer(Escaping(to), report)?,
             other => return Err(io::Error::other(format!("no place {other} in a page"))),
         }
@@ -70,7 +73,7 @@ mod tests {
 
     #[test]
     fn the_template_has_its_places_and_its_mark() {
-        for place in ["{{style}}", "{{script}}", "{{data}}", MARK] {
+        for place in ["{{style}}", "{{still}}", "{{script}}", "{{data}}", MARK] {
             assert_eq!(TEMPLATE.matches(place).count(), 1, "{place}");
         }
         assert!(!SCRIPT.contains("</script"));

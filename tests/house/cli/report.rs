@@ -292,6 +292,11 @@ fn names_full_of_markup_are_text() {
     );
     let text = fs::read_to_string(stage.path("page.html")).unwrap();
     assert!(!text.contains("<script>alert"));
+    // it stands in the markup too, as text
+    assert!(
+        text[..text.find("id=\"data\"").unwrap()].contains("&#60;"),
+        "{text:.9000}"
+    );
     assert_eq!(
         text.matches("</script").count(),
         2,
@@ -532,4 +537,36 @@ fn failed_jobs_are_in_their_cells_and_bridges_may_differ() {
         "{}",
         data["notes"]
     );
+}
+
+/// A server may forbid the page's script; what stands in the markup is then all there is.
+#[test]
+fn the_page_says_its_largest_values_without_its_script() {
+    let mut stage = Stage::new();
+    stage.study["design"] =
+        json!([{ "grid": { "gap_tension_m": [0.0, 0.028], "speed_m_s": [5, 10], "load_n": [1e5, 2e5] } }]);
+    stage.ran("r");
+    let data = report(&stage, "r", &[]);
+    let text = fs::read_to_string(stage.path("page.html")).unwrap();
+    let markup = &text[text.find("<body>").unwrap()..text.find("id=\"data\"").unwrap()];
+    assert!(markup.contains("This page needs scripts for its figures"), "{markup}");
+    let cards = data["cards"].as_array().unwrap();
+    assert!(!cards.is_empty());
+    for card in cards {
+        let label = card["label"].as_str().unwrap();
+        assert!(markup.contains(&format!("<td>{label}</td>")), "{label}: {markup}");
+    }
+    let said = |speed: f64| {
+        let (speeds, peaks) = (
+            stage.numbers("r/jobs.parquet", "speed_m_s"),
+            stage.numbers("r/jobs.parquet", "peak_deflection_m"),
+        );
+        let own = speeds.iter().zip(peaks).filter(|(own, _)| **own == Some(speed));
+        let most = own.filter_map(|(_, peak)| peak).fold(0.0, f64::max);
+        pontoon_results::labels::value("peak_deflection_m", &pontoon_plan::input::Cell::Number(most))
+    };
+    for speed in [5.0, 10.0] {
+        let row = format!("<tr><td>{speed} m/s</td><td>{}</td>", said(speed));
+        assert!(markup.contains(&row), "{row}: {markup}");
+    }
 }

@@ -83,5 +83,8 @@
   page.paper = [];
   page.paperWidth = null;
   const room = node => (node.clientWidth ? (page.paperWidth ?? node.clientWidth) : 0);
-  page.dom = { el, svg, id, field, select, button, section, scroller, animation, motionless, room };
+  /** Calls `act` in the frame after a node has changed its size: a size changed while sizes are told is an error of the page. */
+  const resized = (node, act) => new ResizeObserver(() => requestAnimationFrame(act)).observe(node);
+
+  page.dom = { el, svg, id, field, select, button, section, scroller, animation, motionless, room, resized };
 })((globalThis.pontoon ??= {}));

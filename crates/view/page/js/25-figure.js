@@ -164,7 +164,7 @@
       event.preventDefault();
       show(current ? now.walk.step(current, ...move) : now.walk.first());
     });
-    new ResizeObserver(() => Math.abs(page.dom.room(plot) - width) > 1 && redraw()).observe(plot);
+    page.dom.resized(plot, () => Math.abs(page.dom.room(plot) - width) > 1 && redraw());
     const out = {
       node,
       redraw,

@@ -191,7 +191,7 @@
         show(frame);
       }
     };
-    new ResizeObserver(rescale).observe(stage);
+    page.dom.resized(stage, rescale);
     document.addEventListener('visibilitychange', () => document.hidden && pause());
     page.paper.push({
       freeze() {

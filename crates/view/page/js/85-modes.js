@@ -212,7 +212,7 @@
       },
     });
     document.addEventListener('visibilitychange', () => document.hidden && pause());
-    new ResizeObserver(() => Math.abs(page.dom.room(stage) - width) > 1 && build()).observe(stage);
+    page.dom.resized(stage, () => Math.abs(page.dom.room(stage) - width) > 1 && build());
     list();
     pick(mode);
     return section(

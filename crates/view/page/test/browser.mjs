@@ -1,5 +1,6 @@
 // Opens pages in Chromium: from a file, with every request and every word on the console counted. Also the list of pages to test:
 // made-up ones, and the program's own where the variable PONTOON_REPORTS names a folder of them.
+import { strict as assert } from 'node:assert';
 import { chromium } from 'playwright-core';
 import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -74,6 +75,8 @@ export async function open(which, { width = 1280, height = 900, scheme = 'light'
     requests = [],
     address = pathToFileURL(which.file).href;
   page.on('console', message => problems.push(`${message.type()}: ${message.text()}`));
+  // what the browser tells the page alone, as of sizes that change while they are told
+  await page.addInitScript(() => addEventListener('error', event => console.error(`told: ${event.message}`)));
   page.on('pageerror', error => problems.push(`error: ${error.stack}`));
   context.on('request', request => {
     if (request.url() !== address && !request.url().startsWith('data:')) requests.push(request.url());
@@ -83,6 +86,24 @@ export async function open(which, { width = 1280, height = 900, scheme = 'light'
   await page.waitForFunction(() => globalThis.pontoon?.ready === true, undefined, { timeout: 20000 });
   await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
   return { page, problems, requests, close: () => context.close() };
+}
+
+/** What a page shows that comes from a server whose policy lets no script run. */
+export async function shownWithoutScripts(which) {
+  const context = await browser.newContext(),
+    page = await context.newPage();
+  const headers = {
+    'content-type': 'text/html; charset=utf-8',
+    'content-security-policy': "default-src 'none'; style-src 'unsafe-inline'; script-src 'self'",
+  };
+  await context.route(/^http/, route => route.fulfill({ headers, body: readFileSync(which.file) }));
+  try {
+    await page.goto('http://report.test/');
+    assert.equal(await page.evaluate(() => globalThis.pontoon), undefined);
+    return await page.evaluate(() => document.body.innerText);
+  } finally {
+    await context.close();
+  }
 }
 
 /** Runs a test on a page of its own and closes it. */

@@ -2,7 +2,8 @@
 import AxeBuilder from 'axe-core';
 import { strict as assert } from 'node:assert';
 import { after, before, test } from 'node:test';
-import { launch, on, pages, reports, sample } from './browser.mjs';
+import { launch, on, pages, reports, sample, shownWithoutScripts } from './browser.mjs';
+import { SENTENCE } from './build.mjs';
 
 let stop;
 before(async () => {
@@ -36,6 +37,47 @@ for (const which of pages(NAMES)) {
       assert.equal(broken, 0);
     }));
 }
+
+for (const which of pages(['crossing', 'natural', 'markup'])) {
+  test(`${which.name} is no empty page where a policy forbids scripts`, async () => {
+    const shown = await shownWithoutScripts(which);
+    assert.ok(shown.includes(which.data.study.name), shown);
+    assert.ok(shown.includes(SENTENCE), shown);
+    for (const card of which.data.cards ?? []) assert.ok(shown.includes(card.label), `${card.label}: ${shown}`);
+    if (which.real && which.data.cards.length) assert.ok(shown.includes('Largest values against'), shown);
+    await on(which, {}, async page => {
+      assert.equal(await page.evaluate(said => document.body.innerText.includes(said), SENTENCE), false);
+    });
+  });
+}
+
+for (const which of pages(['crossing', 'natural'])) {
+  test(`${which.name} is silent while its window changes its width`, () =>
+    on(which, {}, async (page, { problems }) => {
+      for (const width of [1000, 700, 360, 1280]) {
+        await page.setViewportSize({ width, height: 900 });
+        await page.waitForTimeout(100);
+      }
+      assert.deepEqual(problems, []);
+    }));
+}
+
+test('sizes that change while they are told would be seen', () =>
+  on(sample('oneJob'), {}, async (page, { problems }) => {
+    await page.evaluate(
+      () =>
+        new Promise(done => {
+          const box = document.body.appendChild(document.createElement('div'));
+          let width = 100;
+          new ResizeObserver(() => (box.style.width = `${++width}px`)).observe(box);
+          setTimeout(done, 200);
+        }),
+    );
+    assert.ok(
+      problems.some(p => /ResizeObserver loop/.test(p)),
+      problems.join(),
+    );
+  }));
 
 test('a request would be seen, and would not get out', () =>
   on(sample('oneJob'), {}, async (page, { problems }) => {

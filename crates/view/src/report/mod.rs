@@ -9,6 +9,7 @@
 //! | `settings` | what a study was run with, in words |
 //! | `axes` | axes and their bins |
 //! | `cells` | all jobs in aggregate |
+//! | `against` | the largest of each measure against one axis, for a page without its script |
 //! | `headline` | the largest of each measure; why jobs failed |
 //! | `rows` | jobs that are listed, their profiles, the envelope of all |
 //! | `histories` | recorded histories, thinned |
@@ -17,6 +18,7 @@
 //! | `verdicts` | a comparison |
 //! | `packed` | numbers as bytes |
 
+mod against;
 mod axes;
 mod cells;
 mod headline;
@@ -29,6 +31,7 @@ mod settings;
 mod shapes;
 mod verdicts;
 
+pub use against::AgainstTable;
 pub use axes::{AxisKind, PageAxis};
 pub use cells::{PageCells, PageMeasure};
 pub use headline::{FailureNote, PageCard};
@@ -215,6 +218,9 @@ pub struct Report {
     pub measures: Vec<PageMeasure>,
     /// All jobs in aggregate.
     pub cells: PageCells,
+    /// The largest of each measure against one axis, which stands in the page's markup.
+    #[serde(skip)]
+    pub against: AgainstTable,
     /// The largest of each measure.
     pub cards: Vec<PageCard>,
     /// Why jobs failed.
@@ -302,6 +308,7 @@ impl Report {
             bridge: all.first().map(BridgeNote::of),
             jobs: JobCounts::new(&results, missing),
             cells: PageCells::new(&results, &axes, &measures),
+            against: AgainstTable::new(&results, &axes, &measures),
             cards: headline::cards(&results, &measures, &row_label),
             failures,
             marks: marks.into_iter().map(PageMark::from).collect(),
