@@ -201,6 +201,9 @@ pub(crate) struct RunArguments {
     /// Moves results that the folder holds to a folder `aside` in it, and begins anew.
     #[arg(long)]
     pub fresh: bool,
+    /// Tries recorded jobs that failed again, as after a lack of memory; the others are not run again.
+    #[arg(long, conflicts_with = "fresh")]
+    pub retry_failed: bool,
     /// Stops when more jobs than this have failed.
     #[arg(long, value_name = "N", value_parser = whole)]
     pub max_failures: Option<usize>,

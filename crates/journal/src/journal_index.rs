@@ -5,6 +5,7 @@
 use super::frame::{Damage, Frame, Frames, read_at};
 use super::{Binding, EXTENSION, FOLDER, FORM, JournalError, RecordKey, Session, SessionEnd, kind};
 use serde_json::Value;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io;
@@ -31,6 +32,19 @@ pub struct RecordEntry {
     pub failed: bool,
     /// Where the record stands.
     pub place: RecordLocation,
+}
+
+impl RecordEntry {
+    /// The order of records by key; of one key the one that counts comes first. One that did not fail counts before one that
+    /// did, as the job was tried again. Those that did not fail say the same, and of those that failed the last one counts.
+    fn before(&self, other: &Self) -> Ordering {
+        let place = |entry: &Self| (entry.place.file, entry.place.at);
+        let order = (self.key, self.failed).cmp(&(other.key, other.failed));
+        order.then_with(|| match self.failed {
+            true => place(other).cmp(&place(self)),
+            false => place(self).cmp(&place(other)),
+        })
+    }
 }
 
 /// A file of the journal.
@@ -150,10 +164,7 @@ impl JournalIndex {
         for path in paths {
             index.take(path)?;
         }
-        // of records of one key the first counts; all say the same
-        index
-            .entries
-            .sort_by_key(|entry| (entry.key, entry.place.file, entry.place.at));
+        index.entries.sort_by(RecordEntry::before);
         index.entries.dedup_by_key(|entry| entry.key);
         Ok(index)
     }

@@ -56,6 +56,7 @@ impl ProgressFile {
 #[derive(Debug, Deserialize)]
 struct ManifestHead {
     study_blake3: String,
+    failed: usize,
 }
 
 /// How far a run has come.
@@ -107,10 +108,11 @@ impl Standing {
     /// Adds the state: how the last process ended, unless it is still at work or nothing is missing any more.
     pub fn with_state(mut self, folder: &Path, study_blake3: &str, ended: Option<&str>) -> Self {
         self.running = Lock::is_held(folder);
-        // a share leaves no tables; a whole run's are of the study that its manifest names
+        // a share leaves no tables; a whole run's are of the study that its manifest names, before failed jobs were tried again
         let manifest = || fs::read(folder.join(MANIFEST)).ok();
         let manifest = || serde_json::from_slice::<ManifestHead>(&manifest()?).ok();
-        let whole = self.shard.is_some() || manifest().is_some_and(|told| told.study_blake3 == study_blake3);
+        let whole = self.shard.is_some()
+            || manifest().is_some_and(|told| told.study_blake3 == study_blake3 && told.failed == self.failed);
         self.state = match ended {
             _ if self.running => "running",
             _ if self.missing == 0 && whole => "complete",

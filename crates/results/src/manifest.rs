@@ -175,11 +175,11 @@ impl Manifest {
     }
 }
 
-/// Whether a folder holds the whole results of a study's jobs, as this program would write them.
+/// Whether a folder holds the whole results of a study's jobs, so many of them failed, as this program would write them.
 pub(super) fn is_whole(
     folder: &Path,
     study: &Study,
-    jobs: usize,
+    (jobs, failed): (usize, usize),
     tables: &[String],
     provenance: &TableProvenance,
 ) -> bool {
@@ -194,6 +194,7 @@ pub(super) fn is_whole(
         ("study_blake3", study.document.hash().into()),
         ("bridge_blake3", study.bridge.document.hash().into()),
         ("jobs", Value::from(jobs)),
+        ("failed", Value::from(failed)),
     ];
     let hashes = told["tables"].as_object();
     let whole =

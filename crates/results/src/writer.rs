@@ -55,15 +55,21 @@ impl<'a> TableWriter<'a> {
         })
     }
 
-    /// A writer of a study whose tables the folder holds already: nothing but the summary is written. None where they are
+    /// A writer of a study whose tables the folder holds already, so many jobs failed: nothing but the summary is written. None where they are
     /// not what this program would write.
-    pub fn of_whole(study: &Study, jobs: &'a [Job], folder: &Folder, provenance: &TableProvenance) -> Option<Self> {
+    pub fn of_whole(
+        study: &Study,
+        jobs: &'a [Job],
+        failed: usize,
+        folder: &Folder,
+        provenance: &TableProvenance,
+    ) -> Option<Self> {
         let layout = Layout::new(study, jobs);
         let names: Vec<String> = layout.tables().map(TableName::file).collect();
         TableName::ALL
             .into_iter()
             .for_each(|name| folder.remove_begun(&name.file()));
-        manifest::is_whole(folder.path(), study, jobs.len(), &names, provenance).then(|| Self {
+        manifest::is_whole(folder.path(), study, (jobs.len(), failed), &names, provenance).then(|| Self {
             folder: folder.clone(),
             jobs,
             layout,

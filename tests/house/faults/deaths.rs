@@ -1,7 +1,7 @@
 //! Jobs that a process dies with, that fail, and that fail too often.
 
 use super::sweep::{begin, command, finish, run, run_with, sweep, tables};
-use crate::stage::stderr;
+use crate::stage::{stderr, stdout};
 use serde_json::json;
 use std::time::Duration;
 
@@ -46,6 +46,39 @@ fn a_job_whose_process_died_three_times_is_marked_and_passed_over() {
     for (job, (found, whole)) in found.iter().zip(&whole).enumerate() {
         assert_eq!(*found, whole.filter(|_| job != 7), "job {job}");
     }
+}
+
+#[test]
+fn failed_jobs_are_tried_again_where_that_is_asked_and_the_others_are_not() {
+    let stage = sweep(2, 0.05);
+    finish(&stage, "whole");
+    let expected = tables(&stage, "whole");
+    for (out, more) in [("r", &[][..]), ("s", &["--shard", "0/1"])] {
+        let again = |fault: &str, words: &[&str]| {
+            let words = [&["run", "study.json", "--out", out, "--quiet"], more, words].concat();
+            command(&stage, &words).env("PONTOON_FAULT", fault).output().unwrap()
+        };
+        while again("job.7:1:die", &[]).status.code().is_none() {}
+        let failed = |expected: usize| assert_eq!(super::sweep::status(&stage, &[out])["failed"], expected);
+        failed(1);
+        let output = command(&stage, &["explain", out, "7"]).output().unwrap();
+        assert!(stdout(&output).contains("--retry-failed"), "{}", stdout(&output));
+        // killed before the tables: what was tried again stands, and they are made of it
+        let output = again("tables.rename:1:die", &["--retry-failed"]);
+        assert_eq!(output.status.code(), if more.is_empty() { None } else { Some(0) });
+        let output = again("", &[]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        failed(0);
+        let output = again("", &["--retry-failed"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    // 48 jobs once, and the one that failed once more
+    assert!(super::sweep::records(&stage, "r") <= 49, "others ran again");
+    let output = command(&stage, &["merge", "s", "--out", "m", "--quiet"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(tables(&stage, "r") == expected && tables(&stage, "m") == expected);
 }
 
 #[test]

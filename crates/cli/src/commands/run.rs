@@ -59,6 +59,7 @@ fn setting(arguments: &RunArguments, study: &Study) -> SweepSetting {
         cache: Cache::of_user(),
         shard: arguments.shard,
         fresh: arguments.fresh,
+        retry_failed: arguments.retry_failed,
         any_instructions: arguments.any_instructions,
         most_failures: arguments.max_failures,
         commit: crate::commit::COMMIT.map(str::to_owned),

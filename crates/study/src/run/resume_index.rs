@@ -39,6 +39,17 @@ impl<'a> ResumeIndex<'a> {
         }
     }
 
+    /// Takes those of `jobs` whose records say that they failed for jobs that are not recorded, so that they are tried again.
+    #[must_use]
+    pub fn without_failed(mut self, jobs: &[Job]) -> Self {
+        for (place, job) in self.known.iter_mut().zip(jobs) {
+            let entry = self.index.find(&record_key(job));
+            *place = place.filter(|_| entry.is_some_and(|entry| !entry.failed));
+        }
+        self.failed = 0;
+        self
+    }
+
     /// Lets new records go to a writer.
     #[must_use]
     pub fn written_by(mut self, writer: &'a JournalWriter) -> Self {

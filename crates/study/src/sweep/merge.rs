@@ -231,6 +231,10 @@ fn check_consistent(indexes: &[JournalIndex], folders: &[PathBuf]) -> Result<(),
         for entry in index.entries() {
             for (earlier, other) in indexes[..i].iter().enumerate() {
                 let Some(same) = other.find(&entry.key) else { continue };
+                // one that failed may have been tried again
+                if entry.failed || same.failed {
+                    continue;
+                }
                 if index.record(entry.place)?.left != other.record(same.place)?.left {
                     let found = format!(
                         "a record of job key {} that is not the one of {}",

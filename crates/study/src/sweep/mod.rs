@@ -61,6 +61,8 @@ pub struct SweepSetting {
     pub cache: Option<Cache>,
     /// The share of the jobs that is asked for; none: all. A share leaves a journal and no tables.
     pub shard: Option<Shard>,
+    /// Jobs that are recorded as failed are tried again.
+    pub retry_failed: bool,
     /// Results that the folder holds are moved aside, whatever they are.
     pub fresh: bool,
     /// Records of other instruction paths are of use.
@@ -176,7 +178,10 @@ pub fn sweep<'a>(
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);
     pontoon_results::keep_documents(opened.folder.path(), study)?;
     let passed_over = crash_suspects::settle(&mut opened, study, asked, cancel, watcher)?;
-    let resume_index = ResumeIndex::new(&opened.index, asked);
+    let mut resume_index = ResumeIndex::new(&opened.index, asked);
+    if setting.retry_failed {
+        resume_index = resume_index.without_failed(asked);
+    }
     results_folder::tell_damage(&opened.index, |what| match resume_index.known() < asked.len() {
         true => watcher.warn(what),
         false => watcher.note(what),
@@ -206,7 +211,7 @@ pub fn sweep<'a>(
     };
     let done = resume_index.known() == asked.len();
     let whole = done
-        .then(|| TableWriter::of_whole(study, jobs, &opened.folder, &provenance))
+        .then(|| TableWriter::of_whole(study, jobs, resume_index.failed(), &opened.folder, &provenance))
         .flatten();
     let mut tables = match whole {
         Some(whole) => whole,

@@ -210,7 +210,11 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
                 .as_ref()
                 .map(|s| format!("process {} on {}", s.process, s.host));
             told.file = Some(written.path.clone());
-            told.why = "recorded: it does not run again".to_owned();
+            told.why = match entry.failed {
+                true => "recorded: it runs again with --retry-failed alone",
+                false => "recorded: it does not run again",
+            }
+            .to_owned();
         }
         None => {
             let jobs = shard.map(|_| Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>());
