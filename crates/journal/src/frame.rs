@@ -14,6 +14,7 @@
 
 use std::fs::File;
 use std::io;
+use std::ops::Range;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
@@ -84,6 +85,52 @@ pub struct Damage {
     pub zero: bool,
 }
 
+/// Checksums of a file from its beginning to each of its blocks, from which that of any part follows.
+struct PrefixSums(Vec<u32>);
+
+impl PrefixSums {
+    /// Bytes of a block.
+    const BLOCK: usize = 256;
+
+    /// Reads a file once.
+    fn of(file: &File, length: u64) -> io::Result<Self> {
+        let (mut sums, mut crc, mut at) = (vec![0], crc32fast::Hasher::new(), 0);
+        let mut bytes = vec![0; LOOK];
+        while at < length {
+            let many = usize::try_from(length - at).map_or(LOOK, |left| left.min(LOOK));
+            file.read_exact_at(&mut bytes[..many], at)?;
+            for block in bytes[..many].chunks_exact(Self::BLOCK) {
+                crc.update(block);
+                sums.push(crc.clone().finalize());
+            }
+            at += many as u64;
+        }
+        Ok(Self(sums))
+    }
+
+    /// The checksum of all bytes before a place.
+    fn before(&self, file: &File, place: u64) -> io::Result<u32> {
+        let block = usize::try_from(place).unwrap_or(usize::MAX) / Self::BLOCK;
+        let from = (block * Self::BLOCK) as u64;
+        let mut rest = [0; Self::BLOCK];
+        let rest = &mut rest[..(place - from) as usize];
+        file.read_exact_at(rest, from)?;
+        let mut crc = crc32fast::Hasher::new_with_initial(self.0[block]);
+        crc.update(rest);
+        Ok(crc.finalize())
+    }
+
+    /// The checksum of a part, as one to be combined with others.
+    fn of_range(&self, file: &File, part: Range<u64>) -> io::Result<crc32fast::Hasher> {
+        let (before, whole) = (self.before(file, part.start)?, self.before(file, part.end)?);
+        let many = part.end - part.start;
+        let mut moved = crc32fast::Hasher::new_with_initial(before);
+        moved.combine(&crc32fast::Hasher::new_with_initial_len(0, many));
+        let own = whole ^ moved.finalize();
+        Ok(crc32fast::Hasher::new_with_initial_len(own, many))
+    }
+}
+
 /// The frames of a file, one after the other.
 pub(super) struct Frames {
     file: File,
@@ -95,6 +142,12 @@ pub(super) struct Frames {
     ahead_at: u64,
     /// What was passed over.
     pub damages: Vec<Damage>,
+    /// Bytes read behind heads that proved to be none.
+    wasted: u64,
+    /// Bytes that were read in all.
+    bytes_read: u64,
+    /// Checksums of the file up to each block, once many heads were none.
+    sums: Option<PrefixSums>,
 }
 
 impl Frames {
@@ -110,6 +163,9 @@ impl Frames {
             ahead: Vec::new(),
             ahead_at: 0,
             damages: Vec::new(),
+            wasted: 0,
+            bytes_read: 0,
+            sums: None,
         })
     }
 
@@ -160,42 +216,72 @@ impl Frames {
         if from + length as u64 > self.length {
             return Ok(false);
         }
+        let length_le = u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
+        // bytes that look like many long frames, one within the other, would be read once for each of them
+        if self.wasted > self.length && self.summed(length_le, kind, from..from + length as u64)? != crc {
+            return Ok(false);
+        }
         let mut payload = std::mem::take(&mut self.payload);
         payload.resize(length, 0);
         let read = self.read(from, &mut payload);
         self.payload = payload;
         read?;
-        let length = u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
-        Ok(checksum(length, kind, &self.payload) == crc)
+        let whole = checksum(length_le, kind, &self.payload) == crc;
+        self.wasted += if whole { 0 } else { length as u64 };
+        Ok(whole)
+    }
+
+    /// The checksum of a frame whose payload lies at a place, without reading it.
+    fn summed(&mut self, length: [u8; 4], kind: [u8; 4], payload: Range<u64>) -> io::Result<u32> {
+        let sums = match self.sums.take() {
+            Some(sums) => sums,
+            None => PrefixSums::of(&self.file, self.length)?,
+        };
+        let of_payload = sums.of_range(&self.file, payload);
+        self.sums = Some(sums);
+        let mut crc = crc32fast::Hasher::new();
+        crc.update(&length);
+        crc.update(&kind);
+        crc.combine(&of_payload?);
+        Ok(crc.finalize())
     }
 
     /// The next place behind `at` that a frame's mark stands at.
     fn mark_after(&mut self, at: u64) -> io::Result<Option<u64>> {
         let mut from = at + 1;
-        let mut bytes = vec![0; LOOK];
         while from + MARK.len() as u64 <= self.length {
-            let many = usize::try_from(self.length - from).map_or(LOOK, |left| left.min(LOOK));
-            self.file.read_exact_at(&mut bytes[..many], from)?;
-            if let Some(found) = bytes[..many].windows(MARK.len()).position(|four| four == MARK) {
+            let end = self.ahead_at + self.ahead.len() as u64;
+            if from < self.ahead_at || from + MARK.len() as u64 > end {
+                self.read_ahead(from)?;
+            }
+            let bytes = &self.ahead[usize::try_from(from - self.ahead_at).unwrap_or(usize::MAX)..];
+            if let Some(found) = bytes.windows(MARK.len()).position(|four| four == MARK) {
                 return Ok(Some(from + found as u64));
             }
             // a mark may lie across two looks
-            from += (many - (MARK.len() - 1)) as u64;
+            from += (bytes.len() - (MARK.len() - 1)) as u64;
         }
         Ok(None)
+    }
+
+    /// Reads ahead from a place in the file.
+    fn read_ahead(&mut self, at: u64) -> io::Result<()> {
+        let many = usize::try_from(self.length - at).map_or(LOOK, |left| left.min(LOOK));
+        self.ahead.resize(many, 0);
+        self.ahead_at = at;
+        self.bytes_read += many as u64;
+        self.file.read_exact_at(&mut self.ahead, at)
     }
 
     /// Reads bytes that are there, by way of those read ahead.
     fn read(&mut self, at: u64, to: &mut [u8]) -> io::Result<()> {
         if to.len() >= LOOK {
+            self.bytes_read += to.len() as u64;
             return self.file.read_exact_at(to, at);
         }
         let end = self.ahead_at + self.ahead.len() as u64;
         if at < self.ahead_at || at + to.len() as u64 > end {
-            let many = usize::try_from(self.length - at).map_or(LOOK, |left| left.min(LOOK));
-            self.ahead.resize(many, 0);
-            self.ahead_at = at;
-            self.file.read_exact_at(&mut self.ahead, at)?;
+            self.read_ahead(at)?;
         }
         let from = usize::try_from(at - self.ahead_at).unwrap_or(usize::MAX);
         to.copy_from_slice(&self.ahead[from..from + to.len()]);
@@ -261,6 +347,50 @@ mod tests {
             found.push((frame.kind, frame.payload.to_vec()));
         }
         (found, frames.damages)
+    }
+
+    #[test]
+    fn heads_of_frames_that_are_none_are_read_a_few_times_and_not_each_to_the_end() {
+        let last = written(&[b"last".to_vec()]);
+        for (heads, between) in [(4000, 16), (400, 1000), (60, 70_000)] {
+            let whole = heads * (HEAD + between) + last.len();
+            let mut bytes = Vec::new();
+            for _ in 0..heads {
+                // to the end of the file, and a checksum that is none
+                let length = u32::try_from(whole - bytes.len() - HEAD).unwrap();
+                bytes.extend_from_slice(&MARK);
+                bytes.extend_from_slice(&length.to_le_bytes());
+                bytes.extend_from_slice(&[7; 8]);
+                bytes.resize(bytes.len() + between, b'.');
+            }
+            bytes.extend_from_slice(&last);
+            let file = tempfile::NamedTempFile::new().unwrap();
+            std::fs::write(file.path(), &bytes).unwrap();
+            let mut frames = Frames::open(file.path(), 0).unwrap();
+            let found = frames.next().unwrap().map(|frame| frame.payload.to_vec());
+            assert_eq!(found.as_deref(), Some(&b"last"[..]));
+            assert!(frames.next().unwrap().is_none());
+            let times = frames.bytes_read as f64 / bytes.len() as f64;
+            assert!(times < 8.0, "{heads} heads: the file was read {times} times");
+        }
+    }
+
+    /// A frame that is whole is found among heads that are none, by the sums of the file too.
+    #[test]
+    fn a_whole_frame_among_many_that_are_none_is_found() {
+        let mut bytes = Vec::new();
+        for round in 0..50_u32 {
+            for _ in 0..20 {
+                bytes.extend_from_slice(&MARK);
+                bytes.extend_from_slice(&5000_u32.to_le_bytes());
+                bytes.extend_from_slice(&[1; 8]);
+            }
+            append(&mut bytes, round, &vec![round as u8; 700]);
+        }
+        bytes.resize(bytes.len() + 6000, 0);
+        let (found, _) = read(&bytes);
+        let expected: Vec<(u32, Vec<u8>)> = (0..50).map(|round| (round, vec![round as u8; 700])).collect();
+        assert_eq!(found, expected);
     }
 
     fn payloads() -> impl Strategy<Value = Vec<Vec<u8>>> {
