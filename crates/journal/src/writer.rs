@@ -151,11 +151,17 @@ impl JournalWriter {
         self.shared.whole(&self.shared.lock())
     }
 
-    /// Says how the process came to its end, and ends the file.
+    /// Says how the process came to its end, and ends the file. After a failed write or sync it is said in the place of what
+    /// that left, as far as the disk allows.
     ///
     /// # Errors
     /// [`JournalError`].
     pub fn end(&self, ending: &SessionEnd) -> Result<(), JournalError> {
+        if self.shared.lock().broken.is_some() {
+            return self
+                .shared
+                .end_broken(&json(ending, "how the process ended")?, &ending.how);
+        }
         self.one(kind::ENDING, &json(ending, "how the process ended")?)?;
         self.shared.lock().counts.ended = Some(ending.how.clone());
         self.sync()
@@ -265,6 +271,24 @@ impl SharedFile {
         state.counts.bytes += bytes.len() as u64;
         state.counts.done += done;
         state.counts.failed += failed;
+        Ok(())
+    }
+
+    /// Cuts off what a failed write left of a frame, which makes room on a full disk, and says how the process ended. What
+    /// was whole is as it was, and each frame proves itself.
+    fn end_broken(&self, payload: &[u8], how: &str) -> Result<(), JournalError> {
+        let mut bytes = Vec::with_capacity(frame::HEAD + payload.len());
+        frame::append(&mut bytes, kind::ENDING, payload);
+        let mut state = self.lock();
+        let written = state.file.set_len(state.counts.bytes);
+        let written = written.and_then(|()| (&state.file).write_all(&bytes));
+        let written = written.and_then(|()| state.file.sync_data());
+        written.map_err(|cause| JournalError::io(&self.path, cause))?;
+        state.counts.bytes += bytes.len() as u64;
+        state.counts.ended = Some(how.to_owned());
+        if !state.apart {
+            progress::replace(&self.folder, &state.counts);
+        }
         Ok(())
     }
 

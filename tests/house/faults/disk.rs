@@ -27,6 +27,14 @@ fn a_disk_that_is_full_at_any_write_costs_nothing_but_the_run() {
                 "{fault}: {told}"
             );
             assert!(told.contains("no space left on device"), "{fault}: {told}");
+            if place != "journal.begin"
+                && stage.path(&out).join("journal").exists()
+                && !stage.path(&out).join("manifest.json").exists()
+            {
+                let told = super::sweep::status(&stage, &[&out]);
+                let state = told["folders"][0]["state"].as_str().unwrap_or_default().to_owned();
+                assert!(state.contains("no space left on device"), "{fault}: {told}");
+            }
             if stage.path(&out).join("manifest.json").exists() {
                 // only the journal's last word was missing
                 same_tables(&stage, &out, &expected);

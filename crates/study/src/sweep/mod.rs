@@ -228,7 +228,8 @@ pub fn sweep<'a>(
     }
     let mut manifest = Manifest::new(study, jobs, &solved.outcome, started, Moment::now(), &provenance);
     manifest.sessions = opened.sessions();
-    let summary = tables.finish(manifest)?;
+    let finished = tables.finish(manifest);
+    let summary = finished.map_err(|error| solved.end_without_tables(error.into()))?;
     solved.end()?;
     let SolveOutcome { outcome, .. } = solved;
     Ok(Swept {

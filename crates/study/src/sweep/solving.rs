@@ -74,21 +74,32 @@ impl Solving<'_> {
         match ran {
             Ok(outcome) => Ok(SolveOutcome { outcome, writer }),
             Err(error) => {
-                if let Some(writer) = &writer {
-                    let how = match &error {
-                        SweepError::Interrupted { .. } => "interrupted".to_owned(),
-                        other => other.to_string(),
-                    };
-                    // the error that ended the run is the one to tell
-                    let _ = writer.end(&ending(how, 0.0, 0.0));
-                }
+                end_with(writer.as_deref(), &error);
                 Err(error)
             }
         }
     }
 }
 
+/// Ends the journal's file of a run that could not go on. The error that ended the run is the one to tell.
+fn end_with(writer: Option<&JournalWriter>, error: &SweepError) {
+    let how = match error {
+        SweepError::Interrupted { .. } => "interrupted".to_owned(),
+        SweepError::Folder(cause) => format!("{error}: {cause}"),
+        other => other.to_string(),
+    };
+    if let Some(writer) = writer {
+        let _ = writer.end(&ending(how, 0.0, 0.0));
+    }
+}
+
 impl SolveOutcome {
+    /// Ends the journal's file where its records are whole and what comes after them could not be written.
+    pub(super) fn end_without_tables(&self, error: SweepError) -> SweepError {
+        end_with(self.writer.as_deref(), &error);
+        error
+    }
+
     /// Ends the journal's file.
     pub(super) fn end(&self) -> Result<(), SweepError> {
         if let Some(writer) = &self.writer {
