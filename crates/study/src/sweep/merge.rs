@@ -11,7 +11,7 @@ use super::status::study_of_index;
 use super::{SweepError, SweepSetting, Swept, Watcher};
 use crate::run::{CancelToken, ResumeIndex, Setting, record_key, run};
 use pontoon_journal::place::{Folder, HiddenFile, hash_of};
-use pontoon_journal::{EXTENSION, FOLDER, JournalError, JournalIndex, JournalWriter, Lock, fault};
+use pontoon_journal::{EXTENSION, FOLDER, JournalError, JournalIndex, JournalWriter, Lock, Session, fault};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
@@ -37,10 +37,18 @@ impl Merged {
     /// [`SweepError::Refused`] of folders that are of different studies.
     pub fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
         let mut first: Option<(PathBuf, String)> = None;
-        let mut study = None;
+        let (mut study, mut known_hashes) = (None, BTreeSet::new());
         for folder in folders {
             check_folder(folder)?;
             let index = JournalIndex::read(folder)?;
+            // documents that were read once need not be read again, large as they may be
+            let hashes = |(_, session): (_, &Session)| (session.study_blake3.clone(), session.bridge_blake3.clone());
+            if index
+                .newest()
+                .is_some_and(|newest| !known_hashes.insert(hashes(newest)))
+            {
+                continue;
+            }
             let (of_folder, ..) = study_of_index(&index, folder)?;
             let hash = hash_of_computed(&of_folder);
             match &first {
