@@ -5,7 +5,7 @@
 use super::inertia::count_below;
 use super::lanczos::{BlockLanczos, Ritz, SymmetricOperator};
 use super::probe::{diagonal, largest, sizes};
-use super::{Factor, FemError, SymmetricMatrix};
+use super::{Factor, FemError, SymmetricMatrix, go_on};
 use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, Par};
@@ -192,7 +192,7 @@ fn krylov(
     let mut converged = 0;
     while lanczos.size() < most && lanczos.can_grow() {
         while lanczos.size() < next && lanczos.can_grow() {
-            stop.check()?;
+            go_on(stop)?;
             lanczos.grow();
         }
         next = lanczos.size() + lanczos.size() / 7;

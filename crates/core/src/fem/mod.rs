@@ -36,14 +36,12 @@ pub use windows::{ModeSearch, ONE_SEARCH};
 use crate::stop::Stop;
 use thiserror::Error;
 
-impl Stop<'_> {
-    /// Goes on unless a stop is asked for.
-    pub(crate) fn check(self) -> Result<(), FemError> {
-        if self.is_asked() {
-            Err(FemError::Stopped)
-        } else {
-            Ok(())
-        }
+/// Goes on unless a stop is asked for.
+pub(crate) fn go_on(stop: Stop<'_>) -> Result<(), FemError> {
+    if stop.is_asked() {
+        Err(FemError::Stopped)
+    } else {
+        Ok(())
     }
 }
 

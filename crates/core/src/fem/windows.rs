@@ -8,7 +8,7 @@ use super::eigen::lowest_modes_unless;
 use super::eigen::{EigenPairs, GAP, is_small};
 use super::inertia::ShiftedFactor;
 use super::lanczos::{BlockLanczos, Ritz, SymmetricOperator};
-use super::{Factor, FemError, SymmetricMatrix};
+use super::{Factor, FemError, SymmetricMatrix, go_on};
 use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -145,7 +145,7 @@ impl<'a> ModeSearch<'a> {
             converged: below,
         };
         for _ in 0..TRIALS {
-            self.stop.check()?;
+            go_on(self.stop)?;
             let end = (root(start) + width).powi(2);
             match ShiftedFactor::new(self.k, self.m, end) {
                 Err(error) => {
@@ -203,7 +203,7 @@ impl<'a> ModeSearch<'a> {
         let mut converged = 0;
         while lanczos.size() < most && lanczos.can_grow() {
             while lanczos.size() < next && lanczos.can_grow() {
-                self.stop.check()?;
+                go_on(self.stop)?;
                 lanczos.grow();
             }
             next = lanczos.size() + lanczos.size() / 7;

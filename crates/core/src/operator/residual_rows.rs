@@ -5,7 +5,7 @@
 //! Work is cut into blocks of one size on any number of threads, so that these do not change a bit.
 
 use crate::bridge::Track;
-use crate::fem::{Factor, FemError, SparseRow};
+use crate::fem::{Factor, FemError, SparseRow, go_on};
 use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, Par};
@@ -93,7 +93,7 @@ impl<'a> ResidualRows<'a> {
         let mut deck = vec![0.0; track.columns() * width];
         let blocks = deck.par_chunks_mut(width.max(1) * BLOCK).enumerate();
         blocks.try_for_each(|(block, of_block)| {
-            self.stop.check()?;
+            go_on(self.stop)?;
             let node = |c: usize| track.dof(block * BLOCK + c);
             for (c, influence) in of_block.chunks_exact_mut(width).enumerate() {
                 let (phi, sums) = influence.split_at_mut(m);
@@ -248,7 +248,7 @@ impl Columns {
         let order = factor.order();
         let mut numbers = vec![0.0; order * rows.len()];
         let block = |(block, rows): (&mut [f64], &[SparseRow])| {
-            stop.check()?;
+            go_on(stop)?;
             for (column, row) in block.chunks_exact_mut(order).zip(rows) {
                 for &(i, v) in &row.0 {
                     column[i] += v;
