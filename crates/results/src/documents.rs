@@ -85,20 +85,28 @@ impl RunDocuments {
     /// The documents that a manifest names.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
-    pub(super) fn of_manifest(folder: &Path, name: &str, manifest: &Value) -> Result<Self, String> {
+    /// [`ResultsError::Damaged`] with the manifest's `file`.
+    pub(super) fn of_manifest(folder: &Path, file: &Path, name: &str, manifest: &Value) -> Result<Self, ResultsError> {
+        let damaged = |found: String| ResultsError::Damaged {
+            file: file.to_owned(),
+            found,
+        };
         let stored = |which: &str| {
             let hash = manifest[format!("{which}_blake3")].as_str();
-            let hash = hash.ok_or_else(|| format!("no hash of its {which}"))?.to_owned();
+            let hash = hash
+                .ok_or_else(|| damaged(format!("no hash of its {which}")))?
+                .to_owned();
             if manifest["documents"].is_null() {
                 let document = Document::from(&manifest[which]);
                 if document.hash() != hash {
-                    return Err(format!("a {which} that is not the one of its hash"));
+                    return Err(damaged(format!("a {which} that is not the one of its hash")));
                 }
                 return Ok(StoredDocument::of(document));
             }
             if manifest["documents"][which]["file"].as_str() != Some(&document_file(&hash)) {
-                return Err(format!("a file of its {which} that is not the one of its hash"));
+                return Err(damaged(format!(
+                    "a file of its {which} that is not the one of its hash"
+                )));
             }
             let read = OnceLock::new();
             Ok(StoredDocument { hash, read })

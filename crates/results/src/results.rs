@@ -84,7 +84,7 @@ impl Results {
         let hashes = manifest["tables"]
             .as_object()
             .ok_or_else(|| damaged(&file, "no hashes of its tables, as an earlier version left none"))?;
-        let documents = RunDocuments::of_manifest(folder, name, &manifest).map_err(|found| damaged(&file, &found))?;
+        let documents = RunDocuments::of_manifest(folder, &file, name, &manifest)?;
         let told = match &manifest["documents"] {
             Value::Null => &manifest["study"]["analysis"]["kind"],
             _ => &manifest["kind"],
