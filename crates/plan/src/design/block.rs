@@ -8,7 +8,7 @@ use super::condition::{Conditions, Test};
 use super::forms::{AxisMap, Design, Form, SampleSpec};
 use super::points::{PointSource, RandomSample, SampledAxis, values};
 use super::sampling::SobolPoints;
-use super::values::{MOST_POINTS, Values};
+use super::values::{MOST_POINTS, Values, numbers};
 use crate::input::{Cell, DocumentPath, FoundValue, Refusal, RefusalKind};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -349,16 +349,8 @@ impl DesignReader<'_> {
     fn whole(&self, key: &str, ends: &Value) -> Result<SampledAxis, Refusal> {
         // beyond these, numbers of a file are no longer each a number of their own
         const MOST: f64 = 9e15;
-        let numbers: Vec<f64> = ends
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_f64)
-            .collect();
-        match (numbers.as_slice(), ends.as_array().map(Vec::len)) {
-            (&[from, to], Some(2))
-                if from < to && [from, to].iter().all(|end| end.fract() == 0.0 && end.abs() <= MOST) =>
-            {
+        match numbers(ends) {
+            Some([from, to]) if from < to && [from, to].iter().all(|end| end.fract() == 0.0 && end.abs() <= MOST) => {
                 Ok(SampledAxis::Whole(from as i64, to as i64))
             }
             _ => self.refuse(key, ends, "[from, to], two whole numbers with from below to"),

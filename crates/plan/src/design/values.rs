@@ -98,16 +98,16 @@ pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.14e}").parse().unwrap_or(x)
 }
 
+/// A list of so many numbers; none where it is anything else.
+pub(super) fn numbers<const N: usize>(list: &Value) -> Option<[f64; N]> {
+    let numbers: Option<Vec<f64>> = list.as_array()?.iter().map(Value::as_f64).collect();
+    numbers?.try_into().ok()
+}
+
 /// The range of `[from, to, count]`.
 fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Values, Refusal> {
     let refuse = |found: FoundValue, allowed: &str| Err(Refusal::new(file, key, found, allowed));
-    let numbers: Vec<f64> = ends
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_f64)
-        .collect();
-    let (&[from, to, count], Some(3)) = (numbers.as_slice(), ends.as_array().map(Vec::len)) else {
+    let Some([from, to, count]) = numbers(ends) else {
         return refuse(ends.into(), "[from, to, count], three numbers");
     };
     if count.fract() != 0.0 || !(2.0..=MOST_POINTS as f64).contains(&count) {
