@@ -111,6 +111,59 @@ fn an_automatic_time_step_reaches_its_tolerance_and_is_in_the_table() {
 }
 
 #[test]
+fn an_automatic_time_step_of_a_fast_crossing_begins_below_the_passage_of_a_module() {
+    let mut stage = stage(&json!({ "time_step_s": "auto", "time_step_tolerance": 0.05 }));
+    let speeds = [5.0, 300.0, 336.0, 400.0, 900.0];
+    stage.study["design"][0]["grid"]["speed_m_s"] = json!(speeds);
+    stage.study["design"][0]["grid"]["connection"] = json!("linear");
+    for gap in ["gap_tension_m", "gap_compression_m"] {
+        stage.study["design"][0]["grid"].as_object_mut().unwrap().remove(gap);
+    }
+    stage.write();
+    let output = run(&stage);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let length_m = stage.bridge["module"]["length_m"].as_f64().unwrap();
+    let found = stage.numbers(JOBS, "time_step_s");
+    for (speed, step) in speeds.iter().zip(found) {
+        // settled at the second halving at the earliest
+        assert!(4.0 * step.unwrap() <= length_m / speed, "{speed} {step:?}");
+    }
+}
+
+#[test]
+fn a_vehicle_far_behind_its_front_begins_when_it_arrives() {
+    let of = |behind_front_m: f64, solver: &str| {
+        let mut stage = stage(&json!({ "solver": solver, "time_step_s": 0.01 }));
+        stage.study["vehicle"] = json!({ "axles": [
+            { "behind_front_m": behind_front_m, "share": 1, "patch_length_m": 1.93, "track_y_m": [0] }
+        ], "inertia": "local" });
+        // rounding of the place alone differs: contacts would make more of it, and so would a point that ends a step at a
+        // joint, which 1.93 m avoid
+        stage.study["design"][0]["grid"]["connection"] = json!("linear");
+        for gap in ["gap_tension_m", "gap_compression_m"] {
+            stage.study["design"][0]["grid"].as_object_mut().unwrap().remove(gap);
+        }
+        stage.write();
+        let output = run(&stage);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        ["steps", "peak_deflection_m", "peak_deflection_time_s", "peak_compression_n"]
+            .map(|name| stage.numbers(JOBS, name))
+    };
+    for solver in ["operator", "reference"] {
+        // 120 m behind are whole steps at 5, 10 and 15 m/s
+        let (at_front, behind) = (of(0.0, solver), of(120.0, solver));
+        assert_eq!(at_front[0], behind[0], "{solver}: steps");
+        let near = |x: f64, y: f64| (x - y).abs() <= 1e-9 * y.abs();
+        for (k, later_s) in [(1, 0.0), (2, 1.0), (3, 0.0)] {
+            for ((speed, x), y) in [5.0, 10.0, 15.0].iter().zip(&at_front[k]).zip(&behind[k]) {
+                let expected = x.unwrap() + later_s * 120.0 / speed;
+                assert!(near(y.unwrap(), expected), "{solver} {k}: {y:?} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
 fn keys_that_have_no_meaning_beside_another_are_refused() {
     let analysis = "/analysis";
     study_refused(

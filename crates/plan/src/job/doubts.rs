@@ -60,7 +60,7 @@ impl Doubts {
             self.note(
                 crossing.is_step_long() == Some(true),
                 "analysis.time_step_s",
-                crossing.analysis.time_step.seconds(),
+                crossing.first_time_step_s(),
                 "the vehicle goes more than half of its shortest patch in a time step, so that peaks may be far too large: take a \
                  smaller step or \"auto\" (column step_warning)",
             );

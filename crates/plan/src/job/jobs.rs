@@ -222,30 +222,30 @@ impl Short<'_> {
         vehicle: &VehicleEntry,
         speed_m_s: f64,
     ) -> Result<(), Refusal> {
-        let step = analysis.time_step.seconds();
+        let passage = bridge.design.module.length_m / speed_m_s;
+        let step = analysis.time_step.first_s(passage);
         let refuse = |found: FoundValue, allowed: String| {
             let path = self.path_or("analysis.time_step_s");
             Err(Refusal::new(&self.study.file, path, found, allowed).because(RefusalKind::Conflict))
         };
-        let passage = bridge.design.module.length_m / speed_m_s;
         if step > passage {
             let [most, speed] = [passage, speed_m_s].map(|x| Cell::written(bound(x)));
             let allowed = format!("above 0 and at most {most}, the passage of one module at {speed} m/s");
-            return refuse(self.time_step_found(analysis, None), allowed);
+            return refuse(self.time_step_found(analysis, step, None), allowed);
         }
         let vehicle = &vehicle.vehicle;
         let way = bridge.design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
         let steps = (way / speed_m_s + analysis.tail_s) / step;
         if steps > MOST_STEPS as f64 {
-            let found = self.time_step_found(analysis, Some(format!("makes {steps:.1e} steps")));
+            let found = self.time_step_found(analysis, step, Some(format!("makes {steps:.1e} steps")));
             return refuse(found, format!("a crossing of at most {MOST_STEPS} steps"));
         }
         Ok(())
     }
 
     /// The time step as the study writes it, and what it makes.
-    fn time_step_found(&self, analysis: &CrossingAnalysis, makes: Option<String>) -> FoundValue {
-        let (step, path) = (analysis.time_step.seconds(), "analysis.time_step_s");
+    fn time_step_found(&self, analysis: &CrossingAnalysis, step: f64, makes: Option<String>) -> FoundValue {
+        let path = "analysis.time_step_s";
         let and_makes = makes.iter().map(|makes| format!(" and {makes}")).collect::<String>();
         if analysis.time_step.tolerance().is_some() {
             return FoundValue::value("auto").which(format!("which begins with {step} s{and_makes}"));

@@ -103,9 +103,15 @@ pub struct TooManySteps {
 }
 
 impl<'a> CrossingJob<'a> {
-    /// Time steps at its stated step, at the coarsest of its own; bisected ones apart.
+    /// The time step that it begins with `[s]`: the stated one, or the coarsest of its own.
+    pub fn first_time_step_s(&self) -> f64 {
+        let passage_s = self.job.bridge.design.module.length_m / self.speed_m_s;
+        self.analysis.time_step.first_s(passage_s)
+    }
+
+    /// Time steps at the one that it begins with; bisected ones apart.
     pub fn steps(&self) -> usize {
-        self.steps_of(self.analysis.time_step.seconds())
+        self.steps_of(self.first_time_step_s())
     }
 
     /// Time steps of so many seconds, bisected ones apart.
@@ -124,7 +130,7 @@ impl<'a> CrossingJob<'a> {
     pub fn is_step_long(&self) -> Option<bool> {
         let vehicle = &self.job.vehicle.vehicle;
         let shortest_m = vehicle.patches.iter().map(|p| p.length_m).fold(f64::INFINITY, f64::min);
-        let goes_m = self.speed_m_s * self.analysis.time_step.seconds();
+        let goes_m = self.speed_m_s * self.first_time_step_s();
         let long = vehicle.inertia != Inertia::None && goes_m > 0.5 * shortest_m;
         self.analysis.time_step.tolerance().is_none().then_some(long)
     }
@@ -159,7 +165,7 @@ impl<'a> CrossingJob<'a> {
     /// The settings of its solver, with the damping of its bridge.
     pub fn settings(&self, rayleigh: Rayleigh) -> CrossingSettings {
         CrossingSettings {
-            time_step_s: self.analysis.time_step.seconds(),
+            time_step_s: self.first_time_step_s(),
             spectral_radius: self.analysis.spectral_radius,
             rayleigh,
             newton_limit: self.analysis.newton_limit,

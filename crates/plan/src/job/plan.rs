@@ -409,11 +409,6 @@ mod tests {
     fn a_time_step_beyond_a_module_is_told_as_it_was_typed() {
         for (more, path, found) in [
             (
-                json!({ "analysis.time_step_s": "auto", "speed_m_s": 400 }),
-                "design[0].cases[0].analysis.time_step_s",
-                "\"auto\", which begins with 0.02 s",
-            ),
-            (
                 json!({ "analysis.time_step_s": 0.03, "speed_m_s": 400 }),
                 "design[0].cases[0].analysis.time_step_s",
                 "0.03",

@@ -55,11 +55,18 @@ impl TimeStep {
     /// The coarsest step that a job's own begins with `[s]`.
     pub const COARSEST_S: f64 = 0.02;
 
-    /// The step, the coarsest of a job's own `[s]`.
-    pub fn seconds(self) -> f64 {
+    /// The step that a crossing begins with `[s]`: the stated one, or of its own the coarsest that is no longer than the
+    /// passage of one module, halved from [`Self::COARSEST_S`].
+    pub fn first_s(self, passage_s: f64) -> f64 {
         match self {
             Self::Stated(seconds) => seconds,
-            Self::Auto { .. } => Self::COARSEST_S,
+            Self::Auto { .. } => {
+                let mut step_s = Self::COARSEST_S;
+                while step_s > passage_s {
+                    step_s *= 0.5;
+                }
+                step_s
+            }
         }
     }
 
@@ -432,7 +439,7 @@ mod tests {
             panic!()
         };
         assert_eq!(
-            (crossing.time_step.seconds(), crossing.time_step.tolerance()),
+            (crossing.time_step.first_s(1.0), crossing.time_step.tolerance()),
             (TimeStep::COARSEST_S, Some(0.02))
         );
     }

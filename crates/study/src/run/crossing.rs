@@ -30,7 +30,7 @@ pub(super) fn again_at_half_step(
     models: &SharedModels,
     failed: &JobFailure,
 ) -> JobResult {
-    let half = crossing.analysis.time_step.seconds() * RETRY_STEP_SHARE;
+    let half = crossing.first_time_step_s() * RETRY_STEP_SHARE;
     crossing.check_steps(half).map_err(|beyond| {
         let behind = format!("; at half the time step: {}", too_many_steps(beyond).text);
         JobFailure::from(failed.failure.clone().said("", &behind))

@@ -121,7 +121,7 @@ impl<'a> Monitor<'a> {
     pub(super) fn passes_over(&self, job: &Job) -> Option<Failure> {
         let too_long = || {
             let crossing = job.as_crossing()?;
-            let checked = crossing.check_steps(crossing.analysis.time_step.seconds());
+            let checked = crossing.check_steps(crossing.first_time_step_s());
             checked.err().map(super::failure::too_many_steps)
         };
         self.passed_over.get(&job.number).cloned().or_else(too_long)

@@ -454,7 +454,7 @@ fn damping_key(crossing: &CrossingJob<'_>) -> DampingKey {
 
 fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
     let analysis = crossing.analysis;
-    let scheme = [analysis.time_step.seconds(), analysis.spectral_radius].map(f64::to_bits);
+    let scheme = [crossing.first_time_step_s(), analysis.spectral_radius].map(f64::to_bits);
     let limits = [analysis.newton_limit, analysis.bisection_limit];
     (damping_key(crossing), scheme, limits)
 }

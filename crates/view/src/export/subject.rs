@@ -253,7 +253,7 @@ fn largest(source: &Path, results: &Results) -> Result<usize, Refusal> {
 /// The time step of a job's answer: the one that was found for it or its analysis's, or half of it where a reason says that
 /// its contacts had not settled before.
 fn time_step_s(crossing: &CrossingJob<'_>, table: &Table, row: usize) -> f64 {
-    let stated_s = crossing.analysis.time_step.seconds();
+    let stated_s = crossing.first_time_step_s();
     let own_s = table.number("time_step_s", row).unwrap_or(stated_s);
     if table.cell("reason", row).is_nothing() {
         own_s

@@ -100,8 +100,7 @@ impl CrossingSolver {
 
     /// Steps that a crossing will take, bisections apart.
     pub fn steps(bridge_length_m: f64, vehicle: &Vehicle, time_step_s: f64, speed_m_s: f64, tail_s: f64) -> usize {
-        let (before, after) = span(bridge_length_m, vehicle, time_step_s, speed_m_s, tail_s);
-        before + after
+        StepSpan::new(bridge_length_m, vehicle, time_step_s, speed_m_s, tail_s).steps
     }
 
     /// Solves one crossing. The front is at x = 0 at t = 0; the motion starts from rest at the step before the first point
@@ -144,9 +143,29 @@ impl CrossingSolver {
     }
 }
 
-/// Steps from the one before the first point reaches the bridge to t = 0, and from there to the end.
-fn span(bridge_length_m: f64, vehicle: &Vehicle, h: f64, speed_m_s: f64, tail_s: f64) -> (usize, usize) {
-    let before = (vehicle.ahead_m() / speed_m_s / h + 1e-9).floor().max(0.0) as usize + 1;
-    let seconds = (bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s;
-    (before, (seconds / h - 1e-9).ceil().max(0.0) as usize)
+/// The whole steps of a crossing, counted from t = 0, when the front is at x = 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct StepSpan {
+    /// The step at which it rests, the last before the first point reaches the bridge; negative where that point is ahead of
+    /// the front.
+    rest: i64,
+    /// Steps from there to the end.
+    steps: usize,
+}
+
+impl StepSpan {
+    fn new(bridge_length_m: f64, vehicle: &Vehicle, h: f64, speed_m_s: f64, tail_s: f64) -> Self {
+        let rest = -((vehicle.ahead_m() / speed_m_s / h + 1e-9).floor() as i64 + 1);
+        let seconds = (bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s;
+        let end = (seconds / h - 1e-9).ceil() as i64;
+        Self {
+            rest,
+            steps: end.saturating_sub(rest).max(0) as usize,
+        }
+    }
+
+    /// The time after so many steps of so many seconds `[s]`.
+    fn time_s(self, taken: usize, h: f64) -> f64 {
+        (taken as f64 + self.rest as f64) * h
+    }
 }

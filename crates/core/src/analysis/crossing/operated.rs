@@ -3,7 +3,7 @@
 //! Knows when a crossing begins, is halved and ends, and what a lane leaves behind. Does not know the step's arithmetic.
 
 use super::halving::{Halving, halve};
-use super::{Crossing, CrossingSettings, span};
+use super::{Crossing, CrossingSettings, StepSpan};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign};
 use crate::contact::NotSettled;
@@ -55,8 +55,7 @@ struct Under<'a> {
     vehicle: &'a Vehicle,
     record: &'a Record,
     step: usize,
-    before: usize,
-    steps: usize,
+    span: StepSpan,
     time_s: Vec<f64>,
     histories: Vec<History>,
 }
@@ -189,7 +188,7 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     fn time_after(&self, steps: usize, of: &Under<'_>) -> f64 {
-        (steps as f64 - of.before as f64) * self.solver.time_step_s(self.refinement)
+        of.span.time_s(steps, self.solver.time_step_s(self.refinement))
     }
 
     fn begin<'c>(&mut self, lane: usize, index: usize, (vehicle, crossing): (&'c Vehicle, &'c Crossing)) -> Under<'c> {
@@ -202,22 +201,16 @@ impl<C: StepClock> Crew<'_, C> {
             speed_m_s: crossing.speed_m_s,
         };
         let h = self.solver.time_step_s(self.refinement);
-        let (before, after) = span(
-            self.solver.design.length_m(),
-            vehicle,
-            h,
-            crossing.speed_m_s,
-            crossing.tail_s,
-        );
-        let start_s = -(before as f64) * h;
+        let length_m = self.solver.design.length_m();
+        let span = StepSpan::new(length_m, vehicle, h, crossing.speed_m_s, crossing.tail_s);
+        let start_s = span.time_s(0, h);
         self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
         let mut of = Under {
             index,
             vehicle,
             record: &crossing.record,
             step: 0,
-            before,
-            steps: before + after,
+            span,
             time_s: Vec::new(),
             histories: crossing.record.histories(),
         };
@@ -273,7 +266,7 @@ impl<C: StepClock> Crew<'_, C> {
         if !self.lanes.is_finite(lane) {
             return Some(Err(AnalysisError::NotFinite { time_s }));
         }
-        (of.step == of.steps).then(|| Ok(self.response(lane, of)))
+        (of.step == of.span.steps).then(|| Ok(self.response(lane, of)))
     }
 
     /// Does a lane's step again in halves, by itself.

@@ -5,7 +5,7 @@
 use super::halving::{Halving, advance};
 use super::observe::Observer;
 use super::step::{Motion, Stepper};
-use super::{CrossingSolver, span};
+use super::{CrossingSolver, StepSpan};
 use crate::analysis::AnalysisError;
 use crate::analysis::modes::Rayleigh;
 use crate::analysis::snapshot::{Snapshot, connectors, wheels};
@@ -21,9 +21,7 @@ pub struct CrossingRun<'a> {
     now: Motion,
     /// Whole steps taken.
     taken: usize,
-    /// Steps before t = 0 and all steps.
-    before: usize,
-    steps: usize,
+    span: StepSpan,
 }
 
 impl<'a> CrossingRun<'a> {
@@ -35,8 +33,8 @@ impl<'a> CrossingRun<'a> {
     ) -> Self {
         let h = solver.settings.time_step_s;
         let length_m = solver.bridge.design().length_m();
-        let (before, after) = span(length_m, stepper.vehicle, h, stepper.speed_m_s, tail_s);
-        let now = stepper.at_rest(-(before as f64) * h);
+        let span = StepSpan::new(length_m, stepper.vehicle, h, stepper.speed_m_s, tail_s);
+        let now = stepper.at_rest(span.time_s(0, h));
         observer.record_history(&now);
         Self {
             solver,
@@ -44,8 +42,7 @@ impl<'a> CrossingRun<'a> {
             observer,
             now,
             taken: 0,
-            before,
-            steps: before + after,
+            span,
         }
     }
 
@@ -54,11 +51,11 @@ impl<'a> CrossingRun<'a> {
     /// # Errors
     /// As [`CrossingSolver::solve`].
     pub fn step(&mut self) -> Result<bool, AnalysisError> {
-        if self.taken == self.steps {
+        if self.taken == self.span.steps {
             return Ok(false);
         }
         self.taken += 1;
-        let to_s = (self.taken as f64 - self.before as f64) * self.solver.settings.time_step_s;
+        let to_s = self.span.time_s(self.taken, self.solver.settings.time_step_s);
         advance(self, [self.now.time_s, to_s], 0)?;
         self.observer.record_history(&self.now);
         Ok(true)
@@ -66,7 +63,7 @@ impl<'a> CrossingRun<'a> {
 
     /// Whole steps that it takes from its beginning at rest to its end.
     pub fn steps(&self) -> usize {
-        self.steps
+        self.span.steps
     }
 
     /// The state after the last whole step, or the rest before the first.
