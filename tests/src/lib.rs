@@ -148,6 +148,7 @@ impl Ready {
         StaticCase {
             connection,
             connector_stiffness_n_m: self.design.connectors.stiffness_n_m,
+            own_laws: [].into(),
             load_n,
             load_x_m,
         }
@@ -163,6 +164,7 @@ impl Ready {
         Crossing {
             connection,
             connector_stiffness_n_m: self.design.connectors.stiffness_n_m,
+            own_laws: [].into(),
             load_n,
             speed_m_s,
             tail_s: 1.0,

@@ -1,8 +1,10 @@
-//! The connector: a tension truss and a compression truss, each with its gap.
+//! The connector: a tension truss and a compression truss, each with its gap and, where it has one, its stop.
 //!
 //! Knows force against elongation. Does not know where the elongation comes from.
 
-/// How the trusses of every connector work in a job.
+use std::sync::Arc;
+
+/// How the trusses of every connector work in a job that has no law of its own.
 /// Equation (J3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Connection {
@@ -18,16 +20,87 @@ pub enum Connection {
     },
 }
 
-/// Which truss of a connector is at work.
+/// The law of one connector, piecewise linear in its elongation and nowhere falling.
+/// Equation (J4).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ConnectorLaw {
+    /// Both trusses at work at once, without gaps: `N = 2 k e`.
+    Linear {
+        /// Stiffness k of one truss `[N/m]`; 0 of a lost connector.
+        stiffness_n_m: f64,
+    },
+    /// A truss in tension and one in compression, which work beyond their gaps.
+    Gaps {
+        /// The tension truss.
+        tension: Truss,
+        /// The compression truss, its gaps counted in shortening.
+        compression: Truss,
+    },
+}
+
+/// One truss of a connector: `N = k (s - gap)` for an elongation, or a shortening, s beyond its gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truss {
+    /// Stiffness k `[N/m]`; 0 of a truss that is not there, which never works.
+    pub stiffness_n_m: f64,
+    /// Gap `[m]`, at least 0.
+    pub gap_m: f64,
+    /// Its stop, where it has one: the truss is then the buffer before it.
+    pub stop: Option<Stop>,
+}
+
+/// The second branch of a truss: `N = k (gap_stop - gap) + k_stop (s - gap_stop)` beyond its own gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// Stiffness of the branch, buffer and stop together `[N/m]`; above 0.
+    pub stiffness_n_m: f64,
+    /// Gap `[m]`, beyond that of the truss.
+    pub gap_m: f64,
+}
+
+/// The connectors of a bridge that have laws of their own, by place from 0 in the order of joints and places across.
+pub type OwnLaws = Arc<[(usize, ConnectorLaw)]>;
+
+impl ConnectorLaw {
+    /// The law of a connector whose two trusses have one stiffness k `[N/m]`.
+    pub fn new(stiffness_n_m: f64, connection: Connection) -> Self {
+        let truss = |gap_m| Truss {
+            stiffness_n_m,
+            gap_m,
+            stop: None,
+        };
+        match connection {
+            Connection::Linear => Self::Linear { stiffness_n_m },
+            Connection::Nonlinear {
+                gap_tension_m,
+                gap_compression_m,
+            } => Self::Gaps {
+                tension: truss(gap_tension_m),
+                compression: truss(gap_compression_m),
+            },
+        }
+    }
+}
+
+/// Which branch of its law a connector is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum State {
-    /// Neither: the elongation lies between the gaps.
+    /// No truss at work: the elongation lies between the gaps.
     #[default]
     Open,
     /// The tension truss.
     Tension,
+    /// The tension truss at its stop.
+    TensionStop,
     /// The compression truss.
     Compression,
-    /// Both at once: the linear connection.
+    /// The compression truss at its stop.
+    CompressionStop,
+    /// Both trusses at once: the linear connection.
     Both,
+}
+
+impl State {
+    /// Number of states.
+    pub(crate) const COUNT: usize = 6;
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows force against elongation. Does not know what the link joins or where the elongation comes from.
 
-use crate::connector::{Connection, State};
+use crate::connector::{Connection, ConnectorLaw, OwnLaws, State, Truss};
 
 /// A branch `N = k e - n0` of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -13,57 +13,113 @@ pub(crate) struct Branch {
     pub offset: f64,
 }
 
-/// The law of one link: a branch in tension, one in compression, and what holds between them.
+/// The law of one link: up to two branches in tension, as many in compression, and what holds between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LinkLaw {
-    /// Elongation above which the tension branch works, and below which the compression branch does `[m]`.
+    /// Elongation beyond which the first and the second branch of each sense work `[m]`; infinite where there is none.
     tension_above_m: f64,
+    tension_stop_above_m: f64,
     compression_below_m: f64,
+    compression_stop_below_m: f64,
     /// The state between them.
     between: State,
     /// The branch of each state.
-    branches: [Branch; 4],
+    branches: [Branch; State::COUNT],
+}
+
+/// How a link takes up energy in one sense: `N^2 / 2 k` of its last branch, and of a buffer before that
+/// `min(N, N_1)^2 / 2 (1/k_1 - 1/k)` beside it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Uptake {
+    /// Stiffness k of the last branch `[N/m]`; 0 where there is none.
+    pub stiffness: f64,
+    /// `1/k_1 - 1/k`, by which the buffer is softer `[m/N]`.
+    pub softer: f64,
+    /// Force N_1 at which the stop is met `[N]`.
+    pub at_stop: f64,
 }
 
 impl LinkLaw {
+    /// The law of a link that never works.
+    const LOST: Self = Self {
+        tension_above_m: f64::INFINITY,
+        tension_stop_above_m: f64::INFINITY,
+        compression_below_m: f64::NEG_INFINITY,
+        compression_stop_below_m: f64::NEG_INFINITY,
+        between: State::Open,
+        branches: [Branch { stiffness: 0.0, offset: 0.0 }; State::COUNT],
+    };
+
     /// The law of a connector of two trusses of stiffness k `[N/m]`.
     /// Equations (J2), (J3).
     pub(crate) fn connector(k: f64, connection: Connection) -> Self {
-        let mut law = Self {
-            tension_above_m: f64::INFINITY,
-            compression_below_m: f64::NEG_INFINITY,
-            between: State::Both,
-            branches: [Branch::default(); 4],
-        };
-        law.branches[State::Both as usize].stiffness = 2.0 * k;
-        if let Connection::Nonlinear {
-            gap_tension_m,
-            gap_compression_m,
-        } = connection
-        {
-            law.tension_above_m = gap_tension_m;
-            law.compression_below_m = -gap_compression_m;
-            law.between = State::Open;
-            for (state, end_m) in [
-                (State::Tension, gap_tension_m),
-                (State::Compression, -gap_compression_m),
-            ] {
-                law.branches[state as usize] = Branch {
-                    stiffness: k,
-                    offset: k * end_m,
-                };
+        Self::new(&ConnectorLaw::new(k, connection))
+    }
+
+    /// The laws of so many connectors of one law, some of which have laws of their own.
+    pub(crate) fn connectors(count: usize, k: f64, connection: Connection, own: &OwnLaws) -> Vec<Self> {
+        let mut laws = vec![Self::connector(k, connection); count];
+        for (place, law) in own.iter() {
+            laws[*place] = Self::new(law);
+        }
+        laws
+    }
+
+    /// A law as the step takes it. Equations (J2) to (J4).
+    pub(crate) fn new(law: &ConnectorLaw) -> Self {
+        let mut of = Self::LOST;
+        match law {
+            ConnectorLaw::Linear { stiffness_n_m } if *stiffness_n_m > 0.0 => {
+                of.between = State::Both;
+                of.branches[State::Both as usize].stiffness = 2.0 * stiffness_n_m;
+            }
+            ConnectorLaw::Linear { .. } => {}
+            ConnectorLaw::Gaps { tension, compression } => {
+                [of.tension_above_m, of.tension_stop_above_m] =
+                    of.take_truss(tension, 1.0, [State::Tension, State::TensionStop]);
+                [of.compression_below_m, of.compression_stop_below_m] =
+                    of.take_truss(compression, -1.0, [State::Compression, State::CompressionStop]);
             }
         }
-        law
+        of
+    }
+
+    /// Takes the branches of a truss that works in the `sense` of elongations; gives the elongations where they begin.
+    fn take_truss(&mut self, truss: &Truss, sense: f64, states: [State; 2]) -> [f64; 2] {
+        let never = sense * f64::INFINITY;
+        let Truss { stiffness_n_m: k, gap_m, stop } = *truss;
+        if k == 0.0 {
+            return [never; 2];
+        }
+        let begins_m = sense * gap_m;
+        self.branches[states[0] as usize] = Branch {
+            stiffness: k,
+            offset: k * begins_m,
+        };
+        let Some(stop) = stop else { return [begins_m, never] };
+        let stop_m = sense * stop.gap_m;
+        self.branches[states[1] as usize] = Branch {
+            stiffness: stop.stiffness_n_m,
+            offset: stop.stiffness_n_m * stop_m - k * (stop_m - begins_m),
+        };
+        [begins_m, stop_m]
     }
 
     /// The state that elongation `e` `[m]` asks for.
     #[inline]
     pub(crate) fn state(&self, e: f64) -> State {
         if e > self.tension_above_m {
-            State::Tension
+            if e > self.tension_stop_above_m {
+                State::TensionStop
+            } else {
+                State::Tension
+            }
         } else if e < self.compression_below_m {
-            State::Compression
+            if e < self.compression_stop_below_m {
+                State::CompressionStop
+            } else {
+                State::Compression
+            }
         } else {
             self.between
         }
@@ -81,23 +137,45 @@ impl LinkLaw {
         self.branches[state as usize]
     }
 
-    /// Stiffness of the link wherever it is not open `[N/m]`.
-    pub(crate) fn stiffness_at_work(&self) -> f64 {
-        let at_work = match self.between {
-            State::Open => State::Tension,
-            both => both,
-        };
-        self.branch(at_work).stiffness
+    /// How it takes up energy in tension and in compression.
+    pub(crate) fn uptakes(&self) -> [Uptake; 2] {
+        let both = self.branch(State::Both).stiffness;
+        [
+            ([State::Tension, State::TensionStop], self.tension_stop_above_m),
+            ([State::Compression, State::CompressionStop], self.compression_stop_below_m),
+        ]
+        .map(|([first, stop], stop_m)| {
+            let [k, k_stop] = [first, stop].map(|state| self.branch(state).stiffness);
+            if k_stop == 0.0 {
+                return Uptake {
+                    stiffness: if both > 0.0 { both } else { k },
+                    ..Uptake::default()
+                };
+            }
+            Uptake {
+                stiffness: k_stop,
+                softer: 1.0 / k - 1.0 / k_stop,
+                at_stop: (k * stop_m - self.branch(first).offset).abs(),
+            }
+        })
     }
 
     /// Strain energy at elongation `e` `[J]`.
     #[inline]
     pub(crate) fn energy(&self, e: f64) -> f64 {
-        let branch = self.branch(self.state(e));
+        let state = self.state(e);
+        let branch = self.branch(state);
         if branch.stiffness == 0.0 {
-            0.0
-        } else {
-            0.5 * (branch.stiffness * e - branch.offset).powi(2) / branch.stiffness
+            return 0.0;
+        }
+        let force = branch.stiffness * e - branch.offset;
+        let energy = 0.5 * force.powi(2) / branch.stiffness;
+        match state {
+            State::TensionStop | State::CompressionStop => {
+                let uptake = self.uptakes()[usize::from(state == State::CompressionStop)];
+                energy + 0.5 * uptake.at_stop.powi(2) * uptake.softer
+            }
+            _ => energy,
         }
     }
 }
@@ -113,7 +191,7 @@ pub(crate) fn ask(laws: &[LinkLaw], elongations: &[f64], asked: &mut [State]) {
 #[cfg(test)]
 mod tests {
     use super::LinkLaw;
-    use crate::connector::{Connection, State};
+    use crate::connector::{Connection, ConnectorLaw, State, Stop, Truss};
 
     const K: f64 = 2.0e7;
 
@@ -143,7 +221,7 @@ mod tests {
             assert!((law.energy(e) - 0.5 * n * n / K).abs() < 1e-9, "at {e} m");
         }
         assert_eq!(law.at_rest(), State::Open);
-        assert_eq!(law.stiffness_at_work(), K);
+        assert_eq!(law.uptakes().map(|of| of.stiffness), [K; 2]);
     }
 
     /// Without gaps and with both trusses at work `N = 2 k e`, whatever the sign.
@@ -154,6 +232,63 @@ mod tests {
             assert_eq!(law.state(e), State::Both);
             assert!((force(&law, e) - 2.0 * K * e).abs() < 1e-6);
         }
-        assert_eq!(law.stiffness_at_work(), 2.0 * K);
+        assert_eq!(law.uptakes().map(|of| of.stiffness), [2.0 * K; 2]);
+    }
+
+    /// A buffer of 2e6 N/m from 5 mm on and a stop of 5e7 N/m from 15 mm on, by hand: 20 kN at the stop, then 50 kN a
+    /// millimetre. The energy is the area below the force.
+    #[test]
+    fn stop_goes_on_where_the_buffer_ends() {
+        let buffer = |stiffness_n_m, stop| Truss {
+            stiffness_n_m,
+            gap_m: 0.005,
+            stop,
+        };
+        let stop = Stop {
+            stiffness_n_m: 5e7,
+            gap_m: 0.015,
+        };
+        let law = LinkLaw::new(&ConnectorLaw::Gaps {
+            tension: buffer(0.0, None),
+            compression: buffer(2e6, Some(stop)),
+        });
+        for (e, state, n) in [
+            (1.0, State::Open, 0.0),
+            (-0.005, State::Open, 0.0),
+            (-0.010, State::Compression, -10_000.0),
+            (-0.015, State::Compression, -20_000.0),
+            (-0.016, State::CompressionStop, -70_000.0),
+        ] {
+            assert_eq!(law.state(e), state, "at {e} m");
+            assert!((force(&law, e) - n).abs() < 1e-6, "{} N at {e} m", force(&law, e));
+            let parts = 100_000;
+            let width = e / f64::from(parts);
+            let area: f64 = (0..parts).map(|i| force(&law, (f64::from(i) + 0.5) * width) * width).sum();
+            assert!((law.energy(e) - area).abs() < 1e-6 * area.max(1.0), "{} {area} J at {e} m", law.energy(e));
+        }
+        let [tension, compression] = law.uptakes();
+        assert_eq!((tension.stiffness, compression.stiffness), (0.0, 5e7));
+    }
+
+    /// A branch of stiffness 0 is never entered, however far the link goes.
+    #[test]
+    fn lost_link_never_works() {
+        let none = Truss {
+            stiffness_n_m: 0.0,
+            gap_m: 0.0,
+            stop: None,
+        };
+        for law in [
+            ConnectorLaw::Linear { stiffness_n_m: 0.0 },
+            ConnectorLaw::Gaps {
+                tension: none,
+                compression: none,
+            },
+        ] {
+            let law = LinkLaw::new(&law);
+            for e in [-10.0, 0.0, 10.0] {
+                assert_eq!((law.state(e), law.energy(e)), (State::Open, 0.0));
+            }
+        }
     }
 }

@@ -7,7 +7,7 @@ mod link;
 mod warm;
 
 use crate::connector::State;
-pub(crate) use link::{LinkLaw, ask};
+pub(crate) use link::{LinkLaw, Uptake, ask};
 use nalgebra::{DMatrix, DVector};
 pub(crate) use warm::WarmContact;
 

@@ -7,7 +7,7 @@ use super::energy::Terms;
 use super::lane_array::LaneArray;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
-use crate::contact::LinkLaw;
+use crate::contact::{LinkLaw, Uptake};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -23,11 +23,59 @@ pub(super) struct Connectors {
     /// Elongation `[m]`, and in the step under way first without, then with its forces.
     e: LaneArray,
     pub(super) e_now: LaneArray,
-    /// `1 / (2 k)` of the first connector at work, and each one's compliance over the first one's.
+    /// `1 / (2 k)` of the first connector that works at all.
     half_compliance: LaneArray,
-    relative_compliance: LaneArray,
+    /// How each one takes up energy in tension and in compression, over that of the first.
+    tension: UptakeLanes,
+    compression: UptakeLanes,
+    /// Lanes of which a connector takes up energy in one sense as it does not in the other, or has a stop.
+    uneven: Vec<bool>,
     /// Those that pull or push in any lane.
     active: Vec<usize>,
+}
+
+/// How the connectors of every lane take up energy in one sense.
+#[derive(Debug, Clone)]
+struct UptakeLanes {
+    /// Compliance of the last branch, and by how much a buffer before it is softer, over the compliance of the lane's first.
+    relative_compliance: LaneArray,
+    softer: LaneArray,
+    /// Force at which the stop is met `[N]`.
+    at_stop: LaneArray,
+}
+
+impl UptakeLanes {
+    fn new(connectors: usize, lanes: usize) -> Self {
+        let zeros = || LaneArray::new(connectors, lanes);
+        Self {
+            relative_compliance: zeros(),
+            softer: zeros(),
+            at_stop: zeros(),
+        }
+    }
+
+    /// Takes what a connector does in a lane whose first one has stiffness `first` `[N/m]`.
+    fn take(&mut self, connector: usize, lane: usize, of: Uptake, first: f64) {
+        let works = of.stiffness > 0.0;
+        *self.relative_compliance.at_mut(connector, lane) = if works { first / of.stiffness } else { 0.0 };
+        *self.softer.at_mut(connector, lane) = first * of.softer;
+        *self.at_stop.at_mut(connector, lane) = of.at_stop;
+    }
+
+    /// What a connector has here in lanes where it is in this sense, and in the `other` elsewhere.
+    #[inline(always)]
+    fn of_sense<S: Simd>(&self, o: Ops<S>, here: S::m64s, other: &Self, i: usize) -> [S::f64s; 3] {
+        let (a, b) = (self, other);
+        [
+            o.0.select_f64s(
+                here,
+                a.relative_compliance.vectors::<S>()[i],
+                b.relative_compliance.vectors::<S>()[i],
+            ),
+            o.0.select_f64s(here, a.softer.vectors::<S>()[i], b.softer.vectors::<S>()[i]),
+            o.0.select_f64s(here, a.at_stop.vectors::<S>()[i], b.at_stop.vectors::<S>()[i]),
+        ]
+    }
 }
 
 impl Connectors {
@@ -41,7 +89,9 @@ impl Connectors {
             e: zeros(),
             e_now: zeros(),
             half_compliance: LaneArray::new(1, lanes),
-            relative_compliance: zeros(),
+            tension: UptakeLanes::new(sizes.connectors, lanes),
+            compression: UptakeLanes::new(sizes.connectors, lanes),
+            uneven: vec![false; lanes],
             active: Vec::with_capacity(sizes.connectors),
         }
     }
@@ -64,10 +114,13 @@ impl Connectors {
 
     /// Takes the laws of a lane's connectors.
     pub(super) fn take_laws(&mut self, lane: usize, laws: &[LinkLaw]) {
-        let first = laws.first().map_or(1.0, LinkLaw::stiffness_at_work);
+        let uptakes = || laws.iter().map(LinkLaw::uptakes);
+        let first = uptakes().flatten().map(|of| of.stiffness).find(|k| *k > 0.0).unwrap_or(1.0);
         *self.half_compliance.at_mut(0, lane) = 0.5 / first;
-        for (i, law) in laws.iter().enumerate() {
-            *self.relative_compliance.at_mut(i, lane) = first / law.stiffness_at_work();
+        self.uneven[lane] = uptakes().any(|[tension, compression]| tension != compression || tension.softer != 0.0);
+        for (i, [tension, compression]) in uptakes().enumerate() {
+            self.tension.take(i, lane, tension, first);
+            self.compression.take(i, lane, compression, first);
         }
     }
 
@@ -126,18 +179,30 @@ impl Connectors {
         std::mem::swap(&mut self.rn, &mut self.rn_now);
     }
 
-    /// Strain energy, the sum of `1/2 N^2 / k` of the branches at work.
+    /// Strain energy, the sum of `1/2 N^2 / k` of the branches at work, and what buffers before their stops have beside.
     #[inline(always)]
     pub(super) fn energy<S: Simd>(&self, o: Ops<S>) -> S::f64s {
         let mut squares = o.splat(0.0);
-        for (n, relative) in self
-            .n
-            .vectors::<S>()
-            .iter()
-            .zip(self.relative_compliance.vectors::<S>())
-        {
-            squares = o.fma(o.mul(*relative, *n), *n, squares);
+        let n = self.n.vectors::<S>();
+        if self.uneven.contains(&true) {
+            for (i, n) in n.iter().enumerate() {
+                squares = self.uneven_square(o, i, *n, squares);
+            }
+        } else {
+            for (n, relative) in n.iter().zip(self.tension.relative_compliance.vectors::<S>()) {
+                squares = o.fma(o.mul(*relative, *n), *n, squares);
+            }
         }
         o.mul(squares, self.half_compliance.vectors::<S>()[0])
+    }
+
+    /// Adds the square of one connector whose senses may differ; of one whose senses do not, the same bits as without looking.
+    #[inline(always)]
+    fn uneven_square<S: Simd>(&self, o: Ops<S>, i: usize, n: S::f64s, squares: S::f64s) -> S::f64s {
+        let pulls = o.0.less_than_f64s(o.splat(0.0), n);
+        let [relative, softer, at_stop] = self.tension.of_sense(o, pulls, &self.compression, i);
+        let squares = o.fma(o.mul(relative, n), n, squares);
+        let buffered = o.0.min_f64s(o.abs(n), at_stop);
+        o.fma(o.mul(softer, buffered), buffered, squares)
     }
 }

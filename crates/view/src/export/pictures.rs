@@ -68,8 +68,8 @@ impl Pictures {
         let now = &state.connectors;
         let of_connectors = now.iter().map(|connector| match connector.state {
             State::Open => 0,
-            State::Compression => 1,
-            State::Tension => 2,
+            State::Compression | State::CompressionStop => 1,
+            State::Tension | State::TensionStop => 2,
             State::Both => sense(connector.force_n),
         });
         let states = of_connectors.chain(hinges.iter().map(|&force_n| sense(force_n)));

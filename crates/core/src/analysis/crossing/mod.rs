@@ -12,7 +12,7 @@ mod step;
 use super::AnalysisError;
 use super::modes::Rayleigh;
 use crate::bridge::{Bridge, Track};
-use crate::connector::Connection;
+use crate::connector::{Connection, OwnLaws};
 use crate::contact::LinkLaw;
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
@@ -47,6 +47,8 @@ pub struct Crossing {
     pub connection: Connection,
     /// Stiffness of one truss `[N/m]`.
     pub connector_stiffness_n_m: f64,
+    /// Connectors that have laws of their own in place of these.
+    pub own_laws: OwnLaws,
     /// Weight of the vehicle `[N]`.
     pub load_n: f64,
     /// Speed `[m/s]`.
@@ -60,7 +62,12 @@ pub struct Crossing {
 impl Crossing {
     /// The law of each of so many connectors.
     fn laws(&self, connectors: usize) -> Vec<LinkLaw> {
-        vec![LinkLaw::connector(self.connector_stiffness_n_m, self.connection); connectors]
+        LinkLaw::connectors(
+            connectors,
+            self.connector_stiffness_n_m,
+            self.connection,
+            &self.own_laws,
+        )
     }
 }
 

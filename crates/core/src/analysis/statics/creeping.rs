@@ -138,6 +138,7 @@ mod tests {
                 gap_compression_m: 0.0005,
             },
             connector_stiffness_n_m: factor * design.connectors.stiffness_n_m,
+            own_laws: [].into(),
             load_n: 230_300.0,
             load_x_m: 0.0,
         };

@@ -7,7 +7,7 @@ mod creeping;
 use super::AnalysisError;
 use super::snapshot::{Snapshot, connectors, wheels};
 use crate::bridge::{Bridge, Load, VehiclePlacement};
-use crate::connector::{Connection, State};
+use crate::connector::{Connection, OwnLaws, State};
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::flexibility::Flexibility;
@@ -24,6 +24,8 @@ pub struct StaticCase {
     pub connection: Connection,
     /// Stiffness of one truss `[N/m]`.
     pub connector_stiffness_n_m: f64,
+    /// Connectors that have laws of their own in place of these.
+    pub own_laws: OwnLaws,
     /// Weight of the vehicle `[N]`.
     pub load_n: f64,
     /// Place of the vehicle's centre `[m]`.
@@ -33,7 +35,12 @@ pub struct StaticCase {
 impl StaticCase {
     /// The law of each of so many connectors.
     fn laws(&self, connectors: usize) -> Vec<LinkLaw> {
-        vec![LinkLaw::connector(self.connector_stiffness_n_m, self.connection); connectors]
+        LinkLaw::connectors(
+            connectors,
+            self.connector_stiffness_n_m,
+            self.connection,
+            &self.own_laws,
+        )
     }
 }
 
