@@ -199,8 +199,8 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
             for connector in &state.connectors {
                 let sense = match connector.state {
                     State::Open => connector.force_n == 0.0,
-                    State::Tension => connector.force_n >= 0.0,
-                    State::Compression => connector.force_n <= 0.0,
+                    State::Tension | State::TensionStop => connector.force_n >= 0.0,
+                    State::Compression | State::CompressionStop => connector.force_n <= 0.0,
                     State::Both => false,
                 };
                 assert!(sense, "{connector:?}");

@@ -4,7 +4,7 @@
 
 use super::arrays::{CellKind, Columns, type_of};
 use super::frame::ArrowFrame;
-use super::registry::{Column, ColumnSource, HistorySample, RowOf, When};
+use super::registry::{Column, ColumnSource, HistorySample, JointRow, RowOf, When};
 use super::table::{Table, TableName};
 use crate::JobRecord;
 use pontoon_plan::design::{AxisValues, NamedAxis, Varies};
@@ -64,6 +64,7 @@ impl Layout {
             TableName::Connectors => record.connectors && loaded,
             TableName::Histories => record.histories.asked() && loaded,
             TableName::Modes => !loaded,
+            TableName::Joints => study.wear.is_some() && loaded,
         };
         let crossings = || jobs.iter().filter_map(Job::as_crossing);
         Self {
@@ -111,6 +112,10 @@ impl Layout {
                     let rows = rows(records, |record| &record.modes);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
+                ColumnSource::Joint(of) => {
+                    let rows = jobs.iter().flat_map(worn_joints);
+                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                }
                 ColumnSource::Sample(of) => {
                     let samples = records.iter().flat_map(samples);
                     columns.push(column.name, column.cells, samples.map(|sample| of(&sample)));
@@ -148,6 +153,16 @@ fn rows<'a, R: 'a>(
     records.iter().flat_map(move |record| {
         let job = record.job;
         of(record).iter().map(move |row| RowOf { job, row })
+    })
+}
+
+/// The joints of a job with the gaps that they have in it.
+fn worn_joints(job: &Job) -> impl Iterator<Item = JointRow> {
+    let number = job.number;
+    job.joint_gaps_m().map(move |(joint, gaps_m)| JointRow {
+        job: number,
+        joint,
+        gaps_m,
     })
 }
 

@@ -68,6 +68,19 @@ pub(crate) enum ColumnSource {
     Sample(for<'a> fn(&HistorySample<'a>) -> Cell<'a>),
     /// A mode.
     Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>),
+    /// A worn joint.
+    Joint(fn(&JointRow) -> Cell<'static>),
+}
+
+/// A worn joint of a job.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointRow {
+    /// The job's number.
+    pub(crate) job: usize,
+    /// The joint's number.
+    pub(crate) joint: usize,
+    /// Its gaps, tension and compression `[m]`.
+    pub(crate) gaps_m: [f64; 2],
 }
 
 /// A row of a table with its job.
@@ -305,6 +318,15 @@ const fn of_sample(
     column(TableName::Histories, (name, cells), names, ColumnSource::Sample(of))
 }
 
+const fn of_joint(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&JointRow) -> Cell<'static>,
+) -> Column {
+    column(TableName::Joints, (name, cells), names, ColumnSource::Joint(of))
+}
+
 const fn of_mode(
     name: &'static str,
     cells: CellKind,
@@ -450,6 +472,11 @@ pub const COLUMNS: &[Column] = &[
     of_mode("torsion_share", Numbers, ("torsion share", "share of torsion"), |r| r.row.torsion_share.into()).decimals(4),
     of_mode("horizontal_share", Numbers, ("horizontal share", "horizontal share"), |r| r.row.horizontal_share.into()).decimals(4),
     of_mode("axial_share", Numbers, ("axial share", "share along the bridge"), |r| r.row.axial_share.into()).decimals(4),
+
+    of_joint("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_joint("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.joint.into()).role(ColumnRole::Key),
+    of_joint("gap_tension_m", Numbers, ("tension gap", "tension gap of its first connector, wear included"), |r| r.gaps_m[0].into()).unit("m"),
+    of_joint("gap_compression_m", Numbers, ("compression gap", "compression gap of its first connector, wear included"), |r| r.gaps_m[1].into()).unit("m"),
 ];
 
 impl Column {

@@ -27,16 +27,19 @@ pub enum TableName {
     Histories,
     /// One row a mode of a job.
     Modes,
+    /// One row a joint of a job whose joints are worn.
+    Joints,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
         Self::Histories,
         Self::Modes,
+        Self::Joints,
     ];
 
     /// Its name as files and references have it.
@@ -47,6 +50,7 @@ impl TableName {
             Self::Connectors => "connectors",
             Self::Histories => "histories",
             Self::Modes => "modes",
+            Self::Joints => "joints",
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
-use super::{Model, Provenance};
+use super::{Joints, Model, Provenance};
 use crate::input::{InvalidInput, Problem, apart, not_negative, positive, within};
 use crate::module::{ModuleDesign, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
@@ -44,6 +44,9 @@ pub struct BridgeDesign {
     pub hinges: Hinges,
     /// Connectors at the deck of every joint.
     pub connectors: Connectors,
+    /// What single joints have of their own.
+    #[serde(default, skip_serializing_if = "Joints::is_empty")]
+    pub joints: Joints,
     /// Supports of the two ends.
     #[serde(default)]
     pub supports: Supports,
@@ -194,6 +197,7 @@ impl BridgeDesign {
         let half = 0.5 * self.module.breadth_m;
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
+        self.joints.check(self)?;
         for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
             if let Some(value) = value {
                 positive(key, value)?;
@@ -270,7 +274,7 @@ impl BridgeDesign {
     /// # Errors
     /// [`InvalidInput`] with the key's path.
     pub fn check_held(&self) -> Result<(), InvalidInput> {
-        let single = self.hinges.y_m.len() == 1;
+        let single = (2..=self.modules).any(|joint| self.hinges_of(joint).y_m.len() == 1) || self.hinges.y_m.len() == 1;
         if single && self.modules > 1 {
             let allowed = "at least two places in a static case: modules turn about a single hinge";
             return Err(InvalidInput::new("hinges.y_m", "one place", allowed).because(Problem::Conflict));
@@ -351,7 +355,7 @@ impl BridgeDesign {
 
     /// Lines across that a module's mesh has for its joints: places of hinges, then of connectors `[m]`.
     pub fn joint_lines_y_m(&self) -> Vec<f64> {
-        self.hinges.y_m.iter().chain(&self.connectors.y_m).copied().collect()
+        self.hinge_lines_y_m().iter().chain(&self.connectors.y_m).copied().collect()
     }
 
     /// Number of positions: the module ends.
@@ -394,7 +398,7 @@ fn metres(length_m: f64) -> f64 {
     (length_m * 1e3).round() / 1e3
 }
 
-fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
+pub(super) fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
     if y.is_empty() {
         return Err(InvalidInput::new(key, "an empty list", "at least one place across"));
     }

@@ -23,7 +23,7 @@ pub(super) fn check_fit(design: &BridgeDesign, grid: &Grid) -> Result<(), Invali
         }
     }
     for (key, places) in [
-        ("hinges.y_m", &design.hinges.y_m),
+        ("hinges.y_m", &design.hinge_lines_y_m()),
         ("connectors.y_m", &design.connectors.y_m),
     ] {
         if let Some(i) = places.iter().position(|&y| grid.y_line(y).is_none()) {

@@ -64,8 +64,10 @@ pub struct MeshedBridge {
     /// The motion of a condensed module's nodes in terms of its dofs: a row a translation, node after node, and below them a
     /// row a rotation.
     condensed: Option<Mat<f64>>,
-    /// Stiffness and mass of a module in the rows of its left end's hinges along x.
+    /// Stiffness and mass of a module in the rows of its left end along x, at each place of hinges.
     hinge_rows: Vec<[SparseRow; 2]>,
+    /// Which of these each joint's hinges are at.
+    hinge_places: Vec<Vec<usize>>,
 }
 
 impl MeshedBridge {
@@ -96,11 +98,12 @@ impl MeshedBridge {
             })
         });
         let [left, right] = [Side::Left, Side::Right].map(|side| module.end_line(side));
-        let links = |places: &[f64], bottom: bool| -> Vec<Link> {
+        let links = |bottom: bool| -> Vec<Link> {
             let at = |ix: usize, iy: usize| if bottom { grid.bottom(ix, iy) } else { grid.deck(ix, iy) };
-            let across: Vec<(f64, usize)> = places.iter().filter_map(|&y| Some((y, grid.y_line(y)?))).collect();
             let of_joint = |j: usize| {
-                across.iter().map(move |&(y_m, iy)| Link {
+                let places = if bottom { &design.hinges_of(j + 1).y_m } else { &design.connectors.y_m };
+                let across = places.iter().filter_map(|&y| Some((y, grid.y_line(y)?)));
+                across.map(move |(y_m, iy)| Link {
                     joint: j + 1,
                     y_m,
                     nodes: [(j - 1) * own + at(right, iy).0, j * own + at(left, iy).0],
@@ -116,20 +119,26 @@ impl MeshedBridge {
             let dof = |i: usize| (i / 3 % own) * DOFS_PER_NODE + i / 3 / own * 3 + i % 3;
             Mat::from_fn(DOFS_PER_NODE * own, t.ncols(), |i, j| t[(dof(i), j)])
         });
-        let hinges = design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y));
-        let hinge_rows = hinges
-            .filter_map(|iy| module.dof(grid.bottom(left, iy), X))
+        let lines: Vec<usize> = design.hinge_lines_y_m().iter().filter_map(|&y| grid.y_line(y)).collect();
+        let hinge_places = (2..=design.modules).map(|joint| {
+            let of_joint = design.hinges_of(joint).y_m.iter().filter_map(|&y| grid.y_line(y));
+            of_joint.filter_map(|iy| lines.iter().position(|line| *line == iy)).collect()
+        });
+        let hinge_rows = lines
+            .iter()
+            .filter_map(|&iy| module.dof(grid.bottom(left, iy), X))
             .map(|dof| [&module.k, &module.m].map(|matrix| SparseRow(matrix.column(dof).collect())));
         Ok(Self {
             nodes_m: nodes_m.collect(),
             shells: shells.collect(),
             beams: beams.collect(),
-            connectors: links(&design.connectors.y_m, false),
-            hinges: links(&design.hinges.y_m, true),
+            connectors: links(false),
+            hinges: links(true),
             deck: deck.collect(),
             map: Row::number(design, module, ends).map,
             condensed,
             hinge_rows: hinge_rows.collect(),
+            hinge_places: hinge_places.collect(),
         })
     }
 
@@ -182,13 +191,14 @@ impl MeshedBridge {
             let term = |&(i, v): &(usize, f64)| map[i].map_or(0.0, |dof| v * x[dof]);
             row.0.iter().map(term).sum()
         };
-        let of_module = |map: &Vec<Option<usize>>| -> Vec<f64> {
+        let of_module = |(map, places): (&Vec<Option<usize>>, &Vec<usize>)| -> Vec<f64> {
             let force = |[k, m]: &[SparseRow; 2]| {
                 0.0 - of(map, k, elastic) - inertial.map_or(0.0, |inertial| of(map, m, inertial))
             };
-            self.hinge_rows.iter().map(force).collect()
+            places.iter().map(|&place| force(&self.hinge_rows[place])).collect()
         };
-        self.map.iter().skip(1).flat_map(of_module).collect()
+        let right_of_joints = self.map.iter().skip(1);
+        right_of_joints.zip(&self.hinge_places).flat_map(of_module).collect()
     }
 }
 

@@ -5,6 +5,7 @@
 mod assembly;
 mod design;
 mod fit;
+mod joints;
 mod load;
 mod meshed;
 mod placement;
@@ -16,6 +17,7 @@ mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
 pub use design::{BridgeDesign, Condensation, Connectors, Direction, DraftBuoyancy, Hinges, Supports, Todd};
+pub use joints::{JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 pub(crate) use placement::VehiclePlacement;

@@ -304,7 +304,7 @@ fn masters(design: &BridgeDesign, grid: &Grid) -> Vec<usize> {
     let (nx, ny) = (grid.x.len(), grid.y.len());
     let mut masters = BTreeSet::new();
     for ix in [0, nx - 1] {
-        for iy in design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y)) {
+        for iy in design.hinge_lines_y_m().iter().filter_map(|&y| grid.y_line(y)) {
             masters.extend([X, Y, Z].map(|d| grid.bottom(ix, iy).dof(d)));
         }
         for iy in design.connectors.y_m.iter().filter_map(|&y| grid.y_line(y)) {

@@ -36,7 +36,8 @@ impl<'a> Row<'a> {
         for j in 0..design.modules {
             let mut own: Vec<Option<Option<usize>>> = vec![None; module.dofs()];
             if j > 0 {
-                for &iy in &hinges {
+                let of_joint = design.hinges_of(j + 1).y_m.iter().filter_map(|&y| grid.y_line(y));
+                for iy in of_joint {
                     for direction in [X, Y, Z] {
                         let left = module.dof(grid.bottom(module.end_line(Side::Left), iy), direction);
                         let right = module.dof(grid.bottom(module.end_line(Side::Right), iy), direction);

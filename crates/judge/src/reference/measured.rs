@@ -87,7 +87,7 @@ fn against(table: TableName) -> &'static [Against] {
         TableName::Jobs | TableName::Connectors => &[Against::Speed],
         TableName::Positions => &[Against::X, Against::Speed],
         TableName::Histories => &[Against::Time],
-        TableName::Modes => &[],
+        TableName::Modes | TableName::Joints => &[],
     }
 }
 
@@ -95,7 +95,7 @@ impl MeasuredSpec {
     /// The column of `where` that fixes the place; none where the points have their own or are the whole bridge's.
     pub fn place(&self) -> Option<&'static str> {
         match (self.of.table, self.against) {
-            (TableName::Positions, Against::X) | (TableName::Jobs | TableName::Modes, _) => None,
+            (TableName::Positions, Against::X) | (TableName::Jobs | TableName::Modes | TableName::Joints, _) => None,
             (TableName::Positions | TableName::Histories, _) => Some("position"),
             (TableName::Connectors, _) => Some("joint"),
         }

@@ -73,6 +73,8 @@ pub enum JobAxis {
     LoadPlace,
     /// Weight of the vehicle.
     Load,
+    /// Seed of the wear of its joints.
+    WearSeed,
 }
 
 const fn job(axis: JobAxis, crossings: bool, statics: bool) -> Goes {
@@ -134,6 +136,13 @@ pub const NAMED_AXES: &[NamedAxis] = &[
     },
     numbers("load_x_m", "m", "load place", job(JobAxis::LoadPlace, false, true)),
     numbers("load_n", "N", "load", job(JobAxis::Load, true, true)),
+    NamedAxis {
+        name: "wear_seed",
+        unit: "",
+        label: "wear seed",
+        values: AxisValues::Counts,
+        goes: job(JobAxis::WearSeed, true, true),
+    },
 ];
 
 impl NamedAxis {
@@ -167,11 +176,13 @@ pub enum Root {
     Vehicle,
     /// The analysis.
     Analysis,
+    /// The wear of joints.
+    Wear,
 }
 
 impl Root {
     /// All documents.
-    pub const ALL: [Self; 3] = [Self::Bridge, Self::Vehicle, Self::Analysis];
+    pub const ALL: [Self; 4] = [Self::Bridge, Self::Vehicle, Self::Analysis, Self::Wear];
 
     /// How a path begins that leads into it.
     pub fn word(self) -> &'static str {
@@ -179,6 +190,7 @@ impl Root {
             Self::Bridge => "bridge",
             Self::Vehicle => "vehicle",
             Self::Analysis => "analysis",
+            Self::Wear => "wear",
         }
     }
 }
@@ -240,7 +252,7 @@ impl Axis {
                 varies,
             }),
             None => Err(Refusal {
-                allowed: "a short name or the path of a value in bridge, vehicle or analysis".to_owned(),
+                allowed: "a short name or the path of a value in bridge, vehicle, analysis or wear".to_owned(),
                 ..Refusal::unknown_key(file, key, name, known)
             }),
         }

@@ -37,11 +37,22 @@ pub enum Obstacle {
     },
 }
 
+/// The key of the one object whose entries are named by numbers; in a path they stand in brackets, `joints[3..14]`.
+const NUMBERED: &str = "joints";
+
+/// Whether a key is a number or a range of numbers, as those of [`NUMBERED`] are.
+fn is_numbered(key: &str) -> bool {
+    let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    key.split_once("..")
+        .map_or_else(|| number(key), |(first, last)| number(first) && number(last))
+}
+
 /// Steps as a path is written: `module.y_m[0]`.
 pub(super) fn join_steps(steps: &[PathStep]) -> String {
     let mut text = String::new();
     for step in steps {
         match step {
+            PathStep::Key(key) if is_numbered(key) => text.extend(["[", key, "]"]),
             PathStep::Key(key) if text.is_empty() => text.push_str(key),
             PathStep::Key(key) => text.extend([".", key]),
             PathStep::Place(place) => text.push_str(&format!("[{place}]")),
@@ -68,7 +79,12 @@ impl DocumentPath {
     /// Reads a path; `None` where it is not well formed or has more than a hundred steps.
     pub fn parse(text: &str) -> Option<Self> {
         let mut steps = Vec::new();
-        for segment in text.split('.') {
+        let mut inside = false;
+        let between_keys = |c: char| {
+            inside = c == '[' || (inside && c != ']');
+            c == '.' && !inside
+        };
+        for segment in text.split(between_keys) {
             let (key, mut places) = match segment.find('[') {
                 Some(i) => segment.split_at(i),
                 None => (segment, ""),
@@ -79,8 +95,11 @@ impl DocumentPath {
             steps.push(PathStep::Key(key.to_owned()));
             while !places.is_empty() {
                 let (place, rest) = places.strip_prefix('[')?.split_once(']')?;
-                let number: usize = place.parse().ok().filter(|n: &usize| n.to_string() == place)?;
-                steps.push(PathStep::Place(number));
+                steps.push(match place.parse() {
+                    Ok(number) if usize::to_string(&number) == place => PathStep::Place(number),
+                    _ if place.contains("..") && is_numbered(place) => PathStep::Key(place.to_owned()),
+                    _ => return None,
+                });
                 places = rest;
             }
         }
@@ -104,6 +123,7 @@ impl DocumentPath {
     pub fn get<'a>(&self, document: &'a Value) -> Option<&'a Value> {
         self.0.iter().try_fold(document, |at, step| match step {
             PathStep::Key(key) => at.get(key),
+            PathStep::Place(place) if at.is_object() => at.get(place.to_string()),
             PathStep::Place(place) => at.get(place),
         })
     }
@@ -114,7 +134,11 @@ impl DocumentPath {
     /// [`Obstacle`]: a list that is too short, a key of something that is not an object.
     pub fn set(&self, document: &mut Value, value: Value) -> Result<(), Obstacle> {
         let mut at = document;
-        for step in &self.0 {
+        let before = std::iter::once(None).chain(self.0.iter().map(Some));
+        for (step, before) in self.0.iter().zip(before) {
+            if at.is_null() && matches!(before, Some(PathStep::Key(key)) if key == NUMBERED) {
+                *at = Value::Object(Map::new());
+            }
             at = match (step, at) {
                 (PathStep::Key(key), Value::Object(map)) => map.entry(key.clone()).or_insert(Value::Null),
                 (PathStep::Key(key), at @ Value::Null) => {
@@ -122,6 +146,7 @@ impl DocumentPath {
                     &mut at[key]
                 }
                 (PathStep::Key(key), _) => return Err(Obstacle::NoObject(key.clone())),
+                (PathStep::Place(place), Value::Object(map)) => map.entry(place.to_string()).or_insert(Value::Null),
                 (PathStep::Place(place), Value::Array(list)) => {
                     let (place, length) = (*place, list.len());
                     list.get_mut(place).ok_or(Obstacle::NoPlace { place, length })?
@@ -139,7 +164,10 @@ pub fn leaves(prefix: &str, document: &Value, out: &mut Vec<String>) {
     match document {
         Value::Object(map) => map
             .iter()
-            .for_each(|(key, value)| leaves(&format!("{prefix}.{key}"), value, out)),
+            .for_each(|(key, value)| match is_numbered(key) {
+                true => leaves(&format!("{prefix}[{key}]"), value, out),
+                false => leaves(&format!("{prefix}.{key}"), value, out),
+            }),
         Value::Array(list) => {
             out.push(prefix.to_owned());
             list.iter()
@@ -184,6 +212,23 @@ mod tests {
         assert_eq!(document["x"]["y"], json!(1));
         assert!(path("l[1]").set(&mut document, json!(1)) == Err(Obstacle::NoPlace { place: 1, length: 1 }));
         assert!(path("l.k").set(&mut document, json!(1)).is_err());
+    }
+
+    #[test]
+    fn joints_are_named_by_numbers_in_brackets() {
+        let mut document = json!({"other": {"7": 1}});
+        for (text, value) in [("joints[7].a", 1), ("joints[3..14].a", 2), ("joints[7].b", 3)] {
+            path(text).set(&mut document, json!(value)).unwrap();
+            assert_eq!(path(text).get(&document), Some(&json!(value)), "{text}");
+        }
+        assert_eq!(document["joints"], json!({"7": {"a": 1, "b": 3}, "3..14": {"a": 2}}));
+        let mut out = Vec::new();
+        leaves("bridge", &document, &mut out);
+        let known = ["bridge.other[7]", "bridge.joints[7].a", "bridge.joints[7].b", "bridge.joints[3..14].a"];
+        assert_eq!(out, known);
+        for text in ["joints[3..]", "joints[..3]", "joints[3.14]", "joints[a..b]"] {
+            assert_eq!(DocumentPath::parse(text), None, "{text}");
+        }
     }
 
     #[test]

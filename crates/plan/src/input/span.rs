@@ -151,6 +151,15 @@ fn trail<'a, 'p>(root: &'a Value<'a>, path: &'p str) -> Vec<Way<'a, 'p>> {
 fn step<'a, 'p>(value: &'a Value<'a>, path: &'p str) -> Option<Way<'a, 'p>> {
     let after = |rest: &'p str| rest.strip_prefix('.').unwrap_or(rest);
     match value {
+        Value::Object(object) if path.starts_with('[') => {
+            let (name, rest) = path.strip_prefix('[')?.split_once(']')?;
+            let found = object.properties.iter().find(|p| p.name.as_str() == name)?;
+            Some(Way {
+                name: Some(range(&found.name)),
+                value: &found.value,
+                rest: after(rest),
+            })
+        }
         Value::Object(object) => {
             let begins = |property: &&ObjectProp<'a>| {
                 let rest = path.strip_prefix(property.name.as_str());

@@ -4,8 +4,8 @@
 
 use crate::design::{DesignPoint, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
-use crate::study_file::{Analysis, Study, filled_vehicle};
-use pontoon_core::bridge::{BridgeDesign, Supports};
+use crate::study_file::{Analysis, Study, WearSpec, filled_vehicle};
+use pontoon_core::bridge::{BridgeDesign, Joints, Supports};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::vehicle::Vehicle;
 use serde::Serialize;
@@ -26,7 +26,7 @@ pub struct BridgeEntry {
     pub document: Value,
     /// Hash of the document.
     pub hash: String,
-    /// Equal for bridges that differ in nothing but gaps (data of a job) and words.
+    /// Equal for bridges that differ in nothing but gaps, what joints have of their own connectors (data of a job) and words.
     pub structure_key: Arc<str>,
     /// Equal for bridges that have one operator: the connectors' stiffness is no part of it either.
     pub operator_key: Arc<str>,
@@ -61,12 +61,22 @@ pub struct AnalysisEntry {
     pub key: Arc<str>,
 }
 
+/// The wear of joints after the axes.
+#[derive(Debug)]
+pub struct WearEntry {
+    /// How gaps scatter.
+    pub wear: WearSpec,
+    /// The same as a document.
+    pub document: Value,
+}
+
 /// The documents read so far.
 #[derive(Debug, Default)]
 pub(super) struct Documents {
     bridges: Interned<BridgeEntry>,
     vehicles: Interned<VehicleEntry>,
     analyses: Interned<AnalysisEntry>,
+    wears: Interned<WearEntry>,
 }
 
 /// What was asked for: the text of the changes, nothing where there are none, and bits of what else they are read with.
@@ -195,16 +205,42 @@ impl Documents {
     }
 }
 
+impl Documents {
+    /// The wear of a point; none where its study has none.
+    pub(super) fn wear(
+        &mut self,
+        study: &Study,
+        point: &DesignPoint<'_>,
+    ) -> Result<Option<Arc<WearEntry>>, Refusal> {
+        let changes = Changes::of(study, point, Root::Wear);
+        if study.wear.is_none() && changes.list.is_empty() {
+            return Ok(None);
+        }
+        let read = || {
+            let base = study.wear.unwrap_or_default();
+            let wear = changes.applied(&base)?.unwrap_or(base);
+            wear.check().map_err(|e| changes.refusal(e))?;
+            let document = to_value(&wear);
+            Ok((canonical_text(&document), (wear, document)))
+        };
+        let build = |_, (wear, document)| WearEntry { wear, document };
+        self.wears.get((0, changes.text()), read, build).map(Some)
+    }
+}
+
 fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry {
     let hash_of = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex();
     let hash = hash_of(&document).to_string();
     let mut neutral = design.without_words();
     neutral.connectors.gap_tension_m = 0.0;
     neutral.connectors.gap_compression_m = 0.0;
+    neutral.joints = Joints::structure(&design);
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
     let operator_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.modules = 1;
+    neutral.hinges.y_m = design.hinge_lines_y_m();
+    neutral.joints = Joints::default();
     neutral.supports = Supports::default();
     neutral.draft_m = None;
     neutral.freeboard_m = None;

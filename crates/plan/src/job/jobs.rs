@@ -2,15 +2,16 @@
 //!
 //! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a fingerprint a job.
 
-use super::documents::{BridgeEntry, Documents, VehicleEntry};
+use super::documents::{BridgeEntry, Documents, VehicleEntry, WearEntry};
 use super::seen::SeenJobs;
-use super::{Job, MOST_STEPS, StandingLoad, Task};
+use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study, check_histories};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{InvalidInput, bound};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
 pub struct Jobs<'a> {
@@ -84,17 +85,31 @@ impl Jobs<'_> {
                 (Task::Modes, Connection::Linear, 0.0)
             }
         };
-        Ok(Job {
+        let worn = self.documents.wear(self.study, point)?;
+        let worn = short.worn(worn, connection, &bridge)?;
+        let job = Job {
             number: self.seen.len(),
             bridge,
             vehicle,
             analysis,
             connection,
             load_n,
+            worn,
             task,
-        })
+        };
+        match job.checked_laws() {
+            Ok(_) => Ok(job),
+            Err(refused) => Err(Short {
+                study: self.study,
+                point,
+            }
+            .of_bridge(refused)),
+        }
     }
 }
+
+/// The largest seed of wear: the whole numbers up to it are floating-point numbers.
+const MOST_SEED: f64 = 9_007_199_254_740_992.0;
 
 /// The axes with short names of one point.
 struct Short<'a> {
@@ -205,6 +220,40 @@ impl Short<'_> {
                 Err(refused.because(RefusalKind::WrongType))
             }
         }
+    }
+
+    /// The wear of the joints, checked against the gaps that it scatters about.
+    fn worn(
+        &self,
+        entry: Option<Arc<WearEntry>>,
+        connection: Connection,
+        bridge: &BridgeEntry,
+    ) -> Result<Option<Worn>, Refusal> {
+        let Some(entry) = entry else {
+            self.absent(JobAxis::WearSeed, "no seed of a wear that the study does not have")?;
+            return Ok(None);
+        };
+        let seed = self.required(JobAxis::WearSeed)?;
+        if !(0.0..=MOST_SEED).contains(&seed) || seed.fract() != 0.0 {
+            return Err(self.refuse(JobAxis::WearSeed, seed, format!("a whole number from 0 to {MOST_SEED}")));
+        }
+        let Connection::Nonlinear {
+            gap_tension_m,
+            gap_compression_m,
+        } = connection
+        else {
+            return Ok(None);
+        };
+        let design = &bridge.design;
+        for joint in 2..=design.modules {
+            for &y_m in &design.connectors.y_m {
+                let nominal = design.nominal_gaps_m(joint, y_m, [gap_tension_m, gap_compression_m]);
+                let checked = entry.wear.check_against(nominal);
+                checked.map_err(|e| Refusal::of(&self.study.file, "wear", e))?;
+            }
+        }
+        let seed = seed as u64;
+        Ok(Some(Worn { entry, seed }))
     }
 
     fn speed(&self) -> Result<f64, Refusal> {

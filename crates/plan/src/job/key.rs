@@ -3,6 +3,7 @@
 //! Knows all that a job's record depends on beside the program. Does not know its number: a study may grow.
 
 use super::{Job, Task};
+use pontoon_core::connector::ConnectorLaw;
 
 /// What a job is known by from run to run: equal for jobs whose numbers are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,6 +24,32 @@ impl std::fmt::Display for JobKey {
     }
 }
 
+/// Equal for equal laws of single connectors; none where no connector has one of its own.
+pub(super) fn laws_key(laws: &[(usize, ConnectorLaw)]) -> Option<[u8; 32]> {
+    if laws.is_empty() {
+        return None;
+    }
+    let mut hasher = blake3::Hasher::new();
+    let mut number = |x: f64| {
+        hasher.update(&(x + 0.0).to_bits().to_le_bytes());
+    };
+    for (place, law) in laws {
+        number(*place as f64);
+        match law {
+            ConnectorLaw::Linear { stiffness_n_m } => number(*stiffness_n_m),
+            ConnectorLaw::Gaps { tension, compression } => {
+                for truss in [tension, compression] {
+                    let (stop_gap_m, stop_n_m) = truss.stop.map_or((-1.0, 0.0), |s| (s.gap_m, s.stiffness_n_m));
+                    [truss.stiffness_n_m, truss.gap_m, stop_gap_m, stop_n_m]
+                        .into_iter()
+                        .for_each(&mut number);
+                }
+            }
+        }
+    }
+    Some(*hasher.finalize().as_bytes())
+}
+
 /// Equal for jobs that leave the same record, in whatever study and at whatever number they stand.
 pub(super) fn key_of(job: &Job) -> JobKey {
     let mut hasher = blake3::Hasher::new();
@@ -41,6 +68,12 @@ pub(super) fn key_of(job: &Job) -> JobKey {
             number(compression);
         }
     }
+    if let Some(laws) = job.laws_key() {
+        hasher.update(&laws);
+    }
+    let mut number = |x: f64| {
+        hasher.update(&(x + 0.0).to_bits().to_le_bytes());
+    };
     number(job.load_n);
     let (kind, of_kind) = match job.task {
         Task::Crossing { speed_m_s } => (0.0, speed_m_s),

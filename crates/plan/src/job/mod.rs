@@ -20,7 +20,7 @@ mod plan;
 mod seen;
 mod shard;
 
-pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry};
+pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry, WearEntry};
 pub use doubts::Doubts;
 pub use jobs::Jobs;
 pub use key::JobKey;
@@ -32,7 +32,9 @@ use crate::input::Cell;
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, Solver, VerifySpec};
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::Rayleigh;
-use pontoon_core::connector::Connection;
+use pontoon_core::bridge::JointGaps;
+use pontoon_core::connector::{Connection, OwnLaws};
+use pontoon_core::input::InvalidInput;
 use pontoon_core::response::Record;
 use pontoon_core::vehicle::Inertia;
 use std::sync::Arc;
@@ -52,8 +54,19 @@ pub struct Job {
     pub connection: Connection,
     /// Weight of the vehicle `[N]`; 0 where none is asked for.
     pub load_n: f64,
+    /// Wear of its joints; none where gaps have no meaning or do not scatter.
+    pub worn: Option<Worn>,
     /// What is asked.
     pub task: Task,
+}
+
+/// Worn joints.
+#[derive(Debug, Clone)]
+pub struct Worn {
+    /// How gaps scatter.
+    pub entry: Arc<WearEntry>,
+    /// The seed that they are drawn from.
+    pub seed: u64,
 }
 
 /// What a job asks.
@@ -155,6 +168,7 @@ impl<'a> CrossingJob<'a> {
         Crossing {
             connection: self.job.connection,
             connector_stiffness_n_m: self.job.bridge.design.connectors.stiffness_n_m,
+            own_laws: self.job.own_laws(),
             load_n: self.job.load_n,
             speed_m_s: self.speed_m_s,
             tail_s: self.analysis.tail_s,
@@ -240,6 +254,40 @@ impl Job {
         }
     }
 
+    /// The gaps (tension, compression) of each joint from 2 on, its wear included `[m]`: of its connector at the first place of
+    /// `connectors.y_m`; none in the linear connection.
+    pub fn joint_gaps_m(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let design = &self.bridge.design;
+        let of_job = self.gaps_m();
+        (2..=design.modules).filter_map(move |joint| {
+            let (tension, compression) = of_job?;
+            let nominal = design.nominal_gaps_m(joint, design.connectors.y_m[0], [tension, compression]);
+            Some((joint, self.worn_m(joint, nominal)))
+        })
+    }
+
+    fn worn_m(&self, joint: usize, nominal_m: [f64; 2]) -> [f64; 2] {
+        let worn = self.worn.as_ref();
+        worn.map_or(nominal_m, |worn| worn.entry.wear.worn_m(worn.seed, joint, nominal_m))
+    }
+
+    /// The connectors that have laws of their own in this job; checked where the job was made.
+    pub fn own_laws(&self) -> OwnLaws {
+        self.checked_laws().unwrap_or_default()
+    }
+
+    /// Equal for jobs whose single connectors have equal laws; none where no connector has one of its own.
+    pub fn laws_key(&self) -> Option<[u8; 32]> {
+        key::laws_key(&self.own_laws())
+    }
+
+    /// The connectors that have laws of their own.
+    fn checked_laws(&self) -> Result<OwnLaws, InvalidInput> {
+        let worn = |joint: usize, nominal_m: [f64; 2]| self.worn_m(joint, nominal_m);
+        let worn = self.worn.is_some().then_some(&worn as &JointGaps<'_>);
+        self.bridge.design.own_laws(self.connection, worn)
+    }
+
     /// The value of an axis as its type has it, whole where that is a count; nothing where the axis has no meaning for the
     /// job. A path's value is the one of the job's document, which is what the axis set.
     pub fn cell(&self, axis: &Varies) -> Cell<'_> {
@@ -250,6 +298,10 @@ impl Job {
                     Root::Bridge => &self.bridge.document,
                     Root::Vehicle => &self.vehicle.document,
                     Root::Analysis => &self.analysis.document,
+                    Root::Wear => match &self.worn {
+                        Some(worn) => &worn.entry.document,
+                        None => return Cell::Nothing,
+                    },
                 };
                 path.get(document).map_or(Cell::Nothing, Cell::of)
             }
@@ -276,6 +328,7 @@ impl Job {
             (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),
             (JobAxis::LoadPosition, Task::Static(load)) => load.position.into(),
             (JobAxis::LoadPlace, Task::Static(load)) => load.x_m.into(),
+            (JobAxis::WearSeed, _) => self.worn.as_ref().map(|worn| worn.seed as f64).into(),
             _ => Cell::Nothing,
         }
     }
@@ -296,6 +349,7 @@ impl Job {
             gaps: self
                 .gaps_m()
                 .map(|(tension, compression)| [tension, compression].map(bits)),
+            laws: self.laws_key(),
             load: bits(self.load_n),
             task: bits(match self.task {
                 Task::Crossing { speed_m_s } => speed_m_s,
@@ -313,6 +367,7 @@ pub(super) struct Identity {
     vehicle: usize,
     analysis: usize,
     gaps: Option<[u64; 2]>,
+    laws: Option<[u8; 32]>,
     load: u64,
     task: u64,
 }

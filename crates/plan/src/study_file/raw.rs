@@ -3,6 +3,7 @@
 //! Knows what a person may write. Does not know ranges or which keys go together: `analysis` and `study` make of this what a
 //! run is asked.
 
+use super::wear::WearSpec;
 use crate::design::Design;
 use pontoon_core::bridge::Model;
 use pontoon_core::response::Record;
@@ -30,6 +31,9 @@ pub struct StudySpec {
     pub vehicle: VehicleDesign,
     /// What is asked and how it is computed.
     pub analysis: AnalysisSpec,
+    /// How the gaps of joints scatter, drawn from the axis `wear_seed`.
+    #[serde(default)]
+    pub wear: Option<WearSpec>,
     /// The designs, united in order; equal jobs run once.
     #[schemars(length(min = 1))]
     pub design: Vec<Design>,

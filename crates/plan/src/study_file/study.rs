@@ -4,7 +4,8 @@
 
 use super::analysis::Analysis;
 use super::raw::{AnalysisSpec, HistoriesSpec, Kind, RecordSpec, StudySpec};
-use crate::design::{Block, Goes, NAMED_AXES, Varies};
+use super::wear::WearSpec;
+use crate::design::{Block, Goes, JobAxis, NAMED_AXES, Varies};
 use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::vehicle::VehicleDesign;
@@ -58,6 +59,8 @@ pub struct Study {
     pub analysis: Analysis,
     /// The analysis as it is written, which is what axes change: a default is one of the kind and solver that they leave.
     pub(crate) analysis_written: AnalysisSpec,
+    /// How the gaps of joints scatter before axes, where they do.
+    pub wear: Option<WearSpec>,
     /// What to keep of each job beyond its peaks.
     pub record: RecordSpec,
     /// Seeds of its designs, in the order of the file.
@@ -111,11 +114,19 @@ impl Study {
         let vehicle = vehicle.map_err(|e| Refusal::of(&file, "vehicle", e))?;
         let analysis = Analysis::of(&spec.analysis).map_err(|e| Refusal::of(&file, "analysis", e))?;
         check_histories(&file, &spec.record.histories, bridge.design.modules)?;
+        if let Some(wear) = &spec.wear {
+            wear.check().map_err(|e| Refusal::of(&file, "wear", e))?;
+            if analysis.kind() == Kind::Modes {
+                let refused = Refusal::new(&file, "wear", "wear", "none in a study of modes, which know no gaps");
+                return Err(refused.because(RefusalKind::Misplaced));
+            }
+        }
         let mut known: Vec<String> = NAMED_AXES.iter().map(|axis| axis.name.to_owned()).collect();
         for (root, value) in [
             ("bridge", to_value(&bridge.design)),
             ("vehicle", to_value(&vehicle)),
             ("analysis", to_value(&analysis.written())),
+            ("wear", to_value(&spec.wear)),
         ] {
             leaves(root, &value, &mut known);
         }
@@ -133,6 +144,7 @@ impl Study {
             vehicle: spec.vehicle,
             analysis_written: spec.analysis,
             analysis,
+            wear: spec.wear,
             record: spec.record,
             bridge,
             blocks,
@@ -149,6 +161,7 @@ impl Study {
     pub fn axis_columns(&self) -> Vec<String> {
         let kind = self.analysis.kind();
         let own = NAMED_AXES.iter().filter(|axis| match (axis.goes, kind) {
+            (Goes::Job { axis: JobAxis::WearSeed, .. }, _) => self.wear.is_some(),
             (Goes::Job { crossings, .. }, Kind::Crossing) => crossings,
             (Goes::Job { statics, .. }, Kind::Static) => statics,
             _ => false,

@@ -11,7 +11,7 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::rayleigh;
 use pontoon_core::bridge::{Bridge, BridgeDesign, BridgeError, Ends, Model, PreparedModule};
-use pontoon_core::connector::Connection;
+use pontoon_core::connector::{Connection, OwnLaws};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::operator::{BridgeOperator, OperatorError};
 use pontoon_core::response::{CrossingResponse, Record};
@@ -203,6 +203,7 @@ impl SelfTestCrossing {
                 gap_compression_m: connectors.gap_compression_m,
             },
             connector_stiffness_n_m: connectors.stiffness_n_m,
+            own_laws: OwnLaws::default(),
             load_n: self.load_n,
             speed_m_s: 9.0,
             tail_s: 0.5,

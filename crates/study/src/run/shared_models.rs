@@ -29,7 +29,7 @@ type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
 type CrossingKey = (DampingKey, [u64; 2], [usize; 2]);
 /// Crossings of one key are solved side by side.
 pub(super) type LaneBatchKey = (CrossingKey, u64, Option<u64>);
-type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, u64);
+type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, Option<[u8; 32]>, u64);
 
 /// What an operator depends on: a bridge, and how far its flexibility may be off.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -383,6 +383,7 @@ pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
     StaticCase {
         connection: job.connection,
         connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
+        own_laws: job.own_laws(),
         load_n: job.load_n,
         load_x_m,
     }
@@ -470,5 +471,11 @@ fn creeping_key(job: &Job) -> CreepingKey {
     let gaps = job
         .gaps_m()
         .map(|(tension, compression)| (tension.to_bits(), compression.to_bits()));
-    (bridge_key(job), job.vehicle.key.clone(), gaps, job.load_n.to_bits())
+    (
+        bridge_key(job),
+        job.vehicle.key.clone(),
+        gaps,
+        job.laws_key(),
+        job.load_n.to_bits(),
+    )
 }

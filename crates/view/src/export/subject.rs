@@ -215,6 +215,7 @@ fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<Stati
             case: StaticCase {
                 connection: job.connection,
                 connector_stiffness_n_m: design.connectors.stiffness_n_m,
+                own_laws: job.own_laws(),
                 load_n: job.load_n,
                 load_x_m: load.x_m,
             },
@@ -307,15 +308,16 @@ fn static_case(
             connectors.gap_compression_m,
         )?,
     };
-    design
-        .check_held()
-        .map_err(|refused| Refusal::of(source, "", refused))?;
+    let connection = if load.linear { Connection::Linear } else { connection };
+    let of_bridge = |refused| Refusal::of(source, "", refused);
+    design.check_held().map_err(of_bridge)?;
     Ok(StaticWanted {
         model: ModelSpec::SuperElement.into(),
         vehicle,
         case: StaticCase {
-            connection: if load.linear { Connection::Linear } else { connection },
+            connection,
             connector_stiffness_n_m: connectors.stiffness_n_m,
+            own_laws: design.own_laws(connection, None).map_err(of_bridge)?,
             load_n: load.load_n,
             load_x_m,
         },
