@@ -2,6 +2,7 @@
 
 mod chain;
 mod energy;
+mod joints;
 mod lanes;
 mod meshed;
 mod operator;
