@@ -15,6 +15,7 @@ mod export;
 mod export_input;
 mod export_stage;
 mod figures;
+mod joints;
 mod old_results;
 mod operator;
 mod refusals;

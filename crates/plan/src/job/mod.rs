@@ -328,7 +328,7 @@ impl Job {
             (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),
             (JobAxis::LoadPosition, Task::Static(load)) => load.position.into(),
             (JobAxis::LoadPlace, Task::Static(load)) => load.x_m.into(),
-            (JobAxis::WearSeed, _) => self.worn.as_ref().map(|worn| worn.seed as f64).into(),
+            (JobAxis::WearSeed, _) => self.worn.as_ref().map(|worn| worn.seed as usize).into(),
             _ => Cell::Nothing,
         }
     }
