@@ -20,7 +20,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// A design whose joints have something of their own.
 fn with_joints(design: &BridgeDesign, joints: &Value) -> BridgeDesign {
-    let changed = with(design, |d| d.joints = serde_json::from_value(joints.clone()).expect("joints"));
+    let changed = with(design, |d| {
+        d.joints = serde_json::from_value(joints.clone()).expect("joints")
+    });
     changed.check().expect("a design");
     changed
 }
@@ -87,7 +89,13 @@ fn unlike_joints_change_nothing_beside_them() {
     let plain = |speed: f64| ready.crossing(PAPER_GAPS, PAPER_LOAD_N, speed);
     let mixed: Vec<Crossing> = (0..6)
         .map(|i| 6.0 + f64::from(i))
-        .map(|speed| if speed > 8.5 { crossing(&design, plain(speed)) } else { plain(speed) })
+        .map(|speed| {
+            if speed > 8.5 {
+                crossing(&design, plain(speed))
+            } else {
+                plain(speed)
+            }
+        })
         .collect();
     let asked: Vec<_> = mixed.iter().map(|crossing| (&vehicle, crossing)).collect();
     for (together, crossing) in both.operated.solve_all(&asked, 0).into_iter().zip(&mixed) {
@@ -163,7 +171,10 @@ fn what_is_lost_or_open_is_not_there() {
         crossings.solve(&asked).expect("solved")
     };
     let moves = |r: &CrossingResponse| -> Vec<f64> {
-        r.positions.iter().flat_map(|p| [p.deflection.value, p.uplift.value]).collect()
+        r.positions
+            .iter()
+            .flat_map(|p| [p.deflection.value, p.uplift.value])
+            .collect()
     };
     let sums = |r: &CrossingResponse| -> Vec<f64> {
         let of_joint = |j: &pontoon_core::response::JointPeaks| [j.sum.compression.value, j.sum.tension.value];
@@ -271,7 +282,10 @@ fn chain_with_unlike_joints_is_that_of_independent_codes() {
     let vehicle = chain.vehicle();
     let of = |(what, joints, statics, moving): &ChainCase| {
         let design = with_joints(&chain.design(), joints);
-        let ready = Ready { design: design.clone(), ..chain.ready() };
+        let ready = Ready {
+            design: design.clone(),
+            ..chain.ready()
+        };
         let mut off = Vec::new();
         for factor in [1.0, 1.05] {
             let mut case = case(&design, ready.case(chain.connection(false), chain.weight_n, 6.0 * 6.7));

@@ -29,8 +29,10 @@ fn same_tables(stage: &Stage, a: &str, b: &str) -> bool {
 fn equal_joints_given_one_by_one_are_the_tables_without_them() {
     let mut stage = stage(Value::Null);
     stage.ran("plain");
-    let connectors = json!({ "stiffness_n_m": stage.bridge["connectors"]["stiffness_n_m"], "tension": true, "lost": false });
-    stage.bridge["joints"] = json!({ "2": { "connectors": connectors }, "2..3": { "connectors": { "compression": true } } });
+    let connectors =
+        json!({ "stiffness_n_m": stage.bridge["connectors"]["stiffness_n_m"], "tension": true, "lost": false });
+    stage.bridge["joints"] =
+        json!({ "2": { "connectors": connectors }, "2..3": { "connectors": { "compression": true } } });
     stage.ran("one by one");
     assert!(same_tables(&stage, "plain", "one by one"));
     // and joints that are not equal are told
@@ -101,7 +103,10 @@ fn wear_is_drawn_from_its_seed_and_kept_joint_by_joint() {
     assert_eq!(seeds.len(), 8);
     assert_eq!(seeds.iter().flatten().filter(|seed| **seed == 2.0).count(), 2);
     let table = "r/joints.parquet";
-    assert_eq!(stage.table(table).names(), ["job", "joint", "gap_tension_m", "gap_compression_m"]);
+    assert_eq!(
+        stage.table(table).names(),
+        ["job", "joint", "gap_tension_m", "gap_compression_m"]
+    );
     let [jobs, joints, tension, compression] = ["job", "joint", "gap_tension_m", "gap_compression_m"]
         .map(|name| stage.numbers(table, name).into_iter().flatten().collect::<Vec<f64>>());
     assert_eq!(joints, [2.0, 3.0].repeat(6));
@@ -155,28 +160,66 @@ fn refused(joints: Value, parts: &[&str]) {
 #[test]
 fn joints_that_are_none_are_refused_at_their_key() {
     let lost = || json!({ "connectors": { "lost": true } });
-    refused(json!({ "4": lost() }), &["bridge.json: joints[4]: found joint 4, allowed: joints from 2 to 3"]);
-    refused(json!({ "1..2": lost() }), &["joints[1..2]: found joint 1, allowed: joints from 2 to 3"]);
-    refused(json!({ "3..2": lost() }), &["joints[3..2]: found a range backwards, allowed: the lower number first: \"2..3\""]);
-    refused(json!({ "two": lost() }), &["joints", "two", "a joint as \"7\" or joints as \"3..14\""]);
-    refused(json!({ "2": { "connector": {} } }), &["joints[2].connector", "connectors"]);
+    refused(
+        json!({ "4": lost() }),
+        &["bridge.json: joints[4]: found joint 4, allowed: joints from 2 to 3"],
+    );
+    refused(
+        json!({ "1..2": lost() }),
+        &["joints[1..2]: found joint 1, allowed: joints from 2 to 3"],
+    );
+    refused(
+        json!({ "3..2": lost() }),
+        &["joints[3..2]: found a range backwards, allowed: the lower number first: \"2..3\""],
+    );
+    refused(
+        json!({ "two": lost() }),
+        &["joints", "two", "a joint as \"7\" or joints as \"3..14\""],
+    );
+    refused(
+        json!({ "2": { "connector": {} } }),
+        &["joints[2].connector", "connectors"],
+    );
     let of = |key: &str, value: Value| json!({ "2..3": { "connectors": { key: value } } });
-    refused(of("stiffness_n_m", json!(-1)), &["joints[2..3].connectors.stiffness_n_m: found -1"]);
-    refused(of("gap_tension_m", json!(-1e-3)), &["joints[2..3].connectors.gap_tension_m: found -0.001"]);
-    refused(of("at_y_m", json!([1.0])), &["joints[2..3].connectors.at_y_m[0]: found 1, allowed: a place of connectors.y_m: -2.02, 2.02"]);
+    refused(
+        of("stiffness_n_m", json!(-1)),
+        &["joints[2..3].connectors.stiffness_n_m: found -1"],
+    );
+    refused(
+        of("gap_tension_m", json!(-1e-3)),
+        &["joints[2..3].connectors.gap_tension_m: found -0.001"],
+    );
+    refused(
+        of("at_y_m", json!([1.0])),
+        &["joints[2..3].connectors.at_y_m[0]: found 1, allowed: a place of connectors.y_m: -2.02, 2.02"],
+    );
     let stop = |gap_m: f64, stiffness: f64| json!({ "gap_m": gap_m, "stiffness_n_m": stiffness });
-    refused(of("stop_tension", stop(0.1, -5.0)), &["joints[2..3].connectors.stop_tension.stiffness_n_m: found -5"]);
+    refused(
+        of("stop_tension", stop(0.1, -5.0)),
+        &["joints[2..3].connectors.stop_tension.stiffness_n_m: found -5"],
+    );
     refused(
         of("stop_compression", stop(0.001, 5e7)),
-        &["joints[2..3].connectors.stop_compression.gap_m: found 0.001, allowed: above 0.001, the gap of the truss before it"],
+        &[
+            "joints[2..3].connectors.stop_compression.gap_m: found 0.001, allowed: above 0.001, the gap of the truss before it",
+        ],
     );
-    refused(json!({ "2": { "hinges": { "y_m": [] } } }), &["joints[2].hinges.y_m: found an empty list"]);
-    refused(json!({ "2": { "hinges": { "y_m": [9] } } }), &["joints[2].hinges.y_m[0]: found 9"]);
+    refused(
+        json!({ "2": { "hinges": { "y_m": [] } } }),
+        &["joints[2].hinges.y_m: found an empty list"],
+    );
+    refused(
+        json!({ "2": { "hinges": { "y_m": [9] } } }),
+        &["joints[2].hinges.y_m[0]: found 9"],
+    );
     // as an axis, at the axis
     let mut stage = stage(Value::Null);
     stage.study["design"][0]["grid"]["bridge.joints[9].connectors.lost"] = json!([true]);
     let output = stage.write().pontoon(&["plan", "study.json"]);
-    is_refused(&output, &["study.json: design[0].grid.bridge.joints[9]", "joints from 2 to 3"]);
+    is_refused(
+        &output,
+        &["study.json: design[0].grid.bridge.joints[9]", "joints from 2 to 3"],
+    );
 }
 
 #[test]
@@ -193,15 +236,43 @@ fn wear_that_is_none_is_refused_at_its_key() {
         is_refused(&output, parts);
     };
     let normal = |s: f64| json!({ "gap_compression_m": { "normal": s } });
-    refused(normal(-0.001), json!(1), &["wear.gap_compression_m.normal: found -0.001"]);
-    refused(json!({ "gap_tension_m": {} }), json!(1), &["wear.gap_tension_m: found neither, allowed: either normal or uniform"]);
-    refused(json!({ "gap_m": { "normal": 1 } }), json!(1), &["wear.gap_m", "gap_tension_m"]);
+    refused(
+        normal(-0.001),
+        json!(1),
+        &["wear.gap_compression_m.normal: found -0.001"],
+    );
+    refused(
+        json!({ "gap_tension_m": {} }),
+        json!(1),
+        &["wear.gap_tension_m: found neither, allowed: either normal or uniform"],
+    );
+    refused(
+        json!({ "gap_m": { "normal": 1 } }),
+        json!(1),
+        &["wear.gap_m", "gap_tension_m"],
+    );
     let beyond = json!({ "gap_compression_m": { "uniform": -0.0011 } });
-    refused(beyond, json!(1), &["wear.gap_compression_m.uniform: found -0.0011, allowed: at least -0.001"]);
+    refused(
+        beyond,
+        json!(1),
+        &["wear.gap_compression_m.uniform: found -0.0011, allowed: at least -0.001"],
+    );
     refused(normal(0.001), Value::Null, &["wear_seed"]);
-    refused(normal(0.001), json!(1.5), &["wear_seed: found 1.5, allowed: a whole number"]);
-    refused(normal(0.001), json!(-1), &["wear_seed: found -1, allowed: a whole number"]);
-    refused(Value::Null, json!(1), &["wear_seed: found 1, allowed: no seed of a wear"]);
+    refused(
+        normal(0.001),
+        json!(1.5),
+        &["wear_seed: found 1.5, allowed: a whole number"],
+    );
+    refused(
+        normal(0.001),
+        json!(-1),
+        &["wear_seed: found -1, allowed: a whole number"],
+    );
+    refused(
+        Value::Null,
+        json!(1),
+        &["wear_seed: found 1, allowed: no seed of a wear"],
+    );
     let mut stage = stage(Value::Null);
     stage.study["wear"] = normal(0.001);
     stage.study["analysis"] = json!({ "kind": "modes" });

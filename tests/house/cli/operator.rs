@@ -146,8 +146,13 @@ fn a_vehicle_far_behind_its_front_begins_when_it_arrives() {
         stage.write();
         let output = run(&stage);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        ["steps", "peak_deflection_m", "peak_deflection_time_s", "peak_compression_n"]
-            .map(|name| stage.numbers(JOBS, name))
+        [
+            "steps",
+            "peak_deflection_m",
+            "peak_deflection_time_s",
+            "peak_compression_n",
+        ]
+        .map(|name| stage.numbers(JOBS, name))
     };
     for solver in ["operator", "reference"] {
         // 120 m behind are whole steps at 5, 10 and 15 m/s

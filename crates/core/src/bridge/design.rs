@@ -355,7 +355,11 @@ impl BridgeDesign {
 
     /// Lines across that a module's mesh has for its joints: places of hinges, then of connectors `[m]`.
     pub fn joint_lines_y_m(&self) -> Vec<f64> {
-        self.hinge_lines_y_m().iter().chain(&self.connectors.y_m).copied().collect()
+        self.hinge_lines_y_m()
+            .iter()
+            .chain(&self.connectors.y_m)
+            .copied()
+            .collect()
     }
 
     /// Number of positions: the module ends.

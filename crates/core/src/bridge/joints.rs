@@ -126,7 +126,13 @@ impl Joints {
                     connectors: None,
                     hinges: Some(hinges.clone()),
                 };
-                (JointRange { first: joint, last: joint }, spec)
+                (
+                    JointRange {
+                        first: joint,
+                        last: joint,
+                    },
+                    spec,
+                )
             })
         };
         if design.joints.is_empty() {
@@ -156,7 +162,11 @@ impl Joints {
                     1 => "none: a bridge of one module has no joint".to_owned(),
                     _ => format!("joints from 2 to {modules}, the number of modules"),
                 };
-                return Err(InvalidInput::new(key, format!("joint {}", if first < 2 { first } else { last }), allowed));
+                return Err(InvalidInput::new(
+                    key,
+                    format!("joint {}", if first < 2 { first } else { last }),
+                    allowed,
+                ));
             }
             if let Some(hinges) = &spec.hinges {
                 let half = 0.5 * design.module.breadth_m;

@@ -101,7 +101,11 @@ impl MeshedBridge {
         let links = |bottom: bool| -> Vec<Link> {
             let at = |ix: usize, iy: usize| if bottom { grid.bottom(ix, iy) } else { grid.deck(ix, iy) };
             let of_joint = |j: usize| {
-                let places = if bottom { &design.hinges_of(j + 1).y_m } else { &design.connectors.y_m };
+                let places = if bottom {
+                    &design.hinges_of(j + 1).y_m
+                } else {
+                    &design.connectors.y_m
+                };
                 let across = places.iter().filter_map(|&y| Some((y, grid.y_line(y)?)));
                 across.map(move |(y_m, iy)| Link {
                     joint: j + 1,
@@ -119,10 +123,16 @@ impl MeshedBridge {
             let dof = |i: usize| (i / 3 % own) * DOFS_PER_NODE + i / 3 / own * 3 + i % 3;
             Mat::from_fn(DOFS_PER_NODE * own, t.ncols(), |i, j| t[(dof(i), j)])
         });
-        let lines: Vec<usize> = design.hinge_lines_y_m().iter().filter_map(|&y| grid.y_line(y)).collect();
+        let lines: Vec<usize> = design
+            .hinge_lines_y_m()
+            .iter()
+            .filter_map(|&y| grid.y_line(y))
+            .collect();
         let hinge_places = (2..=design.modules).map(|joint| {
             let of_joint = design.hinges_of(joint).y_m.iter().filter_map(|&y| grid.y_line(y));
-            of_joint.filter_map(|iy| lines.iter().position(|line| *line == iy)).collect()
+            of_joint
+                .filter_map(|iy| lines.iter().position(|line| *line == iy))
+                .collect()
         });
         let hinge_rows = lines
             .iter()

@@ -47,7 +47,10 @@ impl LinkLaw {
         compression_below_m: f64::NEG_INFINITY,
         compression_stop_below_m: f64::NEG_INFINITY,
         between: State::Open,
-        branches: [Branch { stiffness: 0.0, offset: 0.0 }; State::COUNT],
+        branches: [Branch {
+            stiffness: 0.0,
+            offset: 0.0,
+        }; State::COUNT],
     };
 
     /// The law of a connector of two trusses of stiffness k `[N/m]`.
@@ -87,7 +90,11 @@ impl LinkLaw {
     /// Takes the branches of a truss that works in the `sense` of elongations; gives the elongations where they begin.
     fn take_truss(&mut self, truss: &Truss, sense: f64, states: [State; 2]) -> [f64; 2] {
         let never = sense * f64::INFINITY;
-        let Truss { stiffness_n_m: k, gap_m, stop } = *truss;
+        let Truss {
+            stiffness_n_m: k,
+            gap_m,
+            stop,
+        } = *truss;
         if k == 0.0 {
             return [never; 2];
         }
@@ -142,7 +149,10 @@ impl LinkLaw {
         let both = self.branch(State::Both).stiffness;
         [
             ([State::Tension, State::TensionStop], self.tension_stop_above_m),
-            ([State::Compression, State::CompressionStop], self.compression_stop_below_m),
+            (
+                [State::Compression, State::CompressionStop],
+                self.compression_stop_below_m,
+            ),
         ]
         .map(|([first, stop], stop_m)| {
             let [k, k_stop] = [first, stop].map(|state| self.branch(state).stiffness);
@@ -263,8 +273,14 @@ mod tests {
             assert!((force(&law, e) - n).abs() < 1e-6, "{} N at {e} m", force(&law, e));
             let parts = 100_000;
             let width = e / f64::from(parts);
-            let area: f64 = (0..parts).map(|i| force(&law, (f64::from(i) + 0.5) * width) * width).sum();
-            assert!((law.energy(e) - area).abs() < 1e-6 * area.max(1.0), "{} {area} J at {e} m", law.energy(e));
+            let area: f64 = (0..parts)
+                .map(|i| force(&law, (f64::from(i) + 0.5) * width) * width)
+                .sum();
+            assert!(
+                (law.energy(e) - area).abs() < 1e-6 * area.max(1.0),
+                "{} {area} J at {e} m",
+                law.energy(e)
+            );
         }
         let [tension, compression] = law.uptakes();
         assert_eq!((tension.stiffness, compression.stiffness), (0.0, 5e7));

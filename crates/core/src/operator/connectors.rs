@@ -115,7 +115,11 @@ impl Connectors {
     /// Takes the laws of a lane's connectors.
     pub(super) fn take_laws(&mut self, lane: usize, laws: &[LinkLaw]) {
         let uptakes = || laws.iter().map(LinkLaw::uptakes);
-        let first = uptakes().flatten().map(|of| of.stiffness).find(|k| *k > 0.0).unwrap_or(1.0);
+        let first = uptakes()
+            .flatten()
+            .map(|of| of.stiffness)
+            .find(|k| *k > 0.0)
+            .unwrap_or(1.0);
         *self.half_compliance.at_mut(0, lane) = 0.5 / first;
         self.uneven[lane] = uptakes().any(|[tension, compression]| tension != compression || tension.softer != 0.0);
         for (i, [tension, compression]) in uptakes().enumerate() {

@@ -162,12 +162,10 @@ impl DocumentPath {
 /// The paths of all values of a document that are not objects, each under `prefix`; lists as wholes and by place.
 pub fn leaves(prefix: &str, document: &Value, out: &mut Vec<String>) {
     match document {
-        Value::Object(map) => map
-            .iter()
-            .for_each(|(key, value)| match is_numbered(key) {
-                true => leaves(&format!("{prefix}[{key}]"), value, out),
-                false => leaves(&format!("{prefix}.{key}"), value, out),
-            }),
+        Value::Object(map) => map.iter().for_each(|(key, value)| match is_numbered(key) {
+            true => leaves(&format!("{prefix}[{key}]"), value, out),
+            false => leaves(&format!("{prefix}.{key}"), value, out),
+        }),
         Value::Array(list) => {
             out.push(prefix.to_owned());
             list.iter()
@@ -224,7 +222,12 @@ mod tests {
         assert_eq!(document["joints"], json!({"7": {"a": 1, "b": 3}, "3..14": {"a": 2}}));
         let mut out = Vec::new();
         leaves("bridge", &document, &mut out);
-        let known = ["bridge.other[7]", "bridge.joints[7].a", "bridge.joints[7].b", "bridge.joints[3..14].a"];
+        let known = [
+            "bridge.other[7]",
+            "bridge.joints[7].a",
+            "bridge.joints[7].b",
+            "bridge.joints[3..14].a",
+        ];
         assert_eq!(out, known);
         for text in ["joints[3..]", "joints[..3]", "joints[3.14]", "joints[a..b]"] {
             assert_eq!(DocumentPath::parse(text), None, "{text}");

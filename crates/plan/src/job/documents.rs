@@ -207,11 +207,7 @@ impl Documents {
 
 impl Documents {
     /// The wear of a point; none where its study has none.
-    pub(super) fn wear(
-        &mut self,
-        study: &Study,
-        point: &DesignPoint<'_>,
-    ) -> Result<Option<Arc<WearEntry>>, Refusal> {
+    pub(super) fn wear(&mut self, study: &Study, point: &DesignPoint<'_>) -> Result<Option<Arc<WearEntry>>, Refusal> {
         let changes = Changes::of(study, point, Root::Wear);
         if study.wear.is_none() && changes.list.is_empty() {
             return Ok(None);

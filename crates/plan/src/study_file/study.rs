@@ -161,7 +161,13 @@ impl Study {
     pub fn axis_columns(&self) -> Vec<String> {
         let kind = self.analysis.kind();
         let own = NAMED_AXES.iter().filter(|axis| match (axis.goes, kind) {
-            (Goes::Job { axis: JobAxis::WearSeed, .. }, _) => self.wear.is_some(),
+            (
+                Goes::Job {
+                    axis: JobAxis::WearSeed,
+                    ..
+                },
+                _,
+            ) => self.wear.is_some(),
             (Goes::Job { crossings, .. }, Kind::Crossing) => crossings,
             (Goes::Job { statics, .. }, Kind::Static) => statics,
             _ => false,

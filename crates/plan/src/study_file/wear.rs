@@ -152,7 +152,10 @@ mod tests {
         assert!(holds(drawn(wear(1.0, 1.0), 0), [0.0, 1.0]));
         assert!(!holds(drawn(wear(1.05, 1.0), 0), [0.0, 1.0]));
         let [mean, deviation] = drawn(wear(1.0, 1.0), 1);
-        assert!((mean - 0.5).abs() < 0.0082 && (deviation - 12_f64.sqrt().recip()).abs() < 0.004, "{mean} {deviation}");
+        assert!(
+            (mean - 0.5).abs() < 0.0082 && (deviation - 12_f64.sqrt().recip()).abs() < 0.004,
+            "{mean} {deviation}"
+        );
         let both = moments(&|seed| {
             let [a, b] = wear(1.0, 1.0).worn_m(seed, 7, [50.0, 50.0]);
             (a - 50.0) * (b - 50.5)
@@ -161,7 +164,10 @@ mod tests {
             let of = |joint| wear(1.0, 1.0).worn_m(seed, joint, [50.0, 50.0])[0] - 50.0;
             of(7) * of(8)
         });
-        assert!(both[0].abs() < 0.01 && neighbours[0].abs() < 0.03, "{both:?} {neighbours:?}");
+        assert!(
+            both[0].abs() < 0.01 && neighbours[0].abs() < 0.03,
+            "{both:?} {neighbours:?}"
+        );
     }
 
     #[test]
@@ -170,7 +176,9 @@ mod tests {
             gap_tension_m: scatter(Some(1.0), None),
             gap_compression_m: scatter(None, Some(-0.01)),
         };
-        let least = (0..1000).map(|seed| wear.worn_m(seed, 2, [0.001, 0.01])[0]).fold(1.0, f64::min);
+        let least = (0..1000)
+            .map(|seed| wear.worn_m(seed, 2, [0.001, 0.01])[0])
+            .fold(1.0, f64::min);
         assert_eq!(least, 0.0);
         assert_eq!(wear.check_against([0.0, 0.01]), Ok(()));
         let refused = wear.check_against([0.0, 0.0099]).unwrap_err();

@@ -20,9 +20,15 @@
   const ring = size => `M0 ${-0.75 * size}a${0.75 * size} ${0.75 * size} 0 1 1 -0.01 0z`;
   const path = (state, size) => (state === 0 ? ring(size) : glyph(state, size));
 
-  /** The states that a play has, and the three that any may have. */
-  function legend(state) {
+  // What a joint has not got: a bar that is broken over it where nothing pulls, a cross where nothing pulls or pushes.
+  const WANTING = { uncoupled: 'M-1.5 -2.2V-1.5H-.5M.5 -1.5H1.5V-2.2', lost: 'M-1.1 -1.1L1.1 1.1M-1.1 1.1L1.1 -1.1' },
+    SAID = { uncoupled: 'coupling open: pushes only', lost: 'connectors lost' };
+  const mark = (kind, size) => WANTING[kind].replace(/-?\d*\.\d+|-?\d+/g, n => +(n * size).toFixed(2));
+
+  /** The states that a play has, and the three that any may have; what joints have not got, where one has not. */
+  function legend(state, wanting) {
     const shown = state.includes(3) ? STATES : STATES.slice(0, 3);
+    const kinds = Object.keys(WANTING).filter(kind => wanting.includes(kind));
     return el(
       'ul',
       { class: 'legend joints' },
@@ -36,6 +42,18 @@
             svg('path', { class: `joint ${s}`, d: path(i, 5.5) }),
           ),
           i === 0 ? 'joint open' : `in ${WORDS[i]}`,
+        ),
+      ),
+      kinds.map(kind =>
+        el(
+          'li',
+          {},
+          svg(
+            'svg',
+            { width: 18, height: 14, viewBox: '-9 -9 18 14', 'aria-hidden': 'true' },
+            svg('path', { class: `wanting ${kind}`, d: mark(kind, 3.5) }),
+          ),
+          SAID[kind],
         ),
       ),
     );
@@ -56,6 +74,9 @@
       J = bridge.joints.length,
       length = xs[P - 1],
       module = bridge.module_length_m;
+    const wanting = bridge.joints.map(joint =>
+      bridge.lost_joints?.includes(joint) ? 'lost' : bridge.open_joints?.includes(joint) ? 'uncoupled' : '',
+    );
     const w = array(play.deflection_m),
       force = array(play.force_n),
       state = array(play.state),
@@ -100,6 +121,17 @@
       part = {
         modules: d3.range(P - 1).map(i => svg('polygon', { class: 'module', 'data-module': i + 1 })),
         joints: d3.range(J).map(j => svg('path', { class: 'joint', 'data-joint': bridge.joints[j] })),
+        wanting: d3
+          .range(J)
+          .filter(j => wanting[j])
+          .map(j => ({
+            j,
+            node: svg('path', {
+              class: `wanting ${wanting[j]}`,
+              'data-joint': bridge.joints[j],
+              d: mark(wanting[j], size),
+            }),
+          })),
         forces: d3
           .range(J)
           .map(j =>
@@ -135,6 +167,7 @@
         part.body,
         part.wheels,
         part.joints,
+        part.wanting.map(w => w.node),
         svg(
           'g',
           { class: 'ruler' },
@@ -174,7 +207,7 @@
       part.reach = reach;
       stage.replaceChildren(
         node,
-        legend(state),
+        legend(state, wanting),
         el(
           'p',
           { class: 'sub scale' },
@@ -233,6 +266,10 @@
         if (F < 0 && (push < 0 || F < between(force, f, push, J))) push = j;
         if (F > 0 && (pull < 0 || F > between(force, f, pull, J))) pull = j;
       });
+      for (const { j, node } of part.wanting) {
+        const p = bridge.joints[j] - 1;
+        node.setAttribute('transform', `translate(${X(xs[p]).toFixed(2)},${(at(p) - thick).toFixed(2)})`);
+      }
       let from = Infinity,
         to = -Infinity,
         high = -Infinity;

@@ -180,6 +180,31 @@ test('joints differ in shape, not in colour alone', () =>
     assert.equal(new Set(paths.map(p => p[1])).size, 4);
   }));
 
+test('open and lost couplings are marked at their joints and said', () =>
+  on(sample('crossing'), {}, async page => {
+    assert.equal(await page.$$eval('.wanting', all => all.length), 0, 'a whole bridge has no mark');
+    await page.selectOption('#play-job', String(sample('crossing').data.plays[2].job));
+    // picking plays: marks and joints are read at one instant
+    const { marks, places } = await page.$eval('svg.bridge', node => ({
+      marks: [...node.querySelectorAll('.wanting')].map(m => [
+        Number(m.dataset.joint),
+        m.getAttribute('class'),
+        m.getAttribute('transform'),
+      ]),
+      places: Object.fromEntries(
+        [...node.querySelectorAll('path.joint')].map(j => [j.dataset.joint, j.getAttribute('transform')]),
+      ),
+    }));
+    const expected = ['3 uncoupled', '4 uncoupled', '7 lost'];
+    assert.deepEqual(
+      marks.map(([joint, kind]) => `${joint} ${kind.replace('wanting ', '')}`),
+      expected,
+    );
+    for (const [joint, , place] of marks) assert.equal(place, places[joint]);
+    const said = await page.$$eval('.legend.joints li', all => all.map(li => li.textContent));
+    assert.deepEqual(said.slice(-2), ['coupling open: pushes only', 'connectors lost']);
+  }));
+
 test('it plays, pauses, steps, runs at the speed that is chosen and ends', () =>
   on(sample('crossing'), {}, async page => {
     const frame = () => page.$eval('svg.bridge', n => Number(n.dataset.frame)),

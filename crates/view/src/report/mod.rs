@@ -44,6 +44,7 @@ pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};
 
 use crate::figures::{Chart, ReferenceMark};
+use pontoon_core::connector::ConnectorLaw;
 use pontoon_judge::compare::Comparison;
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
@@ -135,6 +136,12 @@ pub struct BridgeNote {
     pub position_x_m: Vec<f64>,
     /// Numbers of the joints.
     pub joints: Vec<usize>,
+    /// Those whose couplings are open: no connector pulls.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub open_joints: Vec<usize>,
+    /// Those whose connectors are lost: none pulls or pushes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lost_joints: Vec<usize>,
 }
 
 impl BridgeNote {
@@ -150,8 +157,26 @@ impl BridgeNote {
                 .map(|position| design.position_x_m(position))
                 .collect(),
             joints: (2..=design.modules).collect(),
+            open_joints: joints_whose(job, |[pulls, pushes]| !pulls && pushes),
+            lost_joints: joints_whose(job, |[pulls, pushes]| !pulls && !pushes),
         }
     }
+}
+
+/// The joints of a job of whose connectors it holds whether any pulls and whether any pushes.
+fn joints_whose(job: &Job, holds: impl Fn([bool; 2]) -> bool) -> Vec<usize> {
+    let (design, own) = (&job.bridge.design, job.own_laws());
+    let places = design.connectors.y_m.len();
+    let works = |place: usize| match own.iter().find(|(of, _)| *of == place) {
+        None => [true; 2],
+        Some((_, ConnectorLaw::Linear { stiffness_n_m })) => [*stiffness_n_m > 0.0; 2],
+        Some((_, ConnectorLaw::Gaps { tension, compression })) => [tension, compression].map(|t| t.stiffness_n_m > 0.0),
+    };
+    let of_joint = |joint: usize| {
+        let each = ((joint - 2) * places..(joint - 1) * places).map(works);
+        each.fold([false; 2], |[a, b], [c, d]| [a || c, b || d])
+    };
+    (2..=design.modules).filter(|joint| holds(of_joint(*joint))).collect()
 }
 
 /// A point of a reference.
