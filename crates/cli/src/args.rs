@@ -213,6 +213,9 @@ pub(crate) struct RunArguments {
     /// Jobs to be solved one by one into the journal of a folder that another process holds.
     #[arg(long, hide = true, value_parser = apart, value_name = "HASH:JOB,...")]
     pub apart: Option<(String, Vec<usize>)>,
+    /// Prepares the bridges of these jobs one by one, and solves none.
+    #[arg(long, hide = true, requires = "apart")]
+    pub prepare_only: bool,
     /// Compares the results with a reference file (or the folder that holds reference.json) once they are there.
     #[arg(long, value_name = "REFERENCE")]
     pub with: Option<PathBuf>,

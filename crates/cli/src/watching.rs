@@ -1,13 +1,13 @@
 //! What is told of a sweep: to people by the bar or lines, to signals' handler for whoever asks.
 //!
-//! Knows how this program is started again for jobs that are to be solved apart. Does not know what runs.
+//! Knows how this program is started again for work that is to be done apart. Does not know what runs.
 
 use crate::progress::ProgressDisplay;
 use crate::signals::Signals;
 use crate::text;
 use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Progress, Tally};
-use pontoon_study::sweep::{Apart, ApartEnd, Watcher};
+use pontoon_study::sweep::{Apart, ApartEnd, ApartTask, Watcher};
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -66,12 +66,13 @@ impl Watcher for Watching<'_> {
         self.signals.writing(journal);
     }
 
-    fn solve_apart(&self, study: &str, jobs: &[usize]) -> Option<Apart> {
+    fn work_apart(&self, task: ApartTask, study: &str, jobs: &[usize]) -> Option<Apart> {
         let (file, out) = self.again.as_ref()?;
         let numbers: Vec<String> = jobs.iter().map(ToString::to_string).collect();
         // its standard input tells it when this process is gone
         let mut child = Command::new(std::env::current_exe().ok()?)
             .args(["run", "--quiet", "--apart", &format!("{study}:{}", numbers.join(","))])
+            .args((task == ApartTask::Prepare).then_some("--prepare-only"))
             .arg("--out")
             .arg(out)
             .arg(file)

@@ -35,7 +35,7 @@ fn asked() -> Option<&'static Fault> {
     FAULT.get_or_init(|| parse(&std::env::var(VARIABLE).ok()?)).as_ref()
 }
 
-/// The places that a fault may strike, but those of jobs, `job.NUMBER`.
+/// The places that a fault may strike, but those of jobs: `job.NUMBER`, and `prepare.NUMBER` for the bridge of one.
 const PLACES: [&str; 22] = [
     "aside.rename",
     "canary",
@@ -64,7 +64,7 @@ const PLACES: [&str; 22] = [
 /// What is asked for and is no fault: nobody should take a run without one for a run that outlived one.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
-    "PONTOON_FAULT: found \"{found}\", allowed: PLACE:NUMBER:HOW, a place of {}, or job.N; a number from 1; die, short, full or error",
+    "PONTOON_FAULT: found \"{found}\", allowed: PLACE:NUMBER:HOW, a place of {}, job.N or prepare.N; a number from 1; die, short, full or error",
     PLACES.join(", ")
 )]
 pub struct NoFault {
@@ -87,9 +87,8 @@ pub fn check() -> Result<(), NoFault> {
 fn parse(text: &str) -> Option<Fault> {
     let mut parts = text.split(':');
     let (place, number, how) = (parts.next()?, parts.next()?.parse().ok()?, parts.next()?);
-    let of_job = place
-        .strip_prefix("job.")
-        .is_some_and(|job| job.parse::<usize>().is_ok());
+    let job = place.strip_prefix("job.").or_else(|| place.strip_prefix("prepare."));
+    let of_job = job.is_some_and(|job| job.parse::<usize>().is_ok());
     if !(of_job || PLACES.contains(&place)) || number == 0 || parts.next().is_some() {
         return None;
     }
@@ -142,6 +141,15 @@ pub fn at_job(number: usize) {
     if asked().is_some() {
         // the system has no answer to give here: the process goes on or dies
         let _ = at(&format!("job.{number}"));
+    }
+}
+
+/// The places of the bridges of jobs, passed when these are prepared.
+pub fn at_preparation(jobs: impl Iterator<Item = usize>) {
+    if asked().is_some_and(|fault| fault.place.starts_with("prepare.")) {
+        for number in jobs {
+            let _ = at(&format!("prepare.{number}"));
+        }
     }
 }
 
@@ -200,6 +208,7 @@ mod tests {
             ("journal.write", 3, How::Full)
         );
         assert!(parse("job.12:1:die").is_some());
+        assert!(parse("prepare.12:1:die").is_some());
         for wrong in [
             "",
             "canary",
@@ -209,6 +218,7 @@ mod tests {
             "canary:1:die:1",
             "cannary:1:die",
             "job.x:1:die",
+            "prepare.:1:die",
         ] {
             assert!(parse(wrong).is_none(), "{wrong}");
         }

@@ -3,7 +3,7 @@
 //! Knows the kinds of frames and keeps of a record its key and place alone. Does not write.
 
 use super::frame::{Damage, Frame, Frames, read_at};
-use super::{Binding, EXTENSION, FOLDER, FORM, JournalError, RecordKey, Session, SessionEnd, kind};
+use super::{Binding, EXTENSION, FOLDER, FORM, JournalError, PreparationKey, RecordKey, Session, SessionEnd, kind};
 use serde_json::Value;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,6 +66,10 @@ pub struct Written {
     pub begun: BTreeSet<RecordKey>,
     /// What jobs share, as it was prepared.
     pub prepared: Vec<Value>,
+    /// Bridges whose preparation it had begun and not done.
+    pub bridges_begun: BTreeSet<PreparationKey>,
+    /// Bridges that it had prepared.
+    pub bridges_prepared: BTreeSet<PreparationKey>,
 }
 
 impl Written {
@@ -80,7 +84,14 @@ impl Written {
             damages: Vec::new(),
             begun: BTreeSet::new(),
             prepared: Vec::new(),
+            bridges_begun: BTreeSet::new(),
+            bridges_prepared: BTreeSet::new(),
         }
+    }
+
+    /// Whether its process worked apart, for another one that waited.
+    fn is_apart(&self) -> bool {
+        self.session.as_ref().is_some_and(|session| session.apart)
     }
 
     /// Counts a record and gives its entry; `file` is the number of this file in the index.
@@ -110,9 +121,14 @@ impl Written {
                 .begun
                 .extend(frame.payload.as_chunks().0.iter().map(|key| RecordKey(*key))),
             kind::ENDING => self.ending = serde_json::from_slice(frame.payload).ok(),
-            kind::PREPARED => self
-                .prepared
-                .extend(serde_json::from_slice::<Value>(frame.payload).ok()),
+            kind::PREPARED => {
+                self.prepared
+                    .extend(serde_json::from_slice::<Value>(frame.payload).ok());
+                self.bridges_prepared.append(&mut self.bridges_begun);
+            }
+            kind::PREPARING => self
+                .bridges_begun
+                .extend(frame.payload.as_chunks().0.iter().map(|key| PreparationKey(*key))),
             // of a later minor form, which this one need not know
             _ => {}
         }
@@ -271,11 +287,10 @@ impl JournalIndex {
     /// that solve jobs apart are not counted: they end with the one that waits for them.
     pub fn deaths(&self) -> BTreeMap<RecordKey, usize> {
         let mut deaths = BTreeMap::new();
-        let apart = |written: &&Written| written.session.as_ref().is_some_and(|session| session.apart);
         for written in self
             .files
             .iter()
-            .filter(|written| written.ending.is_none() && !apart(written))
+            .filter(|written| written.ending.is_none() && !written.is_apart())
         {
             for key in written.begun.iter().filter(|key| self.find(key).is_none()) {
                 *deaths.entry(*key).or_insert(0) += 1;
@@ -293,16 +308,44 @@ impl JournalIndex {
             .count()
     }
 
-    /// Jobs that a process had begun apart and not recorded.
+    /// Jobs that the process of the last file had begun apart and not recorded; none where it is not that process.
     pub fn begun_apart(&self, process: u32) -> impl Iterator<Item = &RecordKey> {
-        let of = move |written: &&Written| {
+        self.died_apart(process).flat_map(|written| &written.begun)
+    }
+
+    /// How many processes died while they prepared each bridge, since one prepared it. Processes that prepare bridges apart
+    /// are not counted: they end with the one that waits for them.
+    pub fn deaths_in_preparation(&self) -> BTreeMap<PreparationKey, usize> {
+        let mut deaths = BTreeMap::new();
+        for written in &self.files {
+            for key in &written.bridges_prepared {
+                deaths.remove(key);
+            }
+            if written.ending.is_none() && !written.is_apart() {
+                for key in &written.bridges_begun {
+                    *deaths.entry(*key).or_insert(0) += 1;
+                }
+            }
+        }
+        deaths
+    }
+
+    /// Bridges that the process of the last file had begun to prepare apart and not done; none where it is not that process.
+    pub fn preparing_apart(&self, process: u32) -> impl Iterator<Item = &PreparationKey> {
+        self.died_apart(process).flat_map(|written| &written.bridges_begun)
+    }
+
+    /// The last file, where a process of that number wrote it apart and died. The system gives numbers again: an older file may
+    /// be of another process.
+    fn died_apart(&self, process: u32) -> impl Iterator<Item = &Written> {
+        let of = |written: &&Written| {
             written
                 .session
                 .as_ref()
                 .is_some_and(|s| s.apart && s.process == process)
         };
-        let files = self.files.iter().filter(of).filter(|written| written.ending.is_none());
-        files.flat_map(|written| &written.begun)
+        let last = self.files.last().filter(of);
+        last.filter(|written| written.ending.is_none()).into_iter()
     }
 
     /// What was passed over, file by file.

@@ -28,7 +28,8 @@
 //! | 3 | a record: key of the job (16 bytes), 1 where it failed else 0, milliseconds since 1970 (8 bytes), what it left |
 //! | 4 | keys of jobs about to be solved together |
 //! | 5 | [`SessionEnd`], JSON: the process came to its own end |
-//! | 6 | what jobs share, prepared: JSON |
+//! | 6 | what jobs share, prepared: JSON; nothing of frame 7 is under way any more |
+//! | 7 | keys of bridges whose preparation begins (16 bytes each) |
 
 mod binding;
 mod documents;
@@ -68,6 +69,7 @@ mod kind {
     pub(super) const STARTED: u32 = 4;
     pub(super) const ENDING: u32 = 5;
     pub(super) const PREPARED: u32 = 6;
+    pub(super) const PREPARING: u32 = 7;
 }
 
 /// What a record is found by: equal for jobs that leave the same record.
@@ -79,6 +81,10 @@ impl std::fmt::Display for RecordKey {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
     }
 }
+
+/// What a bridge to be prepared is found by: equal for jobs that share the preparation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PreparationKey(pub [u8; 16]);
 
 /// Why a journal cannot be used.
 #[derive(Debug, Error)]

@@ -4,7 +4,9 @@
 //! nothing more is written. Does not know what is read back.
 
 use super::progress::{self, Counts};
-use super::{Binding, EXTENSION, FOLDER, JournalError, RecordKey, Session, SessionEnd, fault, frame, kind};
+use super::{
+    Binding, EXTENSION, FOLDER, JournalError, PreparationKey, RecordKey, Session, SessionEnd, fault, frame, kind,
+};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -102,6 +104,15 @@ impl JournalWriter {
     pub fn started(&self, keys: &[RecordKey]) -> Result<(), JournalError> {
         let payload: Vec<u8> = keys.iter().flat_map(|key| key.0).collect();
         self.one(kind::STARTED, &payload)
+    }
+
+    /// Says which bridges are about to be prepared: what the process dies with, unless [`Self::prepared`] follows.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn preparing(&self, keys: &[PreparationKey]) -> Result<(), JournalError> {
+        let payload: Vec<u8> = keys.iter().flat_map(|key| key.0).collect();
+        self.one(kind::PREPARING, &payload)
     }
 
     /// Keeps what jobs share, as it was prepared.
@@ -402,6 +413,10 @@ mod tests {
     }
 
     fn begun(folder: &Path) -> JournalWriter {
+        begun_as(folder, false)
+    }
+
+    fn begun_as(folder: &Path, apart: bool) -> JournalWriter {
         let binding = Binding {
             form: FORM,
             name: "s".to_owned(),
@@ -422,7 +437,7 @@ mod tests {
             threads: 1,
             jobs: 1,
             known: 0,
-            apart: false,
+            apart,
             study_blake3: String::new(),
             bridge_blake3: String::new(),
         };
@@ -440,5 +455,38 @@ mod tests {
         let index = JournalIndex::read(dir.path()).unwrap();
         let prepared: Vec<&Value> = index.files.iter().flat_map(|file| &file.prepared).collect();
         assert_eq!(prepared, [&Value::from(1)]);
+    }
+
+    #[test]
+    fn a_bridge_that_was_prepared_is_no_death_of_an_earlier_process() {
+        let dir = tempfile::tempdir().unwrap();
+        let [first, second] = [PreparationKey([1; 16]), PreparationKey([2; 16])];
+        let deaths = || JournalIndex::read(dir.path()).unwrap().deaths_in_preparation();
+        // none of these says that it came to its end
+        for died in 1..=2 {
+            begun(dir.path()).preparing(&[first, second]).unwrap();
+            assert_eq!(deaths(), [(first, died), (second, died)].into());
+        }
+        let writer = begun(dir.path());
+        writer.preparing(&[first]).unwrap();
+        writer.prepared(&1).unwrap();
+        assert_eq!(deaths(), [(second, 2)].into());
+        // nor is one that ended by itself, nor one that solves jobs apart
+        writer.preparing(&[first]).unwrap();
+        writer
+            .end(&SessionEnd {
+                how: "interrupted".to_owned(),
+                finished: String::new(),
+                offline_s: 0.0,
+                jobs_s: 0.0,
+            })
+            .unwrap();
+        let apart = begun_as(dir.path(), true);
+        apart.preparing(&[first]).unwrap();
+        drop(apart);
+        assert_eq!(deaths(), [(second, 2)].into());
+        let index = JournalIndex::read(dir.path()).unwrap();
+        assert_eq!(index.preparing_apart(1).collect::<Vec<_>>(), [&first]);
+        assert_eq!(index.preparing_apart(2).count(), 0);
     }
 }

@@ -35,7 +35,7 @@ pub enum FailureKind {
     NotPrepared,
     /// A mode that is needed was not found.
     ModeMissing,
-    /// The process died while the job ran.
+    /// The process died while the job ran, or while its bridge was prepared.
     ProcessDied,
     /// The run was stopped before the job's bridge was prepared.
     Stopped,

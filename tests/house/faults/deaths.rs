@@ -89,7 +89,7 @@ fn a_job_that_was_under_way_when_others_killed_the_process_is_not_marked() {
     for _ in 0..2 {
         let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
         let output = command(&stage, &words)
-            .env("PONTOON_FAULT", "journal.write:3:short")
+            .env("PONTOON_FAULT", "journal.write:4:short")
             .output()
             .unwrap();
         assert_eq!(output.status.code(), None, "{}", stderr(&output));
@@ -110,7 +110,7 @@ fn a_kill_of_the_process_that_waits_counts_against_no_job() {
     let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
     for _ in 0..2 {
         let output = command(&stage, &words)
-            .env("PONTOON_FAULT", "journal.write:3:short")
+            .env("PONTOON_FAULT", "journal.write:4:short")
             .output()
             .unwrap();
         assert_eq!(output.status.code(), None, "{}", stderr(&output));
@@ -191,7 +191,7 @@ fn a_study_changed_while_jobs_are_solved_apart_is_not_taken_for_the_old_one() {
     let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
     for _ in 0..2 {
         let output = command(&stage, &words)
-            .env("PONTOON_FAULT", "journal.write:3:short")
+            .env("PONTOON_FAULT", "journal.write:4:short")
             .output()
             .unwrap();
         assert_eq!(output.status.code(), None, "{}", stderr(&output));
@@ -209,6 +209,215 @@ fn a_study_changed_while_jobs_are_solved_apart_is_not_taken_for_the_old_one() {
     stage.write();
     finish(&stage, "r");
     assert!(tables(&stage, "r") == tables(&stage, "whole"));
+}
+
+/// Three bridges, of four jobs each: 0 to 3, 4 to 7, 8 to 11.
+fn bridges() -> crate::stage::Stage {
+    let mut stage = sweep(1, 0.05);
+    stage.study["design"] = json!([{ "grid": {
+        "bridge.connectors.stiffness_n_m": [1e7, 2e7, 3e7], "speed_m_s": [10, 15], "load_n": [5e4, 1e5]
+    } }]);
+    stage.write();
+    stage
+}
+
+/// The program that dies whenever it prepares the bridge of job 5.
+fn dying(stage: &crate::stage::Stage, out: &str, more: &[&str]) -> std::process::Output {
+    let words = [&["run", "study.json", "--out", out, "--quiet"], more].concat();
+    let mut command = command(stage, &words);
+    command.env("PONTOON_FAULT", "prepare.5:1:die").output().unwrap()
+}
+
+/// Why the jobs of that bridge fail.
+const DIED: &str =
+    "the process died 2 times while it prepared the bridge of this job, the last time with no other beside it";
+
+#[test]
+fn jobs_of_a_bridge_that_kills_its_process_are_marked_and_the_others_are_solved() {
+    let stage = bridges();
+    finish(&stage, "whole");
+    let output = dying(&stage, "r", &[]);
+    assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    let explained = |job: &str| stdout(&command(&stage, &["explain", "r", job]).output().unwrap());
+    assert!(
+        explained("5").contains("a process died while it prepared its bridge"),
+        "{}",
+        explained("5")
+    );
+    let output = dying(&stage, "r", &[]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains(
+            "3 bridges were being prepared when a process died: prepared one by one in a process of their own"
+        ),
+        "{told}"
+    );
+    assert!(
+        told.contains(&format!("job 4 failed: {DIED}")) && explained("5").contains(DIED),
+        "{told}{}",
+        explained("5")
+    );
+    let told = super::sweep::status(&stage, &["r"]);
+    assert_eq!(
+        (&told["failed"], &told["folders"][0]["state"]),
+        (&json!(4), &json!("complete"))
+    );
+    // the verdict stands, and nothing is prepared for it
+    let before = tables(&stage, "r");
+    let again = dying(&stage, "r", &[]);
+    assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
+    assert!(tables(&stage, "r") == before);
+    others_are_whole(&stage);
+}
+
+/// Expects the rows of the jobs of the other two bridges to be those of a run without faults.
+fn others_are_whole(stage: &crate::stage::Stage) {
+    for name in ["jobs", "positions", "connectors", "histories"] {
+        let [found, whole] = ["r", "whole"].map(|out| stage.table(&format!("{out}/{name}.parquet")));
+        let rows = |table: &crate::stage::Frame| {
+            let jobs = table.column("job").unwrap().numbers();
+            let other = jobs
+                .iter()
+                .enumerate()
+                .filter(|(_, job)| !(4.0..8.0).contains(&job.unwrap()));
+            other.map(|(row, _)| row).collect::<Vec<_>>()
+        };
+        let (found_rows, whole_rows) = (rows(&found), rows(&whole));
+        assert!(found_rows.len() == whole_rows.len() && found_rows.len() >= 8, "{name}");
+        for column in whole.names() {
+            let cells = |table: &crate::stage::Frame, rows: &[usize]| {
+                let column = table.column(&column).unwrap();
+                let texts = column.str();
+                let numbers = texts.is_none().then(|| column.numbers());
+                let cell = |&row: &usize| match (&texts, &numbers) {
+                    (Some(texts), _) => texts.get(row).map(str::to_owned),
+                    (None, numbers) => numbers.as_ref().and_then(|n| n[row]).map(|x| x.to_bits().to_string()),
+                };
+                rows.iter().map(cell).collect::<Vec<_>>()
+            };
+            assert_eq!(
+                cells(&found, &found_rows),
+                cells(&whole, &whole_rows),
+                "{name}: {column}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_bridge_that_killed_its_process_is_tried_again_where_that_is_asked() {
+    let stage = bridges();
+    finish(&stage, "whole");
+    let expected = tables(&stage, "whole");
+    for (out, more) in [("r", &[][..]), ("s", &["--shard", "0/1"])] {
+        let retried = [more, &["--retry-failed"]].concat();
+        assert_eq!(dying(&stage, out, more).status.code(), None);
+        // it dies apart, also where it is tried again
+        for words in [more, &retried, more] {
+            let output = dying(&stage, out, words);
+            assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+            assert_eq!(super::sweep::status(&stage, &[out])["failed"], 4);
+        }
+        let output = run(&stage, out, &retried);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert_eq!(super::sweep::status(&stage, &[out])["failed"], 0);
+    }
+    let output = command(&stage, &["merge", "s", "--out", "m", "--quiet"]).output();
+    assert_eq!(output.unwrap().status.code(), Some(0));
+    assert!(tables(&stage, "r") == expected && tables(&stage, "m") == expected);
+}
+
+#[test]
+fn a_process_that_died_once_while_it_prepared_bridges_costs_no_job() {
+    let stage = bridges();
+    finish(&stage, "whole");
+    let expected = tables(&stage, "whole");
+    for (out, more) in [("r", &[][..]), ("fresh", &["--fresh"])] {
+        let output = dying(&stage, out, &[]);
+        assert_eq!(output.status.code(), None, "{}", stderr(&output));
+        let output = run(&stage, out, more);
+        let told = stderr(&output);
+        assert_eq!(output.status.code(), Some(0), "{told}");
+        assert_eq!(told.contains("prepared one by one"), more.is_empty(), "{told}");
+        super::sweep::same_tables(&stage, out, &expected);
+    }
+    // what was prepared since is no suspect of a later run
+    let output = run(&stage, "r", &[]);
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+}
+
+/// A bridge that is prepared for some twenty seconds, with which a process died.
+fn long_suspect() -> crate::stage::Stage {
+    let mut stage = sweep(2, 0.01);
+    stage.bridge["modules"] = 120.into();
+    stage.write();
+    let output = run_with(&stage, "r", "prepare.0:1:die");
+    assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    stage
+}
+
+/// Waits for a journal to have as many files, and gives the number of the process that began the last one.
+fn process_of_file(stage: &crate::stage::Stage, number: usize) -> String {
+    let began = std::time::Instant::now();
+    loop {
+        let files = std::fs::read_dir(stage.path("r/journal")).unwrap();
+        let names: std::collections::BTreeSet<_> = files.map(|file| file.unwrap().file_name()).collect();
+        if names.len() >= number {
+            let name = names.last().unwrap().to_string_lossy().into_owned();
+            return u32::from_str_radix(&name[17..25], 16).unwrap().to_string();
+        }
+        assert!(began.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn a_bridge_whose_process_is_killed_twice_apart_is_marked() {
+    let stage = long_suspect();
+    let child = begin(&stage, "r", &[]);
+    for number in 2..=3 {
+        let apart = process_of_file(&stage, number);
+        assert_ne!(apart, child.id().to_string());
+        // it is at work by then
+        std::thread::sleep(Duration::from_millis(400));
+        let sent = std::process::Command::new("kill").args(["-KILL", &apart]).status();
+        assert!(sent.unwrap().success());
+    }
+    let output = child.wait_with_output().unwrap();
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("the process died 3 times while it prepared the bridge"),
+        "{told}"
+    );
+    assert_eq!(super::sweep::status(&stage, &["r"])["failed"], 48);
+}
+
+#[test]
+fn an_interrupt_ends_a_run_that_waits_for_bridges_prepared_apart() {
+    let stage = long_suspect();
+    let child = begin(&stage, "r", &[]);
+    process_of_file(&stage, 2);
+    assert_eq!(super::sweep::status(&stage, &["r"])["folders"][0]["state"], "running");
+    let asked = std::time::Instant::now();
+    let sent = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(asked.elapsed() < Duration::from_secs(3), "{:?}", asked.elapsed());
+    assert!(
+        stderr(&output).contains("interrupted: 0 of 48 jobs are recorded"),
+        "{}",
+        stderr(&output)
+    );
+    // nothing is known of it yet
+    let mut child = begin(&stage, "r", &[]);
+    assert_ne!(process_of_file(&stage, 4), child.id().to_string());
+    child.kill().unwrap();
+    child.wait().unwrap();
 }
 
 #[test]

@@ -200,6 +200,6 @@ fn shards_that_do_not_belong_together_are_refused() {
     let output = run(&stage, "other", &["--shard", "0/2"]);
     is_refused(&output, &["shard: found 0/2", "allowed: 1/2"]);
     // a shard that is not done
-    let _ = run_with(&stage, "half", "journal.write:4:die");
+    let _ = run_with(&stage, "half", "journal.write:5:die");
     is_refused(&merge(&stage, &names(&["half", "other"]), "m"), &["in no shard"]);
 }

@@ -15,7 +15,7 @@ use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
 use pontoon_results::{Failures, Outcome, Results, SummaryTable, labels};
 use pontoon_study::run::Cache;
-use pontoon_study::sweep::{SweepSetting, Swept, run_apart, sweep};
+use pontoon_study::sweep::{ApartTask, SweepSetting, Swept, run_apart, sweep};
 use serde::ser::{Serialize, Serializer};
 use serde_json::Value;
 use std::io::{self, Read, Write};
@@ -35,7 +35,11 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus
     let setting = setting(arguments, &study);
     if let Some((of, numbers)) = &arguments.apart {
         end_with_standard_input();
-        run_apart(&study, &jobs, (of, numbers), &setting, &signals.stop)?;
+        let task = match arguments.prepare_only {
+            true => ApartTask::Prepare,
+            false => ApartTask::Solve,
+        };
+        run_apart(&study, &jobs, (task, of, numbers), &setting, &signals.stop)?;
         return Ok(ExitStatus::Good);
     }
     let again = Some((arguments.study.clone(), setting.out.clone()));

@@ -49,10 +49,12 @@ pub use shared_models::PreparedModules;
 
 use batch::NoObserver;
 use monitor::Monitor;
+use pontoon_journal::{JournalIndex, PreparationKey};
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
-use pontoon_results::{Failure, Failures, JobRecord, Outcome, Verification};
-use shared_models::SharedModels;
+use pontoon_results::{Failure, Failures, JobRecord, Outcome, Preparation, Verification};
+pub(crate) use shared_models::preparation_key_of;
+use shared_models::{SharedModels, by_bridge};
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
 use std::time::Instant;
@@ -109,19 +111,8 @@ pub fn run<E: StdError + Send + 'static>(
             .filter(|(at, _)| !monitor.knows(*at))
             .map(|(_, job)| job)
             .collect();
-        let models = SharedModels::prepare(
-            &missing,
-            &PreparedModules::default(),
-            setting.cache.as_ref(),
-            cancel,
-            progress,
-        );
-        let preparation = models.preparation(&missing);
+        let (models, preparation) = prepare(missing, &setting, &monitor, cancel, progress);
         let offline_s = start.elapsed().as_secs_f64();
-        if !missing.is_empty() {
-            monitor.prepared(&preparation);
-        }
-        drop(missing);
         progress.stage("running jobs");
         monitor.begin_counting();
         let (mut failures, mut verification) = (Failures::default(), Verification::default());
@@ -169,6 +160,70 @@ pub fn run<E: StdError + Send + 'static>(
             jobs_s: start.elapsed().as_secs_f64() - offline_s,
         })
     })?
+}
+
+/// Prepares what the missing jobs share. Jobs that are passed over need nothing, and their bridge may be what a process died
+/// with.
+fn prepare(
+    mut missing: Vec<&Job>,
+    setting: &Setting<'_>,
+    monitor: &Monitor<'_>,
+    cancel: &CancelToken,
+    progress: &dyn Progress,
+) -> (SharedModels, Preparation) {
+    missing.retain(|job| !setting.passed_over.contains_key(&job.number));
+    // what is stopped before it begins clears no bridge of a suspicion
+    if !missing.is_empty() && !cancel.is_asked() {
+        monitor.preparing(&missing);
+    }
+    let (known, cache) = (PreparedModules::default(), setting.cache.as_ref());
+    let models = SharedModels::prepare(&missing, &known, cache, cancel, progress);
+    let preparation = models.preparation(&missing);
+    if !missing.is_empty() {
+        monitor.prepared(&preparation);
+    }
+    (models, preparation)
+}
+
+/// Prepares the bridges of jobs one by one, so that it is known which of them a process dies with. Nothing is left of it but
+/// what the journal and the cache keep.
+///
+/// # Errors
+/// [`RunError::Pool`], [`RunError::Journal`], [`RunError::Stopped`].
+pub fn prepare_apart<E: StdError + Send + 'static>(
+    jobs: &[Job],
+    setting: Setting<'_>,
+    cancel: &CancelToken,
+) -> Result<(), RunError<E>> {
+    on_threads(setting.threads, || {
+        let monitor = Monitor::new(jobs.len(), &setting, cancel, &Silent);
+        let mut known = PreparedModules::default();
+        for (_, jobs) in by_bridge(jobs.iter()) {
+            // a module of another bridge would stand beside this one in memory
+            known.keep_for(&jobs);
+            monitor.preparing(&jobs);
+            let models = SharedModels::prepare(&jobs, &known, setting.cache.as_ref(), cancel, &Silent);
+            if cancel.is_asked() {
+                break;
+            }
+            monitor.prepared(&models.preparation(&jobs));
+            known = models.modules();
+        }
+        monitor.outcome()
+    })?
+}
+
+/// Jobs that are taken for missing, by the bridge whose preparation they share.
+pub(crate) fn missing_by_bridge<'j>(
+    index: &JournalIndex,
+    jobs: &'j [Job],
+    retry_failed: bool,
+) -> Vec<(PreparationKey, Vec<&'j Job>)> {
+    let missing = |job: &&Job| {
+        let entry = index.find(&record_key(job));
+        entry.is_none_or(|entry| retry_failed && entry.failed)
+    };
+    by_bridge(jobs.iter().filter(missing))
 }
 
 /// Solves the jobs of a batch that are not recorded; the batch begins `from`.

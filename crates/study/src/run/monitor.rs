@@ -8,7 +8,8 @@ use super::cancel::{CancelToken, Why};
 use super::error::RunError;
 use super::progress::{Progress, Tally};
 use super::resume_index::ResumeIndex;
-use pontoon_journal::{JournalError, fault};
+use super::shared_models::by_bridge;
+use pontoon_journal::{JournalError, PreparationKey, fault};
 use pontoon_plan::job::Job;
 use pontoon_results::{Failure, JobRecord, Preparation};
 use std::collections::BTreeMap;
@@ -64,6 +65,16 @@ impl<'a> Monitor<'a> {
     /// Recorded jobs that had failed.
     pub(super) fn failed_before(&self) -> usize {
         self.resume_index.map_or(0, ResumeIndex::failed)
+    }
+
+    /// Says which bridges are about to be prepared, so that it is known what a process died with.
+    pub(super) fn preparing(&self, jobs: &[&Job]) {
+        if let Some(resume_index) = self.resume_index {
+            let bridges = by_bridge(jobs.iter().copied());
+            let keys: Vec<PreparationKey> = bridges.into_iter().map(|(key, _)| key).collect();
+            self.note(resume_index.preparing(&keys));
+        }
+        fault::at_preparation(jobs.iter().map(|job| job.number));
     }
 
     /// Keeps what was prepared.

@@ -2,7 +2,9 @@
 //!
 //! Knows which jobs are recorded and how a record becomes bytes without loss. Does not know where the journal lies.
 
-use pontoon_journal::{JournalError, JournalIndex, JournalWriter, NewRecord, RecordKey, RecordLocation};
+use pontoon_journal::{
+    JournalError, JournalIndex, JournalWriter, NewRecord, PreparationKey, RecordKey, RecordLocation,
+};
 use pontoon_plan::job::Job;
 use pontoon_results::{JobRecord, Preparation};
 
@@ -95,6 +97,11 @@ impl<'a> ResumeIndex<'a> {
         let Some(writer) = self.writer else { return Ok(()) };
         let keys: Vec<RecordKey> = jobs.map(record_key).collect();
         writer.started(&keys)
+    }
+
+    /// Says that bridges are about to be prepared.
+    pub(super) fn preparing(&self, keys: &[PreparationKey]) -> Result<(), JournalError> {
+        self.writer.map_or(Ok(()), |writer| writer.preparing(keys))
     }
 
     /// Keeps what jobs share.

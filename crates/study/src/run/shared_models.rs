@@ -14,6 +14,7 @@ use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
 use pontoon_core::operator::BridgeOperator;
 use pontoon_core::stop::Stop;
+use pontoon_journal::PreparationKey;
 use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
 use rayon::prelude::*;
@@ -42,11 +43,7 @@ impl OperatorKey {
     /// What its file in the cache is named by.
     fn name(&self) -> String {
         let (model, structure) = &self.bridge;
-        let model = match model {
-            Model::Full => "full",
-            Model::SuperElement => "super-element",
-        };
-        Cache::name(&format!("{model} {structure} {:016x}", self.tolerance))
+        Cache::name(&format!("{} {structure} {:016x}", word(*model), self.tolerance))
     }
 }
 
@@ -60,6 +57,13 @@ struct Damping {
 /// Modules prepared, to be handed on to a later run that needs some of them again.
 #[derive(Debug, Clone, Default)]
 pub struct PreparedModules(BTreeMap<ModuleKey, SharedResult<PreparedModule>>);
+
+impl PreparedModules {
+    /// Lets go of modules that none of some jobs needs.
+    pub(super) fn keep_for(&mut self, jobs: &[&Job]) {
+        self.0.retain(|key, _| jobs.iter().any(|job| module_key(job) == *key));
+    }
+}
 
 /// All that the jobs of a run share.
 #[derive(Debug)]
@@ -352,11 +356,7 @@ impl SharedModels {
             let report = BridgeReport {
                 blake3: job.bridge.hash.clone(),
                 name: job.bridge.design.name.clone(),
-                model: if model(job) == Model::Full {
-                    "full".to_owned()
-                } else {
-                    "super-element".to_owned()
-                },
+                model: word(model(job)).to_owned(),
                 modules: job.bridge.design.modules,
                 module_full_dofs: module.as_ref().map(|m| m.full_dofs()),
                 module_dofs: module.as_ref().map(|m| m.dofs()),
@@ -434,6 +434,39 @@ fn not_prepared() -> JobFailure {
 
 fn model(job: &Job) -> Model {
     job.model().into()
+}
+
+/// A model's word in tables and keys.
+const fn word(model: Model) -> &'static str {
+    match model {
+        Model::Full => "full",
+        Model::SuperElement => "super-element",
+    }
+}
+
+/// Jobs by the bridge whose preparation they share; bridges of the same module stand side by side.
+pub(super) fn by_bridge<'j>(jobs: impl Iterator<Item = &'j Job>) -> Vec<(PreparationKey, Vec<&'j Job>)> {
+    let mut bridges: BTreeMap<(ModuleKey, BridgeKey), Vec<&Job>> = BTreeMap::new();
+    for job in jobs {
+        let key = (module_key(job), bridge_key(job));
+        bridges.entry(key).or_default().push(job);
+    }
+    let keyed = bridges
+        .into_iter()
+        .map(|((_, key), jobs)| (preparation_key(&key), jobs));
+    keyed.collect()
+}
+
+/// What the preparation of a job's bridge is found by in the journal.
+pub(crate) fn preparation_key_of(job: &Job) -> PreparationKey {
+    preparation_key(&bridge_key(job))
+}
+
+fn preparation_key((model, structure): &BridgeKey) -> PreparationKey {
+    let hash = blake3::hash(format!("{} {structure}", word(*model)).as_bytes());
+    let mut key = [0; 16];
+    key.copy_from_slice(&hash.as_bytes()[..16]);
+    PreparationKey(key)
 }
 
 fn module_key(job: &Job) -> ModuleKey {

@@ -5,9 +5,10 @@
 //!
 //! | module | charter |
 //! |---|---|
+//! | `apart` | work in a process of its own |
 //! | `archive` | old results moved out of the way, under their hash |
 //! | `fingerprint` | what a study's records are bound to; a study from a journal alone |
-//! | `crash_suspects` | jobs that processes died with |
+//! | `crash_suspects`, `preparation_suspects` | jobs and bridges that processes died with |
 //! | `ending` | how a process says that it came to its own end |
 //! | `forecast` | what a study will take, and what of it is done |
 //! | `merge` | shards put together |
@@ -16,6 +17,7 @@
 //! | `solving` | what is missing, solved into the journal |
 //! | `status` | what is done, missing, failed; why a job ran or will run |
 
+mod apart;
 mod archive;
 mod crash_suspects;
 mod ending;
@@ -23,11 +25,12 @@ mod fingerprint;
 mod forecast;
 mod merge;
 mod partial_results;
+mod preparation_suspects;
 mod results_folder;
 mod solving;
 mod status;
 
-pub use crash_suspects::{Apart, ApartEnd, run_apart};
+pub use apart::{Apart, ApartEnd, ApartTask, run_apart};
 pub use ending::ended_now;
 pub use forecast::{Forecast, RecordedJobs, forecast};
 pub use merge::{Merged, merge};
@@ -154,9 +157,9 @@ pub trait Watcher: Progress {
     /// The journal's file of this process has begun.
     fn writing(&self, journal: &Arc<JournalWriter>);
 
-    /// Solves jobs of a study of that hash, by their numbers, in a process of their own, see [`run_apart`]; none where that
-    /// cannot be done. A stop that is asked for ends the process.
-    fn solve_apart(&self, study: &str, jobs: &[usize]) -> Option<Apart>;
+    /// Does a task with jobs of a study of that hash, by their numbers, in a process of its own, see [`run_apart`]; none where
+    /// that cannot be done. A stop that is asked for ends the process.
+    fn work_apart(&self, task: ApartTask, study: &str, jobs: &[usize]) -> Option<Apart>;
 }
 
 /// Runs what is missing of a study, and writes its tables.
@@ -177,7 +180,9 @@ pub fn sweep<'a>(
     let own: Option<Vec<Job>> = setting.shard.map(share);
     let asked: &[Job] = own.as_deref().unwrap_or(jobs);
     pontoon_results::keep_documents(opened.folder.path(), study)?;
-    let passed_over = crash_suspects::settle(&mut opened, study, asked, cancel, watcher)?;
+    let (of, retry) = ((study, asked), setting.retry_failed);
+    let passed_over = preparation_suspects::settle(&mut opened, of, retry, cancel, watcher)?;
+    let passed_over = crash_suspects::settle(&mut opened, of, passed_over, cancel, watcher)?;
     let mut resume_index = ResumeIndex::new(&opened.index, asked);
     if setting.retry_failed {
         resume_index = resume_index.without_failed(asked);

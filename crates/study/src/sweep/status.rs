@@ -5,7 +5,7 @@
 use super::SweepError;
 use super::fingerprint::{check_program, study_of};
 use super::results_folder::check_folder;
-use crate::run::{ResumeIndex, record_key};
+use crate::run::{ResumeIndex, preparation_key_of, record_key};
 use pontoon_journal::{Binding, JournalIndex, Lock, Session, Standing};
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs, Shard};
@@ -223,12 +223,29 @@ pub fn explain(folder: &Path, number: usize) -> Result<Explanation, SweepError> 
             told.why = match (elsewhere, deaths) {
                 (Some(shard), _) => format!("not of the share {shard}: another one runs it"),
                 (None, _) if running => "not recorded: a process is at work here and will come to it".to_owned(),
-                (None, 0) => "not recorded: the next run of the study runs it".to_owned(),
-                (None, n) => format!("under way in {n} processes that died: the next run of the study runs it again"),
+                (None, deaths) => why_next(&index, job, deaths),
             };
         }
     }
     Ok(told)
+}
+
+/// Why the next run of a study runs a job that is not recorded, and how.
+fn why_next(index: &JournalIndex, job: &Job, deaths: usize) -> String {
+    let in_preparation = index.deaths_in_preparation();
+    match (deaths, in_preparation.get(&preparation_key_of(job))) {
+        (0, None) => "not recorded: the next run of the study runs it".to_owned(),
+        (0, Some(n)) => {
+            let died = match n {
+                1 => "a process died while it prepared".to_owned(),
+                n => format!("{n} processes died while they prepared"),
+            };
+            format!(
+                "not recorded: {died} its bridge; the next run of the study prepares that in a process of its own first"
+            )
+        }
+        (n, _) => format!("under way in {n} processes that died: the next run of the study runs it again"),
+    }
 }
 
 /// A job by its number; the others are made and forgotten, as there may be a million of them.
