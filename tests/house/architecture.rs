@@ -278,7 +278,8 @@ const UNITS: [&str; 17] = [
     "_1_s", "_m_s2",
 ];
 /// Names of pure numbers.
-const PURE: [&str; 7] = [
+const PURE: [&str; 8] = [
+    "wear_seed",
     "ratio",
     "share",
     "spectral_radius",
@@ -290,7 +291,9 @@ const PURE: [&str; 7] = [
 
 /// Numbers in the unit of something else that is named beside them: a column, a quantity, a parameter whose name ends in
 /// its unit.
-const OF_WHAT_IS_NAMED: [&str; 30] = [
+const OF_WHAT_IS_NAMED: [&str; 32] = [
+    "normal",
+    "uniform",
     "time_step_tolerance",
     "operator_tolerance",
     "deflection_tolerance",

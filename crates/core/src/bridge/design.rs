@@ -2,8 +2,10 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
-use super::{Joints, Model, Provenance};
-use crate::input::{InvalidInput, Problem, apart, not_negative, positive, within};
+use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
+use super::{Model, Provenance};
+use crate::connector::{Connection, OwnLaws};
+use crate::input::{InvalidInput, Problem, not_negative, positive, within};
 use crate::module::{ModuleDesign, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::JsonSchema;
@@ -83,28 +85,6 @@ pub struct Todd {
     pub section_coefficient: f64,
     /// Three-dimensional correction J.
     pub three_dimensional_correction: f64,
-}
-
-/// Hinges of a joint: at each place the three translations of the two bottom nodes are tied.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Hinges {
-    /// Places across `[m]`.
-    pub y_m: Vec<f64>,
-}
-
-/// Connectors of a joint: at each place one tension and one compression truss along x between the two deck nodes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Connectors {
-    /// Places across `[m]`.
-    pub y_m: Vec<f64>,
-    /// Stiffness of one truss `[N/m]`.
-    pub stiffness_n_m: f64,
-    /// Elongation at which the tension truss begins to pull `[m]`, unless the study says otherwise.
-    pub gap_tension_m: f64,
-    /// Shortening at which the compression truss begins to push `[m]`, unless the study says otherwise.
-    pub gap_compression_m: f64,
 }
 
 /// A direction of translation.
@@ -197,7 +177,7 @@ impl BridgeDesign {
         let half = 0.5 * self.module.breadth_m;
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
-        self.joints.check(self)?;
+        self.joints.check(self.modules, half, &self.connectors)?;
         for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
             if let Some(value) = value {
                 positive(key, value)?;
@@ -348,6 +328,31 @@ impl BridgeDesign {
         }
     }
 
+    /// The hinges of a joint: the last of its own, or the bridge's.
+    pub fn hinges_of(&self, joint: usize) -> &Hinges {
+        self.joints.hinges_of(joint, &self.hinges)
+    }
+
+    /// Places across that some joint has a hinge at `[m]`: those of the bridge, then others in the order of joints.
+    pub fn hinge_lines_y_m(&self) -> Vec<f64> {
+        self.joints.hinge_lines_y_m(&self.hinges)
+    }
+
+    /// The gaps (tension, compression) of a connector before a job's wear `[m]`: its own, or those of the job.
+    pub fn nominal_gaps_m(&self, joint: usize, y_m: f64, of_job: [f64; 2]) -> [f64; 2] {
+        self.joints.nominal_gaps_m(joint, y_m, of_job)
+    }
+
+    /// The connectors whose laws differ from that of the connection; `worn` is what a job does to the gaps of a joint.
+    /// In the linear connection a truss that is not there leaves half the stiffness, and gaps and stops have no meaning.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] on a stop that begins within the gap before it.
+    /// Equation (J4).
+    pub fn own_laws(&self, connection: Connection, worn: Option<&JointGaps<'_>>) -> Result<OwnLaws, InvalidInput> {
+        self.joints.own_laws(self.modules, &self.connectors, connection, worn)
+    }
+
     /// Length of the bridge `[m]`.
     pub fn length_m(&self) -> f64 {
         self.modules as f64 * self.module.length_m
@@ -400,26 +405,6 @@ impl BridgeDesign {
 /// A length to the millimetre, for a message.
 fn metres(length_m: f64) -> f64 {
     (length_m * 1e3).round() / 1e3
-}
-
-pub(super) fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
-    if y.is_empty() {
-        return Err(InvalidInput::new(key, "an empty list", "at least one place across"));
-    }
-    for (i, &y) in y.iter().enumerate() {
-        within(&format!("{key}[{i}]"), y, -half, half)?;
-    }
-    apart(key, y)
-}
-
-impl Connectors {
-    fn check(&self, half: f64) -> Result<(), InvalidInput> {
-        places("y_m", &self.y_m, half)?;
-        positive("stiffness_n_m", self.stiffness_n_m)?;
-        not_negative("gap_tension_m", self.gap_tension_m)?;
-        not_negative("gap_compression_m", self.gap_compression_m)?;
-        Ok(())
-    }
 }
 
 impl DraftBuoyancy {

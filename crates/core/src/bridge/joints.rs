@@ -1,15 +1,36 @@
-//! What single joints have of their own: connectors that are worn, open or lost, and other hinges.
+//! Joints as a bridge file writes them: hinges, connectors, and what single joints have of their own.
 //!
 //! Knows joints by their numbers and what each one's entries come to. Does not know what a job adds to that.
 
-use super::{BridgeDesign, Hinges};
 use crate::connector::{Connection, ConnectorLaw, OwnLaws, Stop, Truss};
-use crate::input::{InvalidInput, Problem, SAME_PLACE_M, not_negative, positive};
+use crate::input::{InvalidInput, Problem, SAME_PLACE_M, apart, not_negative, positive, within};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
+
+/// Hinges of a joint: at each place the three translations of the two bottom nodes are tied.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hinges {
+    /// Places across `[m]`.
+    pub y_m: Vec<f64>,
+}
+
+/// Connectors of a joint: at each place one tension and one compression truss along x between the two deck nodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Connectors {
+    /// Places across `[m]`.
+    pub y_m: Vec<f64>,
+    /// Stiffness of one truss `[N/m]`.
+    pub stiffness_n_m: f64,
+    /// Elongation at which the tension truss begins to pull `[m]`, unless the study says otherwise.
+    pub gap_tension_m: f64,
+    /// Shortening at which the compression truss begins to push `[m]`, unless the study says otherwise.
+    pub gap_compression_m: f64,
+}
 
 /// Entries of single joints in the order of the file; where two name one joint and one key, the later one counts.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -116,12 +137,13 @@ impl Joints {
         self.0.is_empty()
     }
 
-    /// Joints whose hinges differ from the bridge's, one entry each: all of `joints` that the structure depends on.
+    /// Of so many modules the joints whose hinges differ from the bridge's `common` ones, one entry each: all that the
+    /// structure depends on.
     #[must_use]
-    pub fn structure(design: &BridgeDesign) -> Self {
+    pub fn structure(&self, modules: usize, common: &Hinges) -> Self {
         let own = |joint: usize| {
-            let hinges = design.hinges_of(joint);
-            (hinges != &design.hinges).then(|| {
+            let hinges = self.hinges_of(joint, common);
+            (hinges != common).then(|| {
                 let spec = JointSpec {
                     connectors: None,
                     hinges: Some(hinges.clone()),
@@ -135,10 +157,57 @@ impl Joints {
                 )
             })
         };
-        if design.joints.is_empty() {
+        if self.is_empty() {
             return Self::default();
         }
-        Self((2..=design.modules).filter_map(own).collect())
+        Self((2..=modules).filter_map(own).collect())
+    }
+
+    /// The hinges of a joint: the last of its own, or the bridge's `common` ones.
+    pub(super) fn hinges_of<'a>(&'a self, joint: usize, common: &'a Hinges) -> &'a Hinges {
+        let mut own = self.of(joint).filter_map(|(_, spec)| spec.hinges.as_ref());
+        own.next_back().unwrap_or(common)
+    }
+
+    /// Places across that some joint has a hinge at `[m]`: those of the bridge, then others in the order of joints.
+    pub(super) fn hinge_lines_y_m(&self, common: &Hinges) -> Vec<f64> {
+        let mut lines = common.y_m.clone();
+        for (_, spec) in &self.0 {
+            for &y_m in spec.hinges.iter().flat_map(|hinges| &hinges.y_m) {
+                if !lines.iter().any(|line| (line - y_m).abs() <= SAME_PLACE_M) {
+                    lines.push(y_m);
+                }
+            }
+        }
+        lines
+    }
+
+    /// The gaps (tension, compression) of a connector before a job's wear `[m]`: its own, or those of the job.
+    pub(super) fn nominal_gaps_m(&self, joint: usize, y_m: f64, of_job: [f64; 2]) -> [f64; 2] {
+        Own::of(self, joint, y_m).gaps_m(of_job)
+    }
+
+    /// The connectors whose laws differ from that of the connection.
+    pub(super) fn own_laws(
+        &self,
+        modules: usize,
+        connectors: &Connectors,
+        connection: Connection,
+        worn: Option<&JointGaps<'_>>,
+    ) -> Result<OwnLaws, InvalidInput> {
+        if self.is_empty() && worn.is_none() {
+            return Ok(OwnLaws::default());
+        }
+        let common = ConnectorLaw::new(connectors.stiffness_n_m, connection);
+        let places = (2..=modules).flat_map(|joint| connectors.y_m.iter().map(move |&y_m| (joint, y_m)));
+        let mut laws = Vec::new();
+        for (place, (joint, y_m)) in places.enumerate() {
+            let law = Own::of(self, joint, y_m).law(joint, connectors.stiffness_n_m, connection, worn)?;
+            if law != common {
+                laws.push((place, law));
+            }
+        }
+        Ok(laws.into())
     }
 
     /// The entries that name a joint, each with its path.
@@ -148,8 +217,7 @@ impl Joints {
     }
 
     /// Refuses joints that do not exist and numbers that describe none.
-    pub(super) fn check(&self, design: &BridgeDesign) -> Result<(), InvalidInput> {
-        let modules = design.modules;
+    pub(super) fn check(&self, modules: usize, half: f64, connectors: &Connectors) -> Result<(), InvalidInput> {
         for (range, spec) in &self.0 {
             let key = format!("joints[{range}]");
             let JointRange { first, last } = *range;
@@ -169,14 +237,33 @@ impl Joints {
                 ));
             }
             if let Some(hinges) = &spec.hinges {
-                let half = 0.5 * design.module.breadth_m;
-                super::design::places("hinges.y_m", &hinges.y_m, half).map_err(|e| e.under(&key))?;
+                places("hinges.y_m", &hinges.y_m, half).map_err(|e| e.under(&key))?;
             }
-            if let Some(connectors) = &spec.connectors {
+            if let Some(own) = &spec.connectors {
                 let of = format!("{key}.connectors");
-                connectors.check(&design.connectors.y_m).map_err(|e| e.under(&of))?;
+                own.check(&connectors.y_m).map_err(|e| e.under(&of))?;
             }
         }
+        Ok(())
+    }
+}
+
+pub(super) fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
+    if y.is_empty() {
+        return Err(InvalidInput::new(key, "an empty list", "at least one place across"));
+    }
+    for (i, &y) in y.iter().enumerate() {
+        within(&format!("{key}[{i}]"), y, -half, half)?;
+    }
+    apart(key, y)
+}
+
+impl Connectors {
+    pub(super) fn check(&self, half: f64) -> Result<(), InvalidInput> {
+        places("y_m", &self.y_m, half)?;
+        positive("stiffness_n_m", self.stiffness_n_m)?;
+        not_negative("gap_tension_m", self.gap_tension_m)?;
+        not_negative("gap_compression_m", self.gap_compression_m)?;
         Ok(())
     }
 }
@@ -225,9 +312,9 @@ struct Own {
 }
 
 impl Own {
-    fn of(design: &BridgeDesign, joint: usize, y_m: f64) -> Self {
+    fn of(joints: &Joints, joint: usize, y_m: f64) -> Self {
         let mut own = Self::default();
-        for (path, spec) in design.joints.of(joint) {
+        for (path, spec) in joints.of(joint) {
             if let Some(of) = spec.connectors.as_ref().filter(|of| of.is_at(y_m)) {
                 own.take(&path, of);
             }
@@ -260,6 +347,41 @@ impl Own {
         [self.connectors.tension, self.connectors.compression].map(|there| !lost && there != Some(false))
     }
 
+    fn gaps_m(&self, of_job: [f64; 2]) -> [f64; 2] {
+        [
+            self.connectors.gap_tension_m.unwrap_or(of_job[0]),
+            self.connectors.gap_compression_m.unwrap_or(of_job[1]),
+        ]
+    }
+
+    /// The law of the connector, whose stiffness is `common` where it has none of its own.
+    fn law(
+        &self,
+        joint: usize,
+        common: f64,
+        connection: Connection,
+        worn: Option<&JointGaps<'_>>,
+    ) -> Result<ConnectorLaw, InvalidInput> {
+        let stiffness_n_m = self.connectors.stiffness_n_m.unwrap_or(common);
+        let of_job = match connection {
+            Connection::Linear => {
+                let there = self.senses().iter().filter(|there| **there).count();
+                let stiffness_n_m = 0.5 * there as f64 * stiffness_n_m;
+                return Ok(ConnectorLaw::Linear { stiffness_n_m });
+            }
+            Connection::Nonlinear {
+                gap_tension_m,
+                gap_compression_m,
+            } => [gap_tension_m, gap_compression_m],
+        };
+        let nominal = self.gaps_m(of_job);
+        let [tension_m, compression_m] = worn.map_or(nominal, |worn| worn(joint, nominal));
+        Ok(ConnectorLaw::Gaps {
+            tension: self.truss(0, stiffness_n_m, tension_m)?,
+            compression: self.truss(1, stiffness_n_m, compression_m)?,
+        })
+    }
+
     /// One truss of a connector with gaps.
     fn truss(&self, sense: usize, stiffness_n_m: f64, gap_m: f64) -> Result<Truss, InvalidInput> {
         let stop = [self.connectors.stop_tension, self.connectors.stop_compression][sense];
@@ -275,87 +397,6 @@ impl Own {
                 stiffness_n_m: stop.stiffness_n_m,
                 gap_m: stop.gap_m,
             }),
-        })
-    }
-}
-
-impl BridgeDesign {
-    /// The hinges of a joint: the last of its own, or the bridge's.
-    pub fn hinges_of(&self, joint: usize) -> &Hinges {
-        let mut own = self.joints.of(joint).filter_map(|(_, spec)| spec.hinges.as_ref());
-        own.next_back().unwrap_or(&self.hinges)
-    }
-
-    /// Places across that some joint has a hinge at `[m]`: those of the bridge, then others in the order of joints.
-    pub fn hinge_lines_y_m(&self) -> Vec<f64> {
-        let mut lines = self.hinges.y_m.clone();
-        for (_, spec) in &self.joints.0 {
-            for &y_m in spec.hinges.iter().flat_map(|hinges| &hinges.y_m) {
-                if !lines.iter().any(|line| (line - y_m).abs() <= SAME_PLACE_M) {
-                    lines.push(y_m);
-                }
-            }
-        }
-        lines
-    }
-
-    /// The gaps (tension, compression) of a joint before a job's wear `[m]`: its own, or those of the connection.
-    pub fn nominal_gaps_m(&self, joint: usize, y_m: f64, of_job: [f64; 2]) -> [f64; 2] {
-        let own = Own::of(self, joint, y_m).connectors;
-        [
-            own.gap_tension_m.unwrap_or(of_job[0]),
-            own.gap_compression_m.unwrap_or(of_job[1]),
-        ]
-    }
-
-    /// The connectors whose laws differ from that of the connection; `worn` is what a job does to the gaps of a joint.
-    /// In the linear connection a truss that is not there leaves half the stiffness, and gaps and stops have no meaning.
-    ///
-    /// # Errors
-    /// [`InvalidInput`] on a stop that begins within the gap before it.
-    /// Equation (J4).
-    pub fn own_laws(&self, connection: Connection, worn: Option<&JointGaps<'_>>) -> Result<OwnLaws, InvalidInput> {
-        if self.joints.is_empty() && worn.is_none() {
-            return Ok(OwnLaws::default());
-        }
-        let common = ConnectorLaw::new(self.connectors.stiffness_n_m, connection);
-        let places = (2..=self.modules).flat_map(|joint| self.connectors.y_m.iter().map(move |&y_m| (joint, y_m)));
-        let mut own = Vec::new();
-        for (place, (joint, y_m)) in places.enumerate() {
-            let law = self.law(joint, y_m, connection, worn)?;
-            if law != common {
-                own.push((place, law));
-            }
-        }
-        Ok(own.into())
-    }
-
-    /// The law of one connector.
-    fn law(
-        &self,
-        joint: usize,
-        y_m: f64,
-        connection: Connection,
-        worn: Option<&JointGaps<'_>>,
-    ) -> Result<ConnectorLaw, InvalidInput> {
-        let own = Own::of(self, joint, y_m);
-        let stiffness_n_m = own.connectors.stiffness_n_m.unwrap_or(self.connectors.stiffness_n_m);
-        let (gap_tension_m, gap_compression_m) = match connection {
-            Connection::Linear => {
-                let there = own.senses().iter().filter(|there| **there).count();
-                let stiffness_n_m = 0.5 * there as f64 * stiffness_n_m;
-                return Ok(ConnectorLaw::Linear { stiffness_n_m });
-            }
-            Connection::Nonlinear {
-                gap_tension_m,
-                gap_compression_m,
-            } => (gap_tension_m, gap_compression_m),
-        };
-        let nominal = self.nominal_gaps_m(joint, y_m, [gap_tension_m, gap_compression_m]);
-        let [tension_m, compression_m] = worn.map_or(nominal, |worn| worn(joint, nominal));
-        Ok(ConnectorLaw::Gaps {
-            tension: own.truss(0, stiffness_n_m, tension_m)?,
-            compression: own.truss(1, stiffness_n_m, compression_m)?,
         })
     }
 }

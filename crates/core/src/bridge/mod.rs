@@ -16,8 +16,8 @@ mod row;
 mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
-pub use design::{BridgeDesign, Condensation, Connectors, Direction, DraftBuoyancy, Hinges, Supports, Todd};
-pub use joints::{JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
+pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports, Todd};
+pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 pub(crate) use placement::VehiclePlacement;

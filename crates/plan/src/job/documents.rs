@@ -230,7 +230,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     let mut neutral = design.without_words();
     neutral.connectors.gap_tension_m = 0.0;
     neutral.connectors.gap_compression_m = 0.0;
-    neutral.joints = Joints::structure(&design);
+    neutral.joints = design.joints.structure(design.modules, &design.hinges);
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
     let operator_key = hash_of(&to_value(&neutral)).as_str().into();
