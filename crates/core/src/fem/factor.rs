@@ -5,7 +5,7 @@
 
 use super::probe::{allowed, backward_error, diagonal, hold, sizes};
 use super::{FemError, SymmetricMatrix};
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -76,13 +76,13 @@ impl Factor {
 
     /// `X := A^-1 X` for a block of columns.
     pub(crate) fn solve_columns(&self, x: MatMut<'_, f64>) {
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), Par::Seq));
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            x,
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
+        self.solve_columns_in(x, &mut SolveMemory::default());
+    }
+
+    /// [`Factor::solve_columns`] in memory that is kept for the next block.
+    pub(crate) fn solve_columns_in(&self, x: MatMut<'_, f64>, memory: &mut SolveMemory) {
+        let stack = memory.of(self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), Par::Seq));
+        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
     }
 
     /// `X := L^-1 P X`.
@@ -115,6 +115,20 @@ impl Factor {
             }
             SymbolicCholeskyRaw::Simplicial(_) => {} // of order 0
         }
+    }
+}
+
+/// What a solution needs beside its columns, kept from one to the next: the kernel takes longer to hand out fresh memory for
+/// a block of hundreds of columns than its products take.
+#[derive(Default)]
+pub(crate) struct SolveMemory(Option<(usize, MemBuffer)>);
+
+impl SolveMemory {
+    fn of(&mut self, needed: StackReq) -> &mut MemStack {
+        let bytes = needed.size_bytes();
+        let kept = self.0.take().filter(|(kept, _)| *kept >= bytes);
+        let (_, memory) = self.0.insert(kept.unwrap_or_else(|| (bytes, MemBuffer::new(needed))));
+        MemStack::new(memory)
     }
 }
 
