@@ -13,11 +13,12 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
 };
 use faer::{Conj, MatMut, Par, Side};
+use std::sync::Arc;
 
 /// `P A P^T = L L^T` of a symmetric positive definite matrix.
 #[derive(Debug)]
 pub struct Factor {
-    symbolic: SymbolicCholesky<usize>,
+    symbolic: FactorOrder,
     values: Vec<f64>,
 }
 
@@ -61,6 +62,11 @@ impl Factor {
     pub fn probe(&self, name: &'static str, a: &SymmetricMatrix) -> Result<f64, FemError> {
         let error = backward_error(a, &sizes(diagonal(a)), |x| self.solve(x));
         hold(name, a.order(), error, allowed(a.order()))
+    }
+
+    /// Its order and pattern.
+    pub(super) fn order_of_factor(&self) -> &FactorOrder {
+        &self.symbolic
     }
 
     /// Order of the matrix.
@@ -145,13 +151,18 @@ fn permute(mut x: MatMut<'_, f64>, from: &[usize]) {
 /// which have none.
 const ALWAYS_SUPERNODAL: SupernodalThreshold = SupernodalThreshold(-1.0);
 
-/// The fill-reducing order and the pattern of the factor, in supernodal form for any order above 0.
-pub(super) fn analyse(a: &SymmetricMatrix) -> Result<SymbolicCholesky<usize>, FemError> {
+/// The fill-reducing order and the pattern of the factor, in supernodal form for any order above 0. Matrices of one pattern
+/// share it.
+pub(super) type FactorOrder = Arc<SymbolicCholesky<usize>>;
+
+/// Analyses the pattern of a matrix.
+pub(super) fn analyse(a: &SymmetricMatrix) -> Result<FactorOrder, FemError> {
     let params = CholeskySymbolicParams {
         supernodal_flop_ratio_threshold: ALWAYS_SUPERNODAL,
         ..Default::default()
     };
     factorize_symbolic_cholesky(a.as_faer().symbolic(), Side::Lower, SymmetricOrdering::Amd, params)
+        .map(Arc::new)
         .map_err(|_| FemError::OutOfMemory { dofs: a.order() })
 }
 
