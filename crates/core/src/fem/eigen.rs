@@ -2,13 +2,14 @@
 //!
 //! Knows K symmetric positive semidefinite and M symmetric positive semidefinite. Does not know what vibrates.
 
-use super::inertia::count_below;
+use super::inertia::ShiftedFactor;
 use super::lanczos::{BlockLanczos, Ritz, SymmetricOperator};
 use super::probe::{diagonal, largest, sizes};
 use super::{Factor, FemError, SymmetricMatrix, go_on};
 use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, Par};
+use std::ops::Range;
 
 /// Modes in rising order of eigenvalue.
 #[derive(Debug, Clone)]
@@ -55,19 +56,18 @@ impl EigenPairs {
     /// # Errors
     /// [`FemError::BadPair`].
     pub fn probe(&self, k: &SymmetricMatrix, m: &SymmetricMatrix, s: f64) -> Result<f64, FemError> {
-        self.probe_from(0, k, m, s)
+        self.probe_of(0..self.lambda.len(), k, m, s)
     }
 
-    /// The probe of the pairs from one on, against all before.
-    pub(super) fn probe_from(
+    /// The probe of some pairs, against all up to the last of them.
+    pub(super) fn probe_of(
         &self,
-        first: usize,
+        pairs: Range<usize>,
         k: &SymmetricMatrix,
         m: &SymmetricMatrix,
         s: f64,
     ) -> Result<f64, FemError> {
-        let (dofs, all) = (k.order(), self.lambda.len());
-        let count = all - first;
+        let (dofs, first, count) = (k.order(), pairs.start, pairs.len());
         let probed = self.shapes.as_ref().subcols(first, count);
         let product = |a: &SymmetricMatrix| {
             let mut ax = Mat::<f64>::zeros(dofs, count);
@@ -76,11 +76,11 @@ impl EigenPairs {
         };
         let (kx, mx) = (product(k), product(m));
         let sizes = sizes(diagonal(k).zip(diagonal(m)).map(|(k, m)| k + s * m));
-        let mut gram = Mat::<f64>::zeros(all, count);
-        let shapes_t = self.shapes.transpose();
+        let mut gram = Mat::<f64>::zeros(pairs.end, count);
+        let shapes_t = self.shapes.as_ref().subcols(0, pairs.end).transpose();
         matmul(gram.as_mut(), Accum::Replace, shapes_t, mx.as_ref(), 1.0, Par::Seq);
         let mut share: f64 = 0.0;
-        for (j, lambda) in self.lambda[first..].iter().enumerate() {
+        for (j, lambda) in self.lambda[pairs.clone()].iter().enumerate() {
             let (mut left, mut energy, mut parts) = (0.0, 0.0, 0.0);
             for (i, size) in sizes.iter().enumerate() {
                 let (x, kx) = (probed[(i, j)], kx[(i, j)]);
@@ -160,17 +160,23 @@ pub(crate) fn lowest_modes_unless(
         });
     }
     factor.backward(shapes.as_mut());
-    for j in 0..count {
-        let x: Vec<f64> = shapes.col(j).iter().copied().collect();
-        let norm = m.form(&x, &x).sqrt();
-        shapes.col_mut(j).iter_mut().for_each(|x| *x /= norm);
-    }
+    normalise(m, &mut shapes);
     let pairs = EigenPairs {
         lambda: mu.iter().map(|mu| s / mu - s).collect(),
         shapes,
     };
     pairs.probe(k, m, s)?;
     Ok(pairs)
+}
+
+/// Makes `x^T M x = 1` of each column.
+pub(super) fn normalise(m: &SymmetricMatrix, shapes: &mut Mat<f64>) {
+    let columns: Vec<Vec<f64>> = shapes.col_iter().map(|x| x.iter().copied().collect()).collect();
+    let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    for (x, form) in shapes.col_iter_mut().zip(m.forms(&columns)) {
+        let norm = form.sqrt();
+        x.iter_mut().for_each(|x| *x /= norm);
+    }
 }
 
 /// Whether all eigenvalues are computed at once.
@@ -250,7 +256,7 @@ fn complete(k: &SymmetricMatrix, operator: &ShiftInvert<'_>, lambda: &[f64], cou
     let mut failure = None;
     for share in [0.5, 0.3, 0.7] {
         let sigma = lambda[found - 1] + share * (lambda[found] - lambda[found - 1]);
-        match count_below(k, operator.m, sigma) {
+        match ShiftedFactor::new(k, operator.m, sigma, operator.factor.order_of_factor()).map(|factor| factor.below()) {
             Ok(counted) if counted == found => return Ok(true),
             Ok(counted) if counted > found => return Ok(false),
             Ok(counted) => {

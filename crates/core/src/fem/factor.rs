@@ -5,7 +5,7 @@
 
 use super::probe::{allowed, backward_error, diagonal, hold, sizes};
 use super::{FemError, SymmetricMatrix};
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -13,11 +13,12 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
 };
 use faer::{Conj, MatMut, Par, Side};
+use std::sync::Arc;
 
 /// `P A P^T = L L^T` of a symmetric positive definite matrix.
 #[derive(Debug)]
 pub struct Factor {
-    symbolic: SymbolicCholesky<usize>,
+    symbolic: FactorOrder,
     values: Vec<f64>,
 }
 
@@ -63,6 +64,11 @@ impl Factor {
         hold(name, a.order(), error, allowed(a.order()))
     }
 
+    /// Its order and pattern.
+    pub(super) fn order_of_factor(&self) -> &FactorOrder {
+        &self.symbolic
+    }
+
     /// Order of the matrix.
     pub fn order(&self) -> usize {
         self.symbolic.nrows()
@@ -76,13 +82,13 @@ impl Factor {
 
     /// `X := A^-1 X` for a block of columns.
     pub(crate) fn solve_columns(&self, x: MatMut<'_, f64>) {
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), Par::Seq));
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            x,
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
+        self.solve_columns_in(x, &mut SolveMemory::default());
+    }
+
+    /// [`Factor::solve_columns`] in memory that is kept for the next block.
+    pub(crate) fn solve_columns_in(&self, x: MatMut<'_, f64>, memory: &mut SolveMemory) {
+        let stack = memory.of(self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), Par::Seq));
+        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
     }
 
     /// `X := L^-1 P X`.
@@ -118,6 +124,20 @@ impl Factor {
     }
 }
 
+/// What a solution needs beside its columns, kept from one to the next: the kernel takes longer to hand out fresh memory for
+/// a block of hundreds of columns than its products take.
+#[derive(Default)]
+pub(crate) struct SolveMemory(Option<(usize, MemBuffer)>);
+
+impl SolveMemory {
+    fn of(&mut self, needed: StackReq) -> &mut MemStack {
+        let bytes = needed.size_bytes();
+        let kept = self.0.take().filter(|(kept, _)| *kept >= bytes);
+        let (_, memory) = self.0.insert(kept.unwrap_or_else(|| (bytes, MemBuffer::new(needed))));
+        MemStack::new(memory)
+    }
+}
+
 /// Row i of X becomes what row `from[i]` was.
 fn permute(mut x: MatMut<'_, f64>, from: &[usize]) {
     let mut old = vec![0.0; x.nrows()];
@@ -131,13 +151,18 @@ fn permute(mut x: MatMut<'_, f64>, from: &[usize]) {
 /// which have none.
 const ALWAYS_SUPERNODAL: SupernodalThreshold = SupernodalThreshold(-1.0);
 
-/// The fill-reducing order and the pattern of the factor, in supernodal form for any order above 0.
-pub(super) fn analyse(a: &SymmetricMatrix) -> Result<SymbolicCholesky<usize>, FemError> {
+/// The fill-reducing order and the pattern of the factor, in supernodal form for any order above 0. Matrices of one pattern
+/// share it.
+pub(super) type FactorOrder = Arc<SymbolicCholesky<usize>>;
+
+/// Analyses the pattern of a matrix.
+pub(super) fn analyse(a: &SymmetricMatrix) -> Result<FactorOrder, FemError> {
     let params = CholeskySymbolicParams {
         supernodal_flop_ratio_threshold: ALWAYS_SUPERNODAL,
         ..Default::default()
     };
     factorize_symbolic_cholesky(a.as_faer().symbolic(), Side::Lower, SymmetricOrdering::Amd, params)
+        .map(Arc::new)
         .map_err(|_| FemError::OutOfMemory { dofs: a.order() })
 }
 

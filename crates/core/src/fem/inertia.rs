@@ -2,7 +2,7 @@
 //!
 //! Knows Sylvester's law of inertia. Does not know eigenvectors.
 
-use super::factor::analyse;
+use super::factor::{FactorOrder, analyse};
 use super::probe::{INDEFINITE_GROWTH, allowed, backward_error, diagonal, hold, sizes};
 use super::{FemError, SymmetricMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -10,12 +10,13 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalIntranodeLbltRef;
 use faer::sparse::linalg::cholesky::{IntranodeLbltRef, SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::{Conj, MatMut, Par, Side};
+use std::sync::Arc;
 
 /// `P (K - sigma M) P^T = L B L^T`, B of blocks of one or two. The pivots are chosen within supernodes, so a probe tells
 /// whether they were good.
 #[derive(Debug)]
 pub(super) struct ShiftedFactor {
-    symbolic: SymbolicCholesky<usize>,
+    symbolic: Arc<SymbolicCholesky<usize>>,
     values: Vec<f64>,
     below_diagonal: Vec<f64>,
     /// The order of the pivots and its inverse.
@@ -23,15 +24,19 @@ pub(super) struct ShiftedFactor {
 }
 
 impl ShiftedFactor {
-    /// Factorises and probes.
+    /// Factorises and probes; `order` is that of a factor of `K + s M`, whose pattern is the same at any s.
     ///
     /// # Errors
     /// [`FemError::BadFactor`] where sigma is so close to an eigenvalue that the factor is useless,
     /// [`FemError::OutOfMemory`].
-    pub(super) fn new(k: &SymmetricMatrix, m: &SymmetricMatrix, sigma: f64) -> Result<Self, FemError> {
+    pub(super) fn new(
+        k: &SymmetricMatrix,
+        m: &SymmetricMatrix,
+        sigma: f64,
+        order: &FactorOrder,
+    ) -> Result<Self, FemError> {
         let a = SymmetricMatrix::combine(&[(1.0, k), (-sigma, m)])?;
-        let n = a.order();
-        let symbolic = analyse(&a)?;
+        let (n, symbolic) = (a.order(), Arc::clone(order));
         let mut values = vec![0.0; symbolic.len_val()];
         let (mut below_diagonal, mut forward, mut inverse) = (vec![0.0; n], vec![0; n], vec![0; n]);
         let scratch = symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default());
@@ -112,5 +117,6 @@ impl ShiftedFactor {
 /// [`FemError::BadFactor`] where sigma is so close to an eigenvalue that its factor is useless,
 /// [`FemError::OutOfMemory`].
 pub fn count_below(k: &SymmetricMatrix, m: &SymmetricMatrix, sigma: f64) -> Result<usize, FemError> {
-    Ok(ShiftedFactor::new(k, m, sigma)?.below())
+    let order = analyse(&SymmetricMatrix::combine(&[(1.0, k), (-sigma, m)])?)?;
+    Ok(ShiftedFactor::new(k, m, sigma, &order)?.below())
 }

@@ -24,6 +24,7 @@ pub use beam::{Beam, BeamSection};
 pub(crate) use eigen::lowest_modes_unless;
 pub use eigen::{EigenPairs, lowest_modes};
 pub use factor::Factor;
+pub(crate) use factor::SolveMemory;
 pub use frame::QuadFrame;
 pub use inertia::count_below;
 pub use mesh::{DOFS_PER_NODE, Mesh, NodeId};

@@ -5,13 +5,17 @@
 //! search for all of them costs the cube.
 
 use super::eigen::lowest_modes_unless;
-use super::eigen::{EigenPairs, GAP, is_small};
+use super::eigen::{EigenPairs, GAP, is_small, normalise};
+use super::factor::FactorOrder;
 use super::inertia::ShiftedFactor;
 use super::lanczos::{BlockLanczos, Ritz, SymmetricOperator};
 use super::{Factor, FemError, SymmetricMatrix, go_on};
 use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Modes up to which one search for all is cheaper than windows.
 pub const ONE_SEARCH: usize = 128;
@@ -38,7 +42,7 @@ pub struct ModeSearch<'a> {
     stop: Stop<'a>,
     pairs: EigenPairs,
     /// Of large problems `K + s M`, and its factor.
-    shifted: Option<(SymmetricMatrix, Factor)>,
+    shifted: Option<Arc<(SymmetricMatrix, Factor)>>,
 }
 
 /// A window of the spectrum: modes between two numbers at which they were counted.
@@ -87,31 +91,29 @@ impl<'a> ModeSearch<'a> {
             self.pairs = lowest_modes_unless(self.k, self.m, twice.min(n), self.s, self.stop)?;
             return Ok(());
         }
-        let (c, factor) = match self.shifted.take() {
-            Some(shifted) => shifted,
-            None => {
-                let c = SymmetricMatrix::combine(&[(1.0, self.k), (self.s, self.m)])?;
-                let factor = Factor::new("K + s M of modes", &c)?;
-                (c, factor)
-            }
-        };
-        let first = self.window(self.begin()?)?;
-        let second = self.window((first.ends[1], first.below[1]));
+        let shifted = self.shifted()?;
+        let (c, factor) = (&shifted.0, &shifted.1);
+        let first = self.window(self.begin()?, factor.order_of_factor())?;
+        let second = self.window((first.ends[1], first.below[1]), factor.order_of_factor());
         let solve = |window: Window| {
-            let (lambda, mut shapes) = self.solve(window, &c, &factor)?;
+            let (lambda, mut shapes) = self.solve(window, c, factor)?;
             factor.backward(shapes.as_mut());
             Ok((lambda, shapes))
         };
         // where no second one is found, the first has the last modes that there are
         let (found, more) = rayon::join(|| solve(first), || second.ok().map(solve));
-        let (lambda, shapes) = found?;
-        self.append(first.below[0], lambda, shapes)?;
-        if let Some(more) = more {
-            let (lambda, shapes) = more?;
-            self.append(first.below[1], lambda, shapes)?;
+        let found = std::iter::once(found).chain(more);
+        self.append(first.below[0], found.collect::<Result<_, FemError>>()?)
+    }
+
+    /// `K + s M` and its factor, made when first needed.
+    fn shifted(&mut self) -> Result<Arc<(SymmetricMatrix, Factor)>, FemError> {
+        if let Some(shifted) = &self.shifted {
+            return Ok(Arc::clone(shifted));
         }
-        self.shifted = Some((c, factor));
-        Ok(())
+        let c = SymmetricMatrix::combine(&[(1.0, self.k), (self.s, self.m)])?;
+        let factor = Factor::new("K + s M of modes", &c)?;
+        Ok(Arc::clone(self.shifted.insert(Arc::new((c, factor)))))
     }
 
     /// Where the next window begins: the widest gap among the last modes found, with the modes below it.
@@ -133,7 +135,7 @@ impl<'a> ModeSearch<'a> {
     }
 
     /// A window of a good number of modes.
-    fn window(&self, (start, below): (f64, usize)) -> Result<Window, FemError> {
+    fn window(&self, (start, below): (f64, usize), order: &FactorOrder) -> Result<Window, FemError> {
         let lambda = &self.pairs.lambda;
         // the density of the last modes, in frequency
         let half = (below / 2).min(lambda.len() - 1);
@@ -147,7 +149,7 @@ impl<'a> ModeSearch<'a> {
         for _ in 0..TRIALS {
             go_on(self.stop)?;
             let end = (root(start) + width).powi(2);
-            match ShiftedFactor::new(self.k, self.m, end) {
+            match ShiftedFactor::new(self.k, self.m, end, order) {
                 Err(error) => {
                     failure = error;
                     width *= 1.01;
@@ -188,7 +190,7 @@ impl<'a> ModeSearch<'a> {
     /// The modes of a window in rising order, each with its vector y of `s L^-1 M L^-T`.
     fn solve(&self, window: Window, c: &SymmetricMatrix, factor: &Factor) -> Result<(Vec<f64>, Mat<f64>), FemError> {
         let sigma = 0.5 * (window.ends[0] + window.ends[1]);
-        let (sigma, shifted) = self.near(sigma)?;
+        let (sigma, shifted) = self.near(sigma, factor.order_of_factor())?;
         let operator = ShiftInverted {
             m: self.m,
             c,
@@ -229,11 +231,11 @@ impl<'a> ModeSearch<'a> {
     }
 
     /// Sigma, or a number close by at which the pivots are good, with the factor there.
-    fn near(&self, sigma: f64) -> Result<(f64, ShiftedFactor), FemError> {
+    fn near(&self, sigma: f64, order: &FactorOrder) -> Result<(f64, ShiftedFactor), FemError> {
         let mut last = None;
         for step in 0..8 {
             let sigma = sigma * (1.0 + 1e-3 * f64::from(step));
-            match ShiftedFactor::new(self.k, self.m, sigma) {
+            match ShiftedFactor::new(self.k, self.m, sigma, order) {
                 Ok(factor) => return Ok((sigma, factor)),
                 Err(error) => last = Some(error),
             }
@@ -241,29 +243,29 @@ impl<'a> ModeSearch<'a> {
         Err(last.unwrap_or(FemError::Shift { value: sigma }))
     }
 
-    /// Puts the modes of a window behind the first `kept`, free of what is left of these in them.
-    fn append(&mut self, kept: usize, lambda: Vec<f64>, mut y: Mat<f64>) -> Result<(), FemError> {
-        let (n, new) = (self.k.order(), lambda.len());
-        let mut shapes = Mat::<f64>::zeros(n, kept + new);
-        shapes
-            .as_mut()
-            .subcols_mut(0, kept)
-            .copy_from(self.pairs.shapes.as_ref().subcols(0, kept));
-        // a vector that is close to another in frequency holds a little of it
-        let near = kept.saturating_sub(MOST)..kept;
-        let old = self.pairs.shapes.as_ref().subcols(near.start, near.len());
-        m_orthogonalise(self.m, old, y.as_mut());
-        for j in 0..new {
-            let x: Vec<f64> = y.col(j).iter().copied().collect();
-            let norm = self.m.form(&x, &x).sqrt();
-            y.col_mut(j).iter_mut().for_each(|x| *x /= norm);
-        }
-        shapes.as_mut().subcols_mut(kept, new).copy_from(&y);
+    /// Puts the modes of windows behind the first `kept`, each free of what is left in it of those before.
+    fn append(&mut self, kept: usize, found: Vec<(Vec<f64>, Mat<f64>)>) -> Result<(), FemError> {
+        let all = kept + found.iter().map(|(lambda, _)| lambda.len()).sum::<usize>();
+        let mut shapes = Mat::<f64>::zeros(self.k.order(), all);
+        let old = self.pairs.shapes.as_ref().subcols(0, kept);
+        shapes.as_mut().subcols_mut(0, kept).copy_from(old);
         self.pairs.lambda.truncate(kept);
-        self.pairs.lambda.extend(lambda);
+        let mut windows = Vec::new();
+        for (lambda, mut y) in found {
+            let (before, new) = (self.pairs.lambda.len(), lambda.len());
+            // a vector that is close to another in frequency holds a little of it
+            let near = before.saturating_sub(MOST)..before;
+            m_orthogonalise(self.m, shapes.as_ref().subcols(near.start, near.len()), y.as_mut());
+            normalise(self.m, &mut y);
+            shapes.as_mut().subcols_mut(before, new).copy_from(&y);
+            self.pairs.lambda.extend(lambda);
+            windows.push(before..before + new);
+        }
         self.pairs.shapes = shapes;
-        self.pairs.probe_from(kept, self.k, self.m, self.s)?;
-        Ok(())
+        let probe = |window: Range<usize>| self.pairs.probe_of(window, self.k, self.m, self.s).map(|_| ());
+        // the first failure is told, on any number of threads
+        let probed: Vec<Result<(), FemError>> = windows.into_par_iter().with_max_len(1).map(probe).collect();
+        probed.into_iter().collect()
     }
 }
 

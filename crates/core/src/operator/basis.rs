@@ -2,9 +2,10 @@
 //!
 //! Knows the bridge's matrices and rows. Does not know step lengths, vehicles or connector laws.
 
+use super::columns::{ColumnSolver, SOLVED_AT_ONCE};
 use super::cutoff::{Cutoff, CutoffJudge};
 use super::persist::{NumberReader, OperatorParts};
-use super::residual_rows::{Columns, ResidualRows, dot, residual_of_deck};
+use super::residual_rows::{ResidualRows, dot, residual_of_deck};
 use crate::bridge::{Bridge, Track};
 use crate::fem::{EigenPairs, Factor, FemError, ModeSearch, ONE_SEARCH, SparseRow, SymmetricMatrix};
 use crate::stop::Stop;
@@ -20,9 +21,6 @@ const SHIFT: f64 = 0.4;
 /// Fewest modes computed at first, and how many a module: most bridges need about this many.
 const FIRST_MODES: usize = 64;
 const FIRST_MODES_OF_MODULE: usize = 4;
-
-/// Rows of the judge that a thread takes at once.
-const JUDGED_AT_ONCE: usize = 64;
 
 /// Why a bridge has no operator.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -124,32 +122,24 @@ impl BridgeOperator {
         let factor = Factor::new("K + s M of the operator", &shifted(bridge)?)?;
         let track = Track::new(bridge);
         let judged = judged_rows(bridge, &track);
-        let solved = Columns::solved(&factor, &judged, stop)?;
-        let flexibility = (0..judged.len()).map(|i| judged[i].dot(solved.column(i))).collect();
-        let every: Vec<&[f64]> = (0..judged.len()).map(|i| solved.column(i)).collect();
-        let dynamic = every
-            .par_chunks(JUDGED_AT_ONCE)
-            .flat_map_iter(|x| bridge.m.forms(x))
-            .collect();
-        drop(solved);
-        let mut judge = CutoffJudge {
-            flexibility,
-            dynamic,
-            shapes: Mat::zeros(0, 0),
-        };
+        let solver = ColumnSolver::new(&factor, stop);
         let of_modules = FIRST_MODES_OF_MODULE * bridge.design().modules;
         let first = of_modules.clamp(FIRST_MODES, ONE_SEARCH).min(bridge.dofs());
-        let mut search = ModeSearch::new(&bridge.k, &bridge.m, first, SHIFT, stop)?;
+        let (judge, search) = rayon::join(
+            || judge(&solver, &judged, &bridge.m),
+            || ModeSearch::new(&bridge.k, &bridge.m, first, SHIFT, stop),
+        );
+        let (mut judge, mut search) = (judge?, search?);
         loop {
             let pairs = search.pairs();
             judge.shapes = Mat::from_fn(judged.len(), pairs.lambda.len(), |i, k| {
                 dot(&judged[i], &pairs.shapes, k)
             });
             match judge.fewest(pairs, SHIFT, tolerance) {
-                Ok(cutoff) => return Ok(Self::of(bridge, track, &factor, pairs, cutoff, stop)?),
+                Ok(cutoff) => return Ok(Self::of(bridge, track, &solver, pairs, cutoff, stop)?),
                 // every mode there is: nothing is left out but rounding
                 Err(cutoff) if pairs.lambda.len() >= bridge.dofs() => {
-                    return Ok(Self::of(bridge, track, &factor, pairs, cutoff, stop)?);
+                    return Ok(Self::of(bridge, track, &solver, pairs, cutoff, stop)?);
                 }
                 Err(_) => search.extend()?,
             }
@@ -160,7 +150,7 @@ impl BridgeOperator {
     fn of(
         bridge: &Bridge,
         track: Track,
-        factor: &Factor,
+        solver: &ColumnSolver<'_>,
         pairs: &EigenPairs,
         cutoff: Cutoff,
         stop: Stop<'_>,
@@ -179,7 +169,7 @@ impl BridgeOperator {
         };
         let (nc, nv, ni) = (connectors.len(), observed.len(), inside.len());
         let all = ResidualRows::new(
-            factor,
+            solver,
             [connectors, observed, inside].concat(),
             (lambda, SHIFT),
             shapes,
@@ -197,7 +187,7 @@ impl BridgeOperator {
             r_vb: all.among(nc, nv, 0, nc),
             r_inside_b: all.among(nc + nv, ni, 0, nc),
             inside_bounds: inside_bounds(&all, lambda, &sizes, &deck),
-            r_deck: residual_of_deck(factor, &track, shapes, (lambda, SHIFT), near, stop)?,
+            r_deck: residual_of_deck(solver, &track, shapes, (lambda, SHIFT), near)?,
             near,
             breadth_m: design.module.breadth_m,
             b: all.phi.rows(0, nc).into_owned(),
@@ -406,6 +396,25 @@ fn observed(bridge: &Bridge) -> (Observed, Vec<SparseRow>) {
 /// `K + SHIFT M`.
 fn shifted(bridge: &Bridge) -> Result<SymmetricMatrix, FemError> {
     SymmetricMatrix::combine(&[(1.0, &bridge.k), (SHIFT, &bridge.m)])
+}
+
+/// The flexibilities of the judge's rows, which know no modes yet.
+fn judge(solver: &ColumnSolver<'_>, rows: &[SparseRow], m: &SymmetricMatrix) -> Result<CutoffJudge, FemError> {
+    let of_block = |rows: &[SparseRow]| {
+        solver.read(rows, |columns| {
+            let columns: Vec<&[f64]> = columns.chunks_exact(solver.order()).collect();
+            let whole = rows.iter().zip(&columns).map(|(row, x)| row.dot(x));
+            whole.zip(m.forms(&columns)).collect::<Vec<_>>()
+        })
+    };
+    let blocks = rows.par_chunks(SOLVED_AT_ONCE).map(of_block);
+    let blocks: Vec<Vec<(f64, f64)>> = blocks.collect::<Result<_, _>>()?;
+    let (flexibility, dynamic) = blocks.into_iter().flatten().unzip();
+    Ok(CutoffJudge {
+        flexibility,
+        dynamic,
+        shapes: Mat::zeros(0, 0),
+    })
 }
 
 /// Connectors, and the deck's nodes at every other station on edges and centre.

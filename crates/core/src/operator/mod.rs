@@ -11,6 +11,7 @@
 
 mod basis;
 mod clock;
+mod columns;
 mod connectors;
 mod contact_system;
 mod crossings;

@@ -4,8 +4,9 @@
 //!
 //! Work is cut into blocks of one size on any number of threads, so that these do not change a bit.
 
+use super::columns::{ColumnSolver, SOLVED_AT_ONCE};
 use crate::bridge::Track;
-use crate::fem::{Factor, FemError, SparseRow, go_on};
+use crate::fem::{FemError, SparseRow, go_on};
 use crate::stop::Stop;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, Par};
@@ -27,12 +28,12 @@ pub(super) struct ResidualRows<'a> {
 }
 
 impl<'a> ResidualRows<'a> {
-    /// Rows on the modes `shapes` of eigenvalues lambda; `factor` is that of K with a shift.
+    /// Rows on the modes `shapes` of eigenvalues lambda; `solver` is that of K with a shift.
     ///
     /// # Errors
     /// [`FemError::Stopped`], as of everything here that may fail.
     pub(super) fn new(
-        factor: &Factor,
+        solver: &ColumnSolver<'_>,
         rows: Vec<SparseRow>,
         (lambda, shift): (&[f64], f64),
         shapes: &'a Mat<f64>,
@@ -40,7 +41,7 @@ impl<'a> ResidualRows<'a> {
     ) -> Result<Self, FemError> {
         Ok(Self {
             phi: DMatrix::from_fn(rows.len(), lambda.len(), |i, k| dot(&rows[i], shapes, k)),
-            solved: Columns::solved(factor, &rows, stop)?,
+            solved: Columns::solved(solver, &rows)?,
             rows,
             shifted: lambda.iter().map(|lambda| lambda + shift).collect(),
             shapes,
@@ -89,7 +90,7 @@ impl<'a> ResidualRows<'a> {
     /// For each track column its influence: `phi`, then R with all rows.
     pub(super) fn deck(&self, track: &Track) -> Result<Vec<f64>, FemError> {
         let (m, many) = (self.shifted.len(), self.rows.len());
-        let (width, further) = (m + many, self.further_modes());
+        let (width, scaled) = (m + many, self.scaled_modes());
         let mut deck = vec![0.0; track.columns() * width];
         let blocks = deck.par_chunks_mut(width.max(1) * BLOCK).enumerate();
         blocks.try_for_each(|(block, of_block)| {
@@ -100,15 +101,18 @@ impl<'a> ResidualRows<'a> {
                 for (k, phi) in phi.iter_mut().enumerate() {
                     *phi = self.shapes[(node(c), k)];
                 }
-                Arch::new().dispatch(SumsOfModes(self, &phi[..m.min(ONE_BY_ONE)], 0, sums));
+                if scaled.is_none() {
+                    Arch::new().dispatch(SumsOfModes(self, phi, 0, sums));
+                }
             }
-            if let Some(further) = &further {
-                add_further(further, m, of_block, width);
+            if let Some(scaled) = &scaled {
+                sum_all_modes(scaled, of_block, width);
             }
-            for (c, influence) in of_block.chunks_exact_mut(width).enumerate() {
-                let row = SparseRow(vec![(node(c), 1.0)]);
-                for (j, r) in influence[m..].iter_mut().enumerate() {
-                    *r = row.dot(self.solved.column(j)) - *r;
+            // column by column: neighbouring nodes stand close together in it
+            for j in 0..many {
+                let column = self.solved.column(j);
+                for (c, influence) in of_block.chunks_exact_mut(width).enumerate() {
+                    influence[m + j] = column[node(c)] - influence[m + j];
                 }
             }
             Ok(())
@@ -116,31 +120,28 @@ impl<'a> ResidualRows<'a> {
         Ok(deck)
     }
 
-    /// `phi / (lambda + shift)` of the modes that are not summed one by one, rows x modes; none where there are no such.
-    fn further_modes(&self) -> Option<Mat<f64>> {
-        let further = self.shifted.get(ONE_BY_ONE..).filter(|further| !further.is_empty())?;
-        let entry = |i: usize, k: usize| self.phi[(i, ONE_BY_ONE + k)] / further[k];
-        Some(Mat::from_fn(self.rows.len(), further.len(), entry))
+    /// `phi / (lambda + shift)`, rows x modes; none where so few modes are summed one by one.
+    fn scaled_modes(&self) -> Option<Mat<f64>> {
+        let entry = |i: usize, k: usize| self.phi[(i, k)] / self.shifted[k];
+        let m = self.shifted.len();
+        (m > ONE_BY_ONE).then(|| Mat::from_fn(self.rows.len(), m, entry))
     }
 }
 
-/// Adds what the further modes have to the sums of influences, which stand behind the m values on the modes.
-fn add_further(further: &Mat<f64>, m: usize, influences: &mut [f64], width: usize) {
-    let count = influences.len() / width;
-    let mut all = MatMut::from_column_major_slice_mut(influences, width, count);
-    let own = all.as_ref().subrows(ONE_BY_ONE, m - ONE_BY_ONE).to_owned();
-    let sums = all.as_mut().subrows_mut(m, width - m);
-    matmul(sums, Accum::Add, further.as_ref(), own.as_ref(), 1.0, Par::Seq);
+/// The sums of influences over all modes, put behind their values on these.
+fn sum_all_modes(scaled: &Mat<f64>, influences: &mut [f64], width: usize) {
+    let (m, count) = (scaled.ncols(), influences.len() / width);
+    let (own, sums) = MatMut::from_column_major_slice_mut(influences, width, count).split_at_row_mut(m);
+    matmul(sums, Accum::Replace, scaled.as_ref(), own.as_ref(), 1.0, Par::Seq);
 }
 
 /// R among the deck's nodes: for each column `lines * (2 near + 1)` numbers.
 pub(super) fn residual_of_deck(
-    factor: &Factor,
+    solver: &ColumnSolver<'_>,
     track: &Track,
     shapes: &Mat<f64>,
     (lambda, shift): (&[f64], f64),
     near: usize,
-    stop: Stop<'_>,
 ) -> Result<Vec<f64>, FemError> {
     let (lines, stations, width) = (track.lines(), track.stations(), 2 * near + 1);
     let mut all = vec![0.0; lines * stations * lines * width];
@@ -156,34 +157,39 @@ pub(super) fn residual_of_deck(
                 *scaled = shapes[(track.dof(c), k)] / root;
             }
         });
-    for (line, of_line) in all.chunks_exact_mut(stations * lines * width).enumerate() {
-        let blocks = of_line.par_chunks_mut(SOLVED_AT_ONCE * lines * width).enumerate();
-        blocks.try_for_each(|(block, of_block)| {
-            let station = block * SOLVED_AT_ONCE;
+    let of_line = stations * lines * width;
+    let blocks = all.chunks_exact_mut(of_line.max(1)).enumerate().flat_map(|(line, r)| {
+        let blocks = r.chunks_mut(SOLVED_AT_ONCE * lines * width).enumerate();
+        blocks.map(move |(block, r)| (line, block * SOLVED_AT_ONCE, r))
+    });
+    let blocks: Vec<(usize, usize, &mut [f64])> = blocks.collect();
+    blocks
+        .into_par_iter()
+        .with_max_len(1)
+        .try_for_each(|(line, station, of_block)| {
             let many = of_block.len() / (lines * width);
             let unit = |s: usize| SparseRow(vec![(track.dof(line * stations + s), 1.0)]);
             let rows: Vec<SparseRow> = (station..station + many).map(unit).collect();
-            let solved = Columns::solved(factor, &rows, stop)?;
-            for (i, of_node) in of_block.chunks_exact_mut(lines * width).enumerate() {
-                let (s, whole) = (station + i, solved.column(i));
-                let (first, end) = (s.saturating_sub(near), (s + near + 1).min(stations));
-                for (other_line, r) in of_node.chunks_exact_mut(width).enumerate() {
-                    let (r, other) = (&mut r[first + near - s..][..end - first], other_line * stations + first);
-                    Arch::new().dispatch(ProductsOfModes {
-                        scaled: &scaled,
-                        nodes,
-                        own: line * stations + s,
-                        other,
-                        sums: r,
-                    });
-                    for (t, r) in (other..).zip(r) {
-                        *r = whole[track.dof(t)] - *r;
+            solver.read(&rows, |solved| {
+                let columns = solved.chunks_exact(solver.order());
+                for ((s, whole), of_node) in (station..).zip(columns).zip(of_block.chunks_exact_mut(lines * width)) {
+                    let (first, end) = (s.saturating_sub(near), (s + near + 1).min(stations));
+                    for (other_line, r) in of_node.chunks_exact_mut(width).enumerate() {
+                        let (r, other) = (&mut r[first + near - s..][..end - first], other_line * stations + first);
+                        Arch::new().dispatch(ProductsOfModes {
+                            scaled: &scaled,
+                            nodes,
+                            own: line * stations + s,
+                            other,
+                            sums: r,
+                        });
+                        for (t, r) in (other..).zip(r) {
+                            *r = whole[track.dof(t)] - *r;
+                        }
                     }
                 }
-            }
-            Ok(())
+            })
         })?;
-    }
     Ok(all)
 }
 
@@ -225,16 +231,12 @@ impl WithSimd for ProductsOfModes<'_> {
     }
 }
 
-/// Modes that are summed one by one. All further ones of a long bridge are one product of matrices, ten times as fast;
-/// the numbers of bridges that have no more hang on the order of this sum.
+/// Most modes that are summed one by one. The many of a long bridge are one product of matrices, ten times as fast; the
+/// numbers of bridges that have no more hang on the order of this sum.
 const ONE_BY_ONE: usize = 128;
 
-/// Columns that are solved for at once. The library blocks its products by their number, so that the bits of a solution hang
-/// on it a little.
-const SOLVED_AT_ONCE: usize = 512;
-
 /// Influences that are computed at once.
-const BLOCK: usize = 32;
+const BLOCK: usize = 128;
 
 /// Columns side by side.
 pub(super) struct Columns {
@@ -244,21 +246,13 @@ pub(super) struct Columns {
 
 impl Columns {
     /// `A^-1 r^T` of each row.
-    pub(super) fn solved(factor: &Factor, rows: &[SparseRow], stop: Stop<'_>) -> Result<Self, FemError> {
-        let order = factor.order();
+    pub(super) fn solved(solver: &ColumnSolver<'_>, rows: &[SparseRow]) -> Result<Self, FemError> {
+        let order = solver.order();
         let mut numbers = vec![0.0; order * rows.len()];
-        let block = |(block, rows): (&mut [f64], &[SparseRow])| {
-            go_on(stop)?;
-            for (column, row) in block.chunks_exact_mut(order).zip(rows) {
-                for &(i, v) in &row.0 {
-                    column[i] += v;
-                }
-            }
-            factor.solve_columns(MatMut::from_column_major_slice_mut(block, order, rows.len()));
-            Ok(())
-        };
         let blocks = numbers.par_chunks_mut(order.max(1) * SOLVED_AT_ONCE);
-        blocks.zip(rows.par_chunks(SOLVED_AT_ONCE)).try_for_each(block)?;
+        blocks
+            .zip(rows.par_chunks(SOLVED_AT_ONCE))
+            .try_for_each(|(block, rows)| solver.write(rows, block))?;
         Ok(Self { numbers, order })
     }
 

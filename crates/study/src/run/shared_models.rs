@@ -112,24 +112,23 @@ impl SharedModels {
         };
         let crossings: Vec<CrossingJob<'_>> = all.iter().filter_map(|job| job.as_crossing()).collect();
         progress.stage("modules: finite elements, condensation");
-        let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
-        let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
-        models.modules = each(cancel, &new, |job| Some(module_key(job)), |job| models.module(job));
-        let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
-        models
-            .modules
-            .extend(taken.map(|(key, module)| (key.clone(), module.clone())));
+        models.modules = models.all_modules(all, known, cancel);
         progress.stage("bridges: assembly");
         let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
         let bridge = |job: &&Job| Some(bridge_key(job));
-        models.bridges = each(cancel, &loaded, bridge, |job| models.bridge(job, Ends::Supported));
-        progress.stage("damping: bending modes of the free bridge");
-        models.damping = each(
-            cancel,
-            &crossings,
-            |job| Some(damping_key(job)),
-            |job| models.damping_of(job, cancel),
-        );
+        let damping = || {
+            let key = |job: &CrossingJob<'_>| Some(damping_key(job));
+            each(cancel, &crossings, key, |job| models.damping_of(job, cancel))
+        };
+        let bridges_and_operators = || {
+            let bridges = each(cancel, &loaded, bridge, |job| models.bridge(job, Ends::Supported));
+            progress.stage("damping, operators: modes and what they leave out");
+            let operator = |job: &CrossingJob<'_>| models.operator(job, &bridges, cache, cancel);
+            let operators = each(cancel, &crossings, operator_key, operator);
+            (bridges, operators)
+        };
+        // damping has a bridge of its own, and the search for its modes runs on one thread
+        ((models.bridges, models.operators), models.damping) = rayon::join(bridges_and_operators, damping);
         progress.stage("solvers: factors");
         let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
         models.statics = each(cancel, &held, bridge, |job| {
@@ -144,10 +143,6 @@ impl SharedModels {
             |job| Some(crossing_key(job)),
             |job| models.crossing_solver(job),
         );
-        progress.stage("operators: modes and what they leave out");
-        models.operators = each(cancel, &crossings, operator_key, |job| {
-            models.operator(job, cache, cancel)
-        });
         models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| {
             models.operator_solver(job)
         });
@@ -159,6 +154,20 @@ impl SharedModels {
             .collect();
         models.creeping = models.creeping_peaks(cancel, &creeping);
         models
+    }
+
+    fn all_modules(
+        &self,
+        all: &[&Job],
+        known: &PreparedModules,
+        cancel: &CancelToken,
+    ) -> BTreeMap<ModuleKey, SharedResult<PreparedModule>> {
+        let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
+        let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
+        let mut modules = each(cancel, &new, |job| Some(module_key(job)), |job| self.module(job));
+        let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
+        modules.extend(taken.map(|(key, module)| (key.clone(), module.clone())));
+        modules
     }
 
     fn module(&self, job: &Job) -> Result<PreparedModule, JobFailure> {
@@ -198,13 +207,14 @@ impl SharedModels {
     fn operator(
         &self,
         crossing: &CrossingJob<'_>,
+        bridges: &BTreeMap<BridgeKey, SharedResult<Bridge>>,
         cache: Option<&Cache>,
         cancel: &CancelToken,
     ) -> Result<BridgeOperator, JobFailure> {
         let (Some(tolerance), Some(key)) = (crossing.operator_tolerance(), operator_key(crossing)) else {
             return Err(JobFailure::of_program("an operator of the reference solver"));
         };
-        let (bridge, made) = (shared(&self.bridges, &key.bridge)?, &self.operators_made);
+        let (bridge, made) = (shared(bridges, &key.bridge)?, &self.operators_made);
         let name = key.name();
         match cache.map_or(CacheLookup::Nothing, |cache| cache.read(&name, &bridge)) {
             CacheLookup::Whole(operator) => {
