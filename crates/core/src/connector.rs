@@ -46,12 +46,12 @@ pub struct Truss {
     /// Gap `[m]`, at least 0.
     pub gap_m: f64,
     /// Its stop, where it has one: the truss is then the buffer before it.
-    pub stop: Option<Stop>,
+    pub stop: Option<EndStop>,
 }
 
 /// The second branch of a truss: `N = k (gap_stop - gap) + k_stop (s - gap_stop)` beyond its own gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stop {
+pub struct EndStop {
     /// Stiffness of the branch, buffer and stop together `[N/m]`; above 0.
     pub stiffness_n_m: f64,
     /// Gap `[m]`, beyond that of the truss.

@@ -2,7 +2,7 @@
 //!
 //! Knows joints by their numbers and what each one's entries come to. Does not know what a job adds to that.
 
-use crate::connector::{Connection, ConnectorLaw, OwnLaws, Stop, Truss};
+use crate::connector::{Connection, ConnectorLaw, EndStop, OwnLaws, Truss};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M, apart, not_negative, positive, within};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
@@ -393,7 +393,7 @@ impl Own {
         Ok(Truss {
             stiffness_n_m: if self.senses()[sense] { stiffness_n_m } else { 0.0 },
             gap_m,
-            stop: stop.map(|stop| Stop {
+            stop: stop.map(|stop| EndStop {
                 stiffness_n_m: stop.stiffness_n_m,
                 gap_m: stop.gap_m,
             }),

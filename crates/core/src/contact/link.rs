@@ -201,7 +201,7 @@ pub(crate) fn ask(laws: &[LinkLaw], elongations: &[f64], asked: &mut [State]) {
 #[cfg(test)]
 mod tests {
     use super::LinkLaw;
-    use crate::connector::{Connection, ConnectorLaw, State, Stop, Truss};
+    use crate::connector::{Connection, ConnectorLaw, EndStop, State, Truss};
 
     const K: f64 = 2.0e7;
 
@@ -254,7 +254,7 @@ mod tests {
             gap_m: 0.005,
             stop,
         };
-        let stop = Stop {
+        let stop = EndStop {
             stiffness_n_m: 5e7,
             gap_m: 0.015,
         };

@@ -66,7 +66,7 @@ pub struct AnalysisEntry {
 pub struct WearEntry {
     /// How gaps scatter.
     pub wear: WearSpec,
-    /// The same as a document.
+    /// The document that it comes to, as columns show it.
     pub document: Value,
 }
 
