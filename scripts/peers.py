@@ -120,6 +120,15 @@ def pontoon_statics(bridge, connection):
     return positions["deflection_m"].to_numpy(), force.to_numpy()
 
 
+def pontoon_chain(scenario):
+    """The answer to a scenario of the chain."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "scenario.json"
+        path.write_text(json.dumps(scenario))
+        words = [os.environ["PONTOON_CHAIN"], path, str(CHAIN_TIME_STEP_S)]
+        return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE).stdout)
+
+
 # ---- the bridge in OpenSees
 
 
@@ -352,11 +361,12 @@ class BridgePeer:
 
 
 def connector_law(connection, k, gaps):
-    """Both trusses at once, or each beyond its gap: arguments of a uniaxial material."""
+    """Both trusses at once, or each beyond its gap: arguments of a uniaxial material. An open coupling never pulls."""
     if connection == "linear":
         return "Elastic", 2.0 * k
     pull, push = gaps["gap_tension_m"], gaps["gap_compression_m"]
-    return "ElasticMultiLinear", "-strain", -1.0 - push, -push, pull, 1.0 + pull, "-stress", -k, 0.0, 0.0, k
+    k_pull = k if gaps.get("tension", True) else 0.0
+    return "ElasticMultiLinear", "-strain", -1.0 - push, -push, pull, 1.0 + pull, "-stress", -k, 0.0, 0.0, k_pull
 
 
 def spread(lines, place):
@@ -433,6 +443,16 @@ def opensees_statics(bridge, shell, connection):
 HINGE_N_M = 1e12
 
 
+def joint_connector(chain, joint):
+    """Stiffness and gaps of a joint's connector: the chain's, and over them what entries of `"joints"` say of it."""
+    own = chain["connectors"] | {"stiffness_n_m": chain["connectors"]["stiffness_of_a_joint_n_m"]}
+    for numbers, entry in chain.get("joints", {}).items():
+        first, _, last = numbers.partition("..")
+        if int(first) <= joint <= int(last or first):
+            own |= entry["connectors"]
+    return own
+
+
 class ChainPeer:
     """The plane chain in OpenSees' domain; dofs x, z, rotation.
 
@@ -453,10 +473,11 @@ class ChainPeer:
         elements = iter(range(1, 10**6))
         for share in (1, 2):
             ops.uniaxialMaterial("Elastic", share, 0.5 * share * self.element_m * water["hydrostatic_stiffness_n_m2"])
-        k = chain["connectors"]["stiffness_of_a_joint_n_m"]
-        law, *numbers = connector_law(connection, k, chain["connectors"])
-        ops.uniaxialMaterial(law, 3, *numbers)
-        ops.uniaxialMaterial("Elastic", 4, HINGE_N_M)
+        ops.uniaxialMaterial("Elastic", 3, HINGE_N_M)
+        for joint in range(2, self.modules + 1):
+            own = joint_connector(chain, joint)
+            law, *numbers = connector_law(connection, own["stiffness_n_m"], own)
+            ops.uniaxialMaterial(law, self.material(joint), *numbers)
         rigid = chain.get("posts") == "rigid"
         for module in range(self.modules):
             for i in range(self.parts + 1):
@@ -502,11 +523,12 @@ class ChainPeer:
         for module in range(1, self.modules):
             left, right = self.node(module - 1, self.parts), self.node(module, 0)
             if rigid:
-                ops.element("zeroLength", next(elements), left, right, "-mat", 4, 4, "-dir", 1, 2)
+                ops.element("zeroLength", next(elements), left, right, "-mat", 3, 3, "-dir", 1, 2)
             else:
                 ops.equalDOF(left, right, 1, 2)
             self.connectors.append(next(elements))
-            ops.element("zeroLength", self.connectors[-1], tops + left, tops + right, "-mat", 3, "-dir", 1)
+            law = self.material(module + 1)
+            ops.element("zeroLength", self.connectors[-1], tops + left, tops + right, "-mat", law, "-dir", 1)
         ops.fix(self.node(0, 0), 1, 1, 0)
         ops.fix(self.node(self.modules - 1, self.parts), 0, 1, 0)
         ops.rayleigh(chain["rayleigh"]["mass_1_s"], chain["rayleigh"]["stiffness_s"], 0.0, 0.0)
@@ -514,6 +536,11 @@ class ChainPeer:
     def node(self, module, i):
         """Number of a node of the line."""
         return 1 + module * (self.parts + 1) + i
+
+    @staticmethod
+    def material(joint):
+        """Number of the law of a joint's connector."""
+        return 100 + joint
 
     def positions(self):
         """Nodes of the module ends."""
@@ -531,6 +558,12 @@ class ChainPeer:
         return shares
 
 
+def load_shares(peer, load, centre_m):
+    """For each place of the load's centre, its shares on the line's nodes."""
+    length_m, points = load["footprint_length_m"], load["points"]
+    return sum(peer.shares(centre_m + length_m * ((i + 0.5) / points - 0.5)) for i in range(points)) / points
+
+
 class ChainCrossing:
     """A crossing of the chain that is about to begin, in OpenSees' domain."""
 
@@ -538,11 +571,11 @@ class ChainCrossing:
         self.peer = peer = ChainPeer(chain, crossing["connection"])
         self.crossing, self.time_step_s = crossing, time_step_s
         load, speed_m_s = chain["load"], crossing["speed_m_s"]
-        footprint_m, points = load["footprint_length_m"], load["points"]
+        footprint_m = load["footprint_length_m"]
         self.steps = int(np.ceil(((peer.length_m + footprint_m) / speed_m_s + chain["tail_s"]) / time_step_s))
         # the footprint's front reaches the bridge at time 0
         centre_m = speed_m_s * time_step_s * np.arange(self.steps + 1) - 0.5 * footprint_m
-        shares = sum(peer.shares(centre_m + footprint_m * ((i + 0.5) / points - 0.5)) for i in range(points)) / points
+        shares = load_shares(peer, load, centre_m)
         for i, history in enumerate(shares.T, 1):
             ops.timeSeries("Path", i, "-dt", time_step_s, "-values", *map(float, history))
             ops.pattern("Plain", i, i)
@@ -576,6 +609,28 @@ def opensees_crossing(chain, crossing, time_step_s):
         "peak_compression_n": np.maximum(-force_n, 0.0).max(axis=0),
         "peak_tension_n": np.maximum(force_n, 0.0).max(axis=0),
     }
+
+
+def opensees_chain_statics(chain, connection, position):
+    """Deflections of the positions [m] and forces of the joints [N], the load's centre on a position."""
+    peer, load = ChainPeer(chain, connection), chain["load"]
+    x_m = np.array([(position - 1) * chain["module_length_m"]])
+    ops.timeSeries("Constant", 1)
+    ops.pattern("Plain", 1, 1)
+    for node, share in enumerate(load_shares(peer, load, x_m)[0], 1):
+        if share:
+            ops.load(node, 0.0, -load["weight_n"] * share, 0.0)
+    ops.constraints("Transformation")
+    ops.numberer("RCM")
+    ops.system("BandGeneral")
+    ops.test("NormDispIncr", 1e-10, 50)
+    ops.algorithm("Linear" if connection == "linear" else "Newton")
+    ops.integrator("LoadControl", 1.0)
+    ops.analysis("Static")
+    if ops.analyze(1) != 0:
+        sys.exit(f"OpenSees found no equilibrium of the chain under a load at {position}")
+    deflection_m = np.array([0.0 - ops.nodeDisp(node, 2) for node in peer.positions()])
+    return deflection_m, np.array([ops.basicForce(tag)[0] for tag in peer.connectors])
 
 
 # ---- side by side
@@ -633,6 +688,46 @@ def compare_chain(table):
             table.row(name, {"m": "m", "n": "N"}[unit], ours[key][off], theirs[key][off], of=largest)
 
 
+# joints that are not alike, by what is said of them: words of a scenario of the chain
+JOINTS = {
+    "joint 8 with a gap of 20 mm": {"8": {"connectors": {"gap_compression_m": 0.020}}},
+    "joint 7 of half the stiffness": {"7": {"connectors": {"stiffness_n_m": 2.37e7}}},
+    "all tension connectors open": {"2..15": {"connectors": {"tension": False}}},
+}
+JOINTS_SPEEDS_M_S = {name: [3.0] for name in JOINTS} | {"joint 7 of half the stiffness": [3.0, 15.0]}
+
+
+def compare_joints(table):
+    """The chain with joints of their own: a load that stands on a position, and crossings."""
+    chain = json.loads(CHAIN.read_text())
+    for name, joints in JOINTS.items():
+        worn = chain | {"joints": joints}
+        still = {"joints": joints, "analysis": {"kind": "static"}, "load_position": LOAD_POSITION}
+        ours, ours_s = timed(pontoon_chain, still)
+        (w_theirs, n_theirs), theirs_s = timed(opensees_chain_statics, worn, "nonlinear", LOAD_POSITION)
+        table.head(f"chain, {name}, static", ours_s, theirs_s)
+        w_ours = np.array([p["deflection_m"] for p in ours["positions"]])
+        n_ours = np.array([j["force_n"] for j in ours["joints"]])
+        table.row("largest deflection", "m", w_ours.max(), w_theirs.max(), 0.5)
+        for position in (6, 7, 8):
+            w = w_ours[position - 1], w_theirs[position - 1]
+            table.row(f"deflection at {position}", "m", *w, 0.5)
+        for joint in (6, 7, 8):
+            table.row(f"force of joint {joint}", "N", n_ours[joint - 2], n_theirs[joint - 2], 0.5)
+        for speed_m_s in JOINTS_SPEEDS_M_S[name]:
+            crossing = {"connection": "nonlinear", "speed_m_s": speed_m_s}
+            ours, ours_s = timed(pontoon_chain, {"joints": joints} | crossing)
+            theirs, theirs_s = timed(opensees_crossing, worn, crossing, CHAIN_TIME_STEP_S)
+            table.head(f"chain, {name}, {speed_m_s:g} m/s", ours_s, theirs_s)
+            most, w, n = ours["largest"], theirs["peak_deflection_m"], theirs["peak_compression_n"]
+            table.row("largest deflection", "m", most["peak_deflection_m"], max(w), 0.5)
+            table.row("deflection at 7", "m", ours["positions"][6]["peak_deflection_m"], w[6], 0.5)
+            table.row("largest compression of a joint", "N", most["peak_compression_n"], max(n), 2.0)
+            table.row("compression of joint 7", "N", ours["joints"][5]["peak_compression_n"], n[5], 2.0)
+            pull = theirs["peak_tension_n"]
+            table.row("largest tension, of the compression", "N", most["peak_tension_n"], max(pull), of=max(n))
+
+
 def main():
     """Runs the parts that are asked for; exit status 1 where a deviation is beyond what is asked."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -655,6 +750,7 @@ def main():
                 compare_statics(table, meshed, options.shell, mesh, asked_percent)
         if options.part in ("chain", "all"):
             compare_chain(table)
+            compare_joints(table)
     print(f"\n{time.perf_counter() - start:.0f} s; beyond what is asked: {len(table.beyond)}")
     for name in table.beyond:
         print(f"  {name}")

@@ -1,6 +1,7 @@
 //! Two ways to one answer: operator and reference solver, lanes, super-element and full model; the energy balance.
 
 mod chain;
+mod chain_scenario;
 mod energy;
 mod joints;
 mod lanes;

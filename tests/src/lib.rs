@@ -6,6 +6,8 @@
 
 pub mod beams;
 pub mod chain;
+pub mod chain_answer;
+pub mod chain_scenario;
 pub mod fem_model;
 pub mod operated;
 pub mod oscillator;

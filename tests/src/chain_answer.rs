@@ -1,0 +1,109 @@
+//! The answer to a scenario of the plane chain: peaks with places and times, or what a load does that stands.
+//!
+//! Knows who solves it and how the answer is written down. Does not know how a scenario is written.
+
+use crate::chain_scenario::{ChainScenario, ChainTask};
+use crate::settings;
+use pontoon_core::analysis::AnalysisError;
+use pontoon_core::analysis::crossing::CrossingSolver;
+use pontoon_core::analysis::statics::StaticCase;
+use pontoon_core::bridge::Model;
+use pontoon_core::response::{CrossingResponse, Peak, StaticResponse};
+use pontoon_core::vehicle::Inertia;
+use serde_json::{Map, Value, json};
+
+/// Solves a scenario, every degree of freedom kept, crossings by the reference solver.
+///
+/// # Errors
+/// The solver's.
+pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
+    let ready = scenario.chain.module.ready(&scenario.design, Model::Full);
+    match &scenario.task {
+        ChainTask::Static(case) => {
+            let response = ready.statics(&scenario.vehicle).solve(case)?;
+            Ok(of_static(scenario, case, &response))
+        }
+        ChainTask::Crossing {
+            crossing,
+            time_step_s,
+            spectral_radius,
+        } => {
+            let settings = settings(scenario.chain.rayleigh, *time_step_s, *spectral_radius);
+            let response = CrossingSolver::new(&ready.bridge, &settings)?.solve(&scenario.vehicle, crossing)?;
+            Ok(of_crossing(scenario, *time_step_s, &response))
+        }
+    }
+}
+
+fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingResponse) -> Value {
+    let positions = response.positions.iter().map(|p| {
+        let mut row = Map::from_iter([("position".into(), json!(p.position)), ("x_m".into(), json!(p.x_m))]);
+        put(&mut row, "peak_deflection", "m", p.deflection);
+        put(&mut row, "peak_uplift", "m", p.uplift);
+        Value::from(row)
+    });
+    let joints = response.joints.iter().map(|j| {
+        let mut row = Map::from_iter([("joint".into(), json!(j.joint))]);
+        put(&mut row, "peak_compression", "n", j.sum.compression);
+        put(&mut row, "peak_tension", "n", j.sum.tension);
+        Value::from(row)
+    });
+    let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
+    let mut largest = Map::new();
+    for (list, of, unit, place) in [
+        (&positions, "peak_deflection", "m", "position"),
+        (&positions, "peak_uplift", "m", "position"),
+        (&joints, "peak_compression", "n", "joint"),
+        (&joints, "peak_tension", "n", "joint"),
+    ] {
+        let (key, time) = (format!("{of}_{unit}"), format!("{of}_time_s"));
+        let row = largest_of(list, |row| row[&key].as_f64().unwrap_or(0.0));
+        largest.insert(key.clone(), row.map_or(json!(0.0), |row| row[&key].clone()));
+        largest.insert(
+            format!("{of}_{place}"),
+            row.map_or(Value::Null, |row| row[place].clone()),
+        );
+        largest.insert(time.clone(), row.map_or(Value::Null, |row| row[&time].clone()));
+    }
+    if scenario.vehicle.inertia != Inertia::None {
+        largest.insert("min_contact_force_n".into(), json!(response.min_contact_force_n));
+    }
+    json!({ "kind": "crossing", "time_step_s": time_step_s, "positions": positions, "joints": joints,
+            "largest": largest })
+}
+
+fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticResponse) -> Value {
+    let positions = (1..).zip(&response.deflection_m);
+    let positions = positions.map(|(position, w)| {
+        json!({ "position": position, "x_m": scenario.design.position_x_m(position), "deflection_m": w })
+    });
+    let joints = response.joints.iter();
+    let joints = joints.map(|j| json!({ "joint": j.joint, "force_n": j.sum_n }));
+    let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
+    let mut largest = Map::new();
+    for (key, list, of, sign, place) in [
+        ("deflection_m", &positions, "deflection_m", 1.0, "deflection_position"),
+        ("compression_n", &joints, "force_n", -1.0, "compression_joint"),
+        ("tension_n", &joints, "force_n", 1.0, "tension_joint"),
+    ] {
+        let value = |row: &Value| sign * row[of].as_f64().unwrap_or(0.0);
+        let row = largest_of(list, value);
+        let number = place.rsplit('_').next().unwrap_or(place);
+        largest.insert(key.into(), json!(row.map_or(0.0, value)));
+        largest.insert(place.into(), row.map_or(Value::Null, |row| row[number].clone()));
+    }
+    json!({ "kind": "static", "time_step_s": null, "load_x_m": case.load_x_m, "positions": positions,
+            "joints": joints, "largest": largest })
+}
+
+/// A peak and its time; a value that never rose above zero has none.
+fn put(row: &mut Map<String, Value>, of: &str, unit: &str, peak: Peak) {
+    row.insert(format!("{of}_{unit}"), json!(peak.value));
+    row.insert(format!("{of}_time_s"), json!((peak.value > 0.0).then_some(peak.time_s)));
+}
+
+/// The row with the largest value, the first of equals; none where no value is above zero.
+fn largest_of(rows: &[Value], value: impl Fn(&Value) -> f64) -> Option<&Value> {
+    let above = rows.iter().filter(|row| value(row) > 0.0);
+    above.reduce(|best, row| if value(row) > value(best) { row } else { best })
+}
