@@ -103,6 +103,7 @@ impl Wave {
             Record {
                 positions: vec![21],
                 joints: vec![],
+                pins: false,
             },
         );
         let r = solver.solve(&crossing).expect("solved");

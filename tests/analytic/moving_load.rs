@@ -102,6 +102,7 @@ fn crossed(span: Span, elements: usize, steps: usize) -> (Vec<f64>, Vec<f64>) {
         Record {
             positions: vec![2],
             joints: vec![],
+            pins: false,
         },
     );
     let r = ready

@@ -131,6 +131,7 @@ fn crossed(inertia: Inertia, elements: usize, h: f64) -> Vec<f64> {
         Record {
             positions: vec![2],
             joints: vec![],
+            pins: false,
         },
     );
     let solver = ready.crossings(

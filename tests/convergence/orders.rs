@@ -29,6 +29,7 @@ fn time_integration_is_of_second_order() {
             crossing.record = Record {
                 positions: vec![2, 3],
                 joints: vec![],
+                pins: false,
             };
             let solver = ready.crossings(&vehicle, &settings(ready.rayleigh(), h, 0.9));
             let r = solver.solve(&crossing).expect("solved");

@@ -27,6 +27,7 @@ fn recorded(mut crossing: Crossing) -> Crossing {
     crossing.record = Record {
         positions: vec![1, 2, 3, 4],
         joints: vec![2, 3],
+        pins: false,
     };
     crossing
 }
@@ -404,6 +405,7 @@ fn rigid_module_follows_two_equations_of_motion() {
         crossing.record = Record {
             positions: vec![1, 2],
             joints: vec![],
+            pins: false,
         };
         let r = solver.solve(&crossing).expect("solved");
         // the motion starts from rest a step before the first point comes on, which is the front or somewhat behind it

@@ -9,6 +9,7 @@ mod meshed;
 mod operator;
 mod operator_accuracy;
 mod operator_lanes;
+mod pins;
 mod probe;
 mod shapes;
 mod superelement;

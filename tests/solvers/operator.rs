@@ -106,6 +106,7 @@ fn crossing(pair: &Pair, connection: Connection) -> Crossing {
     crossing.record = Record {
         positions: vec![1, 2, 3, 4],
         joints: vec![2, 3],
+        pins: false,
     };
     crossing
 }

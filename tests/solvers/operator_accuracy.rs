@@ -36,6 +36,7 @@ fn cross(h: f64, vehicle: &Vehicle, connection: Connection, speed_m_s: f64) -> [
     crossing.record = Record {
         positions: (1..=ready.design.positions()).collect(),
         joints: (2..=ready.design.modules).collect(),
+        pins: false,
     };
     let heavy = Crossing {
         load_n: 1.05 * PAPER_LOAD_N,

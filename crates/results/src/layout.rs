@@ -64,6 +64,7 @@ impl Layout {
             TableName::Connectors => record.connectors && loaded,
             TableName::Histories => record.histories.asked() && loaded,
             TableName::Modes => !loaded,
+            TableName::Pins => record.pins && loaded,
             TableName::Joints => study.wear.is_some() && loaded,
         };
         let crossings = || jobs.iter().filter_map(Job::as_crossing);
@@ -110,6 +111,10 @@ impl Layout {
                 }
                 ColumnSource::Mode(of) => {
                     let rows = rows(records, |record| &record.modes);
+                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                }
+                ColumnSource::Pin(of) => {
+                    let rows = rows(records, |record| &record.pins);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
                 ColumnSource::Joint(of) => {

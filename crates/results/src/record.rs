@@ -27,6 +27,8 @@ pub struct JobRecord {
     pub histories: HistoryRows,
     /// Its rows of the table of modes.
     pub modes: Vec<ModeRow>,
+    /// Its rows of the table of pins.
+    pub pins: Vec<PinRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
@@ -171,6 +173,19 @@ impl ConnectorRow {
     }
 }
 
+/// A row of the table of pins.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PinRow {
+    /// Position number of the joint.
+    pub joint: usize,
+    /// Place across `[m]`; null for the joint's sum.
+    pub y_m: Option<f64>,
+    /// Largest force against each axis and along it, x, y and z, on the module left of the joint `[N]`.
+    pub components: [[Extreme; 2]; 3],
+    /// Largest resultant `[N]`.
+    pub resultant: Extreme,
+}
+
 /// One mode; the shares are those of its kinetic energy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModeRow {
@@ -207,6 +222,24 @@ impl HistoryRows {
     }
 }
 
+/// The rows of the pins of a job that failed; none where pins are not recorded.
+fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
+    let design = &job.bridge.design;
+    let joints = if job.pins { 2..=design.modules } else { 1..=0 };
+    let row = |joint: usize, y_m: Option<f64>| PinRow {
+        joint,
+        y_m,
+        components: [[Extreme::default(); 2]; 3],
+        resultant: Extreme::default(),
+    };
+    joints
+        .flat_map(|joint| {
+            let places = design.hinges_of(joint).y_m.iter().copied().map(Some).chain([None]);
+            places.map(move |y_m| row(joint, y_m))
+        })
+        .collect()
+}
+
 impl JobRecord {
     /// The record of a job that failed: the rows of a job that did not, their numbers null.
     pub fn failed(job: &Job, failure: Failure) -> Self {
@@ -238,6 +271,7 @@ impl JobRecord {
             connectors: connectors.collect(),
             histories: HistoryRows::default(),
             modes: Vec::new(),
+            pins: pin_rows_of_none(job),
         }
     }
 }
@@ -320,6 +354,7 @@ mod tests {
             time_s: Some(1.0 / 3.0),
         };
         let record = JobRecord {
+            pins: Vec::new(),
             job: 0,
             failure: Some(Failure::new(FailureKind::NotFinite, "why").with("time_s", 0.1)),
             retried: None,

@@ -5,7 +5,7 @@
 
 use crate::FailureKind;
 use crate::arrays::CellKind;
-use crate::record::{ConnectorRow, JobRecord, ModeRow, PositionRow};
+use crate::record::{ConnectorRow, JobRecord, ModeRow, PinRow, PositionRow};
 use crate::table::TableName;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use pontoon_plan::design::NAMED_AXES;
@@ -68,6 +68,8 @@ pub(crate) enum ColumnSource {
     Sample(for<'a> fn(&HistorySample<'a>) -> Cell<'a>),
     /// A mode.
     Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>),
+    /// A pin.
+    Pin(fn(&RowOf<'_, PinRow>) -> Cell<'static>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -318,6 +320,15 @@ const fn of_sample(
     column(TableName::Histories, (name, cells), names, ColumnSource::Sample(of))
 }
 
+const fn of_pin(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, PinRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Pins, (name, cells), names, ColumnSource::Pin(of))
+}
+
 const fn of_joint(
     name: &'static str,
     cells: CellKind,
@@ -477,6 +488,24 @@ pub const COLUMNS: &[Column] = &[
     of_joint("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.joint.into()).role(ColumnRole::Key),
     of_joint("gap_tension_m", Numbers, ("tension gap", "tension gap of its first connector, wear included"), |r| r.gaps_m[0].into()).unit("m"),
     of_joint("gap_compression_m", Numbers, ("compression gap", "compression gap of its first connector, wear included"), |r| r.gaps_m[1].into()).unit("m"),
+
+    of_pin("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_pin("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.row.joint.into()).role(ColumnRole::Key),
+    of_pin("y_m", Numbers, ("y", "place of the pin across; null in a joint's row, which adds its pins"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
+    of_pin("peak_minus_x_n", Numbers, ("peak force, against x", "largest force of the pin on the module left of the joint, toward the left end of the bridge"), |r| r.row.components[0][0].value.into()).newtons(),
+    of_pin("peak_minus_x_time_s", Numbers, ("peak force, against x, time", "its time"), |r| r.row.components[0][0].time_s.into()).unit("s"),
+    of_pin("peak_plus_x_n", Numbers, ("peak force, along x", "largest force of the pin on the module left of the joint, toward its right end"), |r| r.row.components[0][1].value.into()).newtons(),
+    of_pin("peak_plus_x_time_s", Numbers, ("peak force, along x, time", "its time"), |r| r.row.components[0][1].time_s.into()).unit("s"),
+    of_pin("peak_minus_y_n", Numbers, ("peak force, against y", "largest force of the pin on the module left of the joint, across, against y"), |r| r.row.components[1][0].value.into()).newtons(),
+    of_pin("peak_minus_y_time_s", Numbers, ("peak force, against y, time", "its time"), |r| r.row.components[1][0].time_s.into()).unit("s"),
+    of_pin("peak_plus_y_n", Numbers, ("peak force, along y", "largest force of the pin on the module left of the joint, across, along y"), |r| r.row.components[1][1].value.into()).newtons(),
+    of_pin("peak_plus_y_time_s", Numbers, ("peak force, along y, time", "its time"), |r| r.row.components[1][1].time_s.into()).unit("s"),
+    of_pin("peak_minus_z_n", Numbers, ("peak force, against z", "largest force of the pin on the module left of the joint, downward"), |r| r.row.components[2][0].value.into()).newtons(),
+    of_pin("peak_minus_z_time_s", Numbers, ("peak force, against z, time", "its time"), |r| r.row.components[2][0].time_s.into()).unit("s"),
+    of_pin("peak_plus_z_n", Numbers, ("peak force, along z", "largest force of the pin on the module left of the joint, upward"), |r| r.row.components[2][1].value.into()).newtons(),
+    of_pin("peak_plus_z_time_s", Numbers, ("peak force, along z, time", "its time"), |r| r.row.components[2][1].time_s.into()).unit("s"),
+    of_pin("peak_resultant_n", Numbers, ("peak resultant", "largest resultant"), |r| r.row.resultant.value.into()).newtons(),
+    of_pin("peak_resultant_time_s", Numbers, ("peak resultant time", "its time"), |r| r.row.resultant.time_s.into()).unit("s"),
 ];
 
 impl Column {

@@ -29,17 +29,20 @@ pub enum TableName {
     Modes,
     /// One row a joint of a job whose joints are worn.
     Joints,
+    /// One row a pin of a job, or a joint with its pins added.
+    Pins,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
         Self::Histories,
         Self::Modes,
         Self::Joints,
+        Self::Pins,
     ];
 
     /// Its name as files and references have it.
@@ -51,6 +54,7 @@ impl TableName {
             Self::Histories => "histories",
             Self::Modes => "modes",
             Self::Joints => "joints",
+            Self::Pins => "pins",
         }
     }
 

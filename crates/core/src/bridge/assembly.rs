@@ -3,6 +3,7 @@
 //! Knows where everything is along the bridge. Does not know what is done with it.
 
 use super::fit::check_fit;
+use super::pins::{PinPlace, pins};
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::product::ModuleProduct;
 use super::row::{HeldDof, Row};
@@ -58,6 +59,8 @@ pub struct Bridge {
     /// Resultants of the water on the whole bridge.
     pub(crate) water: [SparseRow; 3],
     pub(crate) held: Vec<HeldDof>,
+    /// The pins, joint after joint.
+    pub(crate) pins: Vec<PinPlace>,
     /// Surge, sway and yaw of the whole bridge; motions of the bridge where no support holds them.
     pub(crate) horizontal_rigid: [Vec<f64>; 3],
     pub(crate) structural_mass_kg_m: f64,
@@ -102,6 +105,7 @@ impl Bridge {
             hinge_lines: places.hinge_lines(),
             water: std::array::from_fn(|which| row.water_resultant(module, which, l)),
             held: row.held(module, l),
+            pins: pins(design, module, &row, &places.deck_z()),
             horizontal_rigid: row.horizontal_rigid(module, l),
             structural_mass_kg_m: module.structural_mass_kg() / l,
             roll_inertia_kg_m: module.roll_inertia_kg_m2() / l,

@@ -8,6 +8,7 @@ mod fit;
 mod joints;
 mod load;
 mod meshed;
+mod pins;
 mod placement;
 mod prepared;
 mod product;
@@ -20,6 +21,7 @@ pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports,
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
+pub(crate) use pins::PinPlace;
 pub(crate) use placement::VehiclePlacement;
 pub use prepared::PreparedModule;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};

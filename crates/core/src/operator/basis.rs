@@ -5,6 +5,7 @@
 use super::columns::{ColumnSolver, SOLVED_AT_ONCE};
 use super::cutoff::{Cutoff, CutoffJudge};
 use super::persist::{NumberReader, OperatorParts};
+use super::pins::{PinRows, pin_places, pin_rows};
 use super::residual_rows::{ResidualRows, dot, residual_of_deck};
 use crate::bridge::{Bridge, Track};
 use crate::fem::{EigenPairs, Factor, FemError, ModeSearch, ONE_SEARCH, SparseRow, SymmetricMatrix};
@@ -30,6 +31,15 @@ pub enum OperatorError {
     Factor(#[from] FemError),
 }
 
+/// Whether an operator knows the forces of pins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Pinned {
+    /// It does.
+    Yes,
+    /// It does not, and is smaller.
+    No,
+}
+
 /// Numbers of rows and columns that all parts share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Sizes {
@@ -43,11 +53,18 @@ pub(super) struct Sizes {
     pub inside: usize,
     /// Modules.
     pub modules: usize,
+    /// Rows of pins; none where they are not followed.
+    pub pins: usize,
 }
 
 impl Sizes {
-    /// Columns of a deck row: modes, connectors, observed rows, edges inside modules.
+    /// Columns of a deck row: modes, connectors, observed rows, edges inside modules, pins.
     pub(super) fn influence(&self) -> usize {
+        self.before_pins() + self.pins
+    }
+
+    /// Of these the ones before the pins.
+    pub(super) fn before_pins(&self) -> usize {
         self.followed() + self.inside * self.modules
     }
 
@@ -93,7 +110,9 @@ pub struct BridgeOperator {
     pub(super) inside_bounds: Vec<[f64; 3]>,
     /// Place of each station inside a module, 0 to 1.
     pub(super) places: Vec<f64>,
-    /// For each track column its influence: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules.
+    /// The pins, where they are followed.
+    pub(super) pins: PinRows,
+    /// For each track column its influence: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules, at the pins.
     pub(super) deck: Vec<f64>,
     /// Residual flexibility of the deck's nodes among each other, for each track column every line at the stations not
     /// farther than [`BridgeOperator::near`]; farther ones are left out.
@@ -111,14 +130,14 @@ impl BridgeOperator {
     /// # Errors
     /// [`OperatorError::Factor`].
     pub fn new(bridge: &Bridge, tolerance: f64) -> Result<Self, OperatorError> {
-        Self::new_unless(bridge, tolerance, Stop::never())
+        Self::new_unless(bridge, tolerance, Pinned::No, Stop::never())
     }
 
-    /// Builds the operator unless a stop is asked for.
+    /// Builds the operator, with or without what forces of pins need, unless a stop is asked for.
     ///
     /// # Errors
     /// As [`BridgeOperator::new`], and [`FemError::Stopped`].
-    pub fn new_unless(bridge: &Bridge, tolerance: f64, stop: Stop<'_>) -> Result<Self, OperatorError> {
+    pub fn new_unless(bridge: &Bridge, tolerance: f64, pinned: Pinned, stop: Stop<'_>) -> Result<Self, OperatorError> {
         let factor = Factor::new("K + s M of the operator", &shifted(bridge)?)?;
         let track = Track::new(bridge);
         let judged = judged_rows(bridge, &track);
@@ -136,10 +155,10 @@ impl BridgeOperator {
                 dot(&judged[i], &pairs.shapes, k)
             });
             match judge.fewest(pairs, SHIFT, tolerance) {
-                Ok(cutoff) => return Ok(Self::of(bridge, track, &solver, pairs, cutoff, stop)?),
+                Ok(cutoff) => return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), pinned, stop)?),
                 // every mode there is: nothing is left out but rounding
                 Err(cutoff) if pairs.lambda.len() >= bridge.dofs() => {
-                    return Ok(Self::of(bridge, track, &solver, pairs, cutoff, stop)?);
+                    return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), pinned, stop)?);
                 }
                 Err(_) => search.extend()?,
             }
@@ -151,8 +170,8 @@ impl BridgeOperator {
         bridge: &Bridge,
         track: Track,
         solver: &ColumnSolver<'_>,
-        pairs: &EigenPairs,
-        cutoff: Cutoff,
+        (pairs, cutoff): (&EigenPairs, Cutoff),
+        pinned: Pinned,
         stop: Stop<'_>,
     ) -> Result<Self, FemError> {
         let (m, design, shapes) = (cutoff.modes, bridge.design(), &pairs.shapes);
@@ -160,12 +179,13 @@ impl BridgeOperator {
         let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
         let (rows, observed) = observed(bridge);
         let (places, inside) = inside(bridge);
-        let sizes = Sizes {
+        let mut sizes = Sizes {
             modes: m,
             connectors: connectors.len(),
             observed: observed.len(),
             inside: inside.len() / design.modules,
             modules: design.modules,
+            pins: 0,
         };
         let (nc, nv, ni) = (connectors.len(), observed.len(), inside.len());
         let all = ResidualRows::new(
@@ -175,7 +195,16 @@ impl BridgeOperator {
             shapes,
             stop,
         )?;
-        let deck = all.deck(&track)?;
+        let mut deck = all.deck(&track)?;
+        let inside_bounds = inside_bounds(&all, lambda, &sizes, &deck);
+        let mut pins = PinRows::default();
+        if pinned == Pinned::Yes {
+            let (rows, of_deck) = pin_rows(bridge, solver, &track, (lambda, SHIFT), (shapes, &all), stop)?;
+            let width = sizes.influence();
+            sizes.pins = rows.stiffness.nrows();
+            deck = beside(&deck, width, &of_deck, sizes.pins);
+            pins = rows;
+        }
         let near = track.stations() / design.modules;
         let r_bb = all.among(0, nc, 0, nc);
         Ok(Self {
@@ -186,7 +215,8 @@ impl BridgeOperator {
             r_bb: DMatrix::from_fn(nc, nc, |i, j| r_bb[(i.min(j), i.max(j))]),
             r_vb: all.among(nc, nv, 0, nc),
             r_inside_b: all.among(nc + nv, ni, 0, nc),
-            inside_bounds: inside_bounds(&all, lambda, &sizes, &deck),
+            inside_bounds,
+            pins,
             r_deck: residual_of_deck(solver, &track, shapes, (lambda, SHIFT), near)?,
             near,
             breadth_m: design.module.breadth_m,
@@ -238,6 +268,7 @@ impl BridgeOperator {
             r.corners,
             r.bottom_corners,
             self.near,
+            s.pins,
         ];
         let cutoff = [
             self.cutoff.frequency_hz,
@@ -245,7 +276,7 @@ impl BridgeOperator {
             self.cutoff.error,
             self.breadth_m,
         ];
-        let lists: [&[f64]; 11] = [
+        let lists: [&[f64]; 14] = [
             &cutoff,
             &self.omega2,
             self.b.as_slice(),
@@ -257,6 +288,9 @@ impl BridgeOperator {
             &self.places,
             &self.deck,
             &self.r_deck,
+            self.pins.stiffness.as_slice(),
+            self.pins.mass.as_slice(),
+            self.pins.connectors.as_slice(),
         ];
         let bounds = self.inside_bounds.iter().flatten().copied();
         OperatorParts {
@@ -303,6 +337,16 @@ impl BridgeOperator {
             places: r.list(sizes.inside / 2)?,
             deck: r.list(nodes * sizes.influence())?,
             r_deck: r.list(nodes * track.lines() * (2 * near + 1))?,
+            pins: PinRows {
+                places: if sizes.pins == 0 {
+                    Vec::new()
+                } else {
+                    pin_places(bridge)
+                },
+                stiffness: r.matrix(sizes.pins, modes)?,
+                mass: r.matrix(sizes.pins, modes)?,
+                connectors: r.matrix(sizes.pins, connectors)?,
+            },
             inside_bounds: r.list(3 * sizes.modules)?.as_chunks().0.to_vec(),
             near,
             track,
@@ -326,6 +370,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
         corners,
         bottom_corners,
         near,
+        pins,
     ] = &counts[..]
     else {
         return None;
@@ -336,6 +381,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
         observed,
         inside,
         modules,
+        pins,
     };
     let rows = Observed {
         positions,
@@ -353,6 +399,18 @@ fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
         && rows.corners == bridge.deck_corners.len()
         && sizes.observed == rows.positions + rows.corners + rows.bottom_corners
         && sizes.modes <= bridge.dofs()
+        && (sizes.pins == 0 || sizes.pins == 3 * bridge.pins.len())
+}
+
+/// Two tables side by side, of so many columns each.
+fn beside(left: &[f64], width: usize, right: &[f64], more: usize) -> Vec<f64> {
+    if more == 0 {
+        return left.to_vec();
+    }
+    let rows = left.chunks_exact(width).zip(right.chunks_exact(more));
+    rows.flat_map(|(left, right)| left.iter().chain(right))
+        .copied()
+        .collect()
 }
 
 /// Bounds of the edges inside each module, see [`BridgeOperator::inside_bounds`].

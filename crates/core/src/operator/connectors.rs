@@ -102,6 +102,11 @@ impl Connectors {
         self.n.rows()
     }
 
+    /// Forces at the end of the step and before it, once the step has ended.
+    pub(super) fn forces(&self) -> [&LaneArray; 2] {
+        [&self.n, &self.n_now]
+    }
+
     /// What a lane carries from step to step.
     pub(super) fn carried(&mut self) -> [&mut LaneArray; 3] {
         [&mut self.n, &mut self.rn, &mut self.e]

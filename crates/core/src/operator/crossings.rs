@@ -7,20 +7,21 @@ use super::basis::BridgeOperator;
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
 use super::energy::{Energy, Terms};
-use super::envelope::{Envelope, LanePeaks};
+use super::envelope::{Envelope, LanePeaks, MOST_LANES};
 use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
-use super::loads::{Loads, StationForce};
+use super::loads::{Loads, StationForce, apply_forces};
 use super::local_residual::LocalResidual;
 use super::modes::Modes;
 use super::panel::InstructionPath;
+use super::pins::Pins;
 use super::residual::Residual;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
 use super::wheel_lines::WheelCompliance;
 use crate::connector::State;
 use crate::contact::NotSettled;
-use crate::response::Statistics;
+use crate::response::{PinPeaks, Statistics};
 use pulp::Simd;
 use std::sync::Arc;
 
@@ -34,6 +35,7 @@ pub(crate) struct Crossings {
     pub(super) loads: Loads,
     pub(super) energy: Energy,
     pub(super) envelope: Envelope,
+    pub(super) pins: Pins,
     pub(super) lanes: Vec<Lane>,
 }
 
@@ -64,6 +66,7 @@ impl Crossings {
             loads: Loads::new(sizes, width),
             energy: Energy::new(width),
             envelope: Envelope::new(operator, width),
+            pins: Pins::new(sizes, &operator.pins.places, width),
             lanes: (0..width).map(|_| lane()).collect(),
         }
     }
@@ -78,7 +81,7 @@ impl Crossings {
         let motion = self.modes.carried().into_iter().chain(self.residual.carried());
         let forces = self.connectors.carried().into_iter().chain(self.loads.carried());
         let told = self.energy.carried().into_iter().chain(self.envelope.carried());
-        motion.chain(forces).chain(told)
+        motion.chain(forces).chain(told).chain(self.pins.carried())
     }
 
     /// Begins a crossing at rest, the front of the vehicle where it is one step before the first one.
@@ -119,7 +122,7 @@ impl Crossings {
     fn rest(&mut self, lane: usize) {
         self.carried().for_each(|array| array.clear(lane));
         let left = self.loads.left().into_iter().chain(self.connectors.left());
-        left.for_each(|array| array.clear(lane));
+        left.chain(self.pins.left()).for_each(|array| array.clear(lane));
     }
 
     /// Whether a lane's last step found no equilibrium; it then stands where it stood before.
@@ -195,6 +198,26 @@ impl Crossings {
         self.envelope.update(o, operator, constants, motion, &self.lanes);
     }
 
+    /// Finds the forces of the pins where the step's balance holds.
+    #[inline(always)]
+    pub(super) fn update_pins<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, constants: &StepConstants) {
+        if self.pins.is_empty() {
+            return;
+        }
+        let first = operator.sizes.before_pins();
+        let mut end_s = [0.0; MOST_LANES];
+        for (lane, of) in self.lanes.iter().enumerate() {
+            end_s[lane] = of.time_s;
+            let Some(crossing) = &of.crossing else { continue };
+            let (wheels, [weights, inertia]) = (&crossing.wheels, self.pins.loads_now());
+            let width = wheels.influence_width;
+            apply_forces((&wheels.weights, width, first), &of.weights, weights, lane);
+            apply_forces((&wheels.masses, width, first), &of.mass_forces, inertia, lane);
+        }
+        let end_s = &end_s[..self.lanes.len()];
+        self.pins.update(o, constants, &self.modes, &self.connectors, end_s);
+    }
+
     /// Whether any lane's vehicle has masses that ride along.
     #[inline(always)]
     pub(super) fn any_mass(&self) -> bool {
@@ -209,6 +232,11 @@ impl Crossings {
     /// What a lane's crossing leaves behind, peaks in the order of positions and joints.
     pub(crate) fn peaks(&self, lane: usize) -> LanePeaks {
         self.envelope.peaks(lane, self.energy.summary(lane))
+    }
+
+    /// Extremes of the pins; none where they are not followed.
+    pub(crate) fn pin_peaks(&self, lane: usize) -> Vec<PinPeaks> {
+        self.pins.peaks(lane)
     }
 
     /// Deflection of a position now, positive downward `[m]`.
@@ -284,6 +312,9 @@ impl Crossings {
         clock: &mut impl StepClock,
     ) -> Terms<S> {
         let mut terms = Terms::new(o);
+        if !self.pins.is_empty() {
+            self.pins.keep(&self.modes);
+        }
         self.connectors.apply(o, constants, &mut self.modes.contact_now);
         self.modes.correct(o, operator, constants, &self.loads, &mut terms);
         clock.lap(StepPart::Modes, || {

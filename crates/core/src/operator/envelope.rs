@@ -17,7 +17,7 @@ use crate::scheme::Arithmetic;
 use pulp::Simd;
 
 /// More lanes than any vector has.
-const MOST_LANES: usize = 16;
+pub(super) const MOST_LANES: usize = 16;
 
 /// Running extremes of every lane.
 #[derive(Debug, Clone)]

@@ -97,7 +97,12 @@ impl LaneArray {
         self.lane_mut(lane).for_each(|x| *x = 0.0);
     }
 
-    /// Copies a lane of another array of as many rows.
+    /// Takes the numbers of another array of as many rows and lanes.
+    pub(super) fn copy_all(&mut self, from: &Self) {
+        self.numbers.copy_from_slice(&from.numbers);
+    }
+
+    /// Takes a lane's numbers from another array of as many rows.
     pub(super) fn copy_lane(&mut self, lane: usize, from: &Self) {
         self.lane_mut(lane).zip(from.lane(lane)).for_each(|(to, x)| *to = x);
     }

@@ -46,14 +46,14 @@ impl Loads {
     #[inline(always)]
     pub(super) fn apply_weights(&mut self, lane: usize, wheels: &WheelLines, weights: &[StationForce]) {
         let to = &mut self.weights_now;
-        apply_forces(&wheels.weights, wheels.influence_width, weights, to, lane);
+        apply_forces((&wheels.weights, wheels.influence_width, 0), weights, to, lane);
     }
 
     /// Inertia forces of a lane's masses on stations.
     #[inline(always)]
     pub(super) fn apply_inertia(&mut self, lane: usize, wheels: &WheelLines, forces: &[StationForce]) {
         let to = &mut self.inertia_now;
-        apply_forces(&wheels.masses, wheels.influence_width, forces, to, lane);
+        apply_forces((&wheels.masses, wheels.influence_width, 0), forces, to, lane);
     }
 
     /// Ends the step: its forces are the old ones of the next.
@@ -63,16 +63,22 @@ impl Loads {
     }
 }
 
-/// Writes the sum of forces times the influence of their stations into a lane.
+/// Writes the sum of forces times the influence of their stations into a lane: of lines whose influences have a width, the
+/// columns from `first` on.
 #[inline(always)]
-fn apply_forces(lines: &[WheelLine], influence_width: usize, forces: &[StationForce], to: &mut LaneArray, lane: usize) {
+pub(super) fn apply_forces(
+    (lines, influence_width, first): (&[WheelLine], usize, usize),
+    forces: &[StationForce],
+    to: &mut LaneArray,
+    lane: usize,
+) {
     let columns = to.rows();
     let mut from = 0;
     while from < columns {
         let many = COLUMNS.min(columns - from);
         let mut sums = [0.0; COLUMNS];
         for &(line, station, force) in forces {
-            let of = &lines[line].influence(station, influence_width)[from..from + many];
+            let of = &lines[line].influence(station, influence_width)[first + from..][..many];
             if let Some(of) = of.first_chunk::<COLUMNS>() {
                 for i in 0..COLUMNS {
                     sums[i] = f64::mul_add(force, of[i], sums[i]);

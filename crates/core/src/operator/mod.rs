@@ -27,6 +27,7 @@ mod modes;
 mod moving_masses;
 mod panel;
 mod persist;
+mod pins;
 mod residual;
 mod residual_rows;
 mod rider_block;
@@ -37,7 +38,7 @@ mod sums;
 mod vector;
 mod wheel_lines;
 
-pub use basis::{BridgeOperator, OperatorError};
+pub use basis::{BridgeOperator, OperatorError, Pinned};
 pub use clock::{StepClock, StepPart};
 pub(crate) use crossings::Crossings;
 pub use cutoff::Cutoff;

@@ -47,6 +47,11 @@ impl Modes {
         self.q.rows()
     }
 
+    /// `q, q', q''` now.
+    pub(super) fn motion(&self) -> [&LaneArray; 3] {
+        [&self.q, &self.v, &self.a]
+    }
+
     /// Operations of [`Modes::predict`], a lane, counted in it.
     pub(super) fn flop_of_prediction(&self) -> f64 {
         14.0 * self.count() as f64

@@ -82,6 +82,18 @@ impl<'a> ResidualRows<'a> {
         DMatrix::from_fn(count, many, |i, j| rows[i][j])
     }
 
+    /// R of these rows with the first so many of another list.
+    pub(super) fn seen_by(&self, others: &ResidualRows<'_>, many: usize) -> DMatrix<f64> {
+        let row = |i: usize| {
+            let own: Vec<f64> = self.phi.row(i).iter().copied().collect();
+            let mut r = vec![0.0; many];
+            others.between(&self.rows[i], &own, 0, &mut r);
+            r
+        };
+        let rows: Vec<Vec<f64>> = (0..self.rows.len()).into_par_iter().map(row).collect();
+        DMatrix::from_fn(self.rows.len(), many, |i, j| rows[i][j])
+    }
+
     /// R of a row with itself.
     pub(super) fn own(&self, i: usize) -> f64 {
         self.among(i, 1, i, 1)[(0, 0)]

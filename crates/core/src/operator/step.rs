@@ -56,6 +56,7 @@ impl<C: StepClock> WithSimd for Step<'_, C> {
         c.energy.account(o, constants, &terms, c.connectors.energy(o)); // (R1)
         clock.lap(StepPart::Accounting, || 2.0 * c.connectors.count() as f64);
         c.update_envelope(o, operator, constants);
+        c.update_pins(o, operator, constants); // (O9)
         clock.lap(StepPart::ObservedRows, || c.flop_of_observed());
         c.restore_all(unsettled);
     }

@@ -67,6 +67,8 @@ pub(super) struct Panels {
     pub v: Panel,
     /// `[D Phi, -R_DB]` of the edges inside each module.
     pub inside: Vec<Panel>,
+    /// Of the pins.
+    pub pins: Panel,
 }
 
 impl StepConstants {
@@ -129,6 +131,7 @@ impl Panels {
             r_bb: Panel::new(nc, nc, |i, j| o.r_bb[(i, j)]),
             v: with_residual(&o.v, &o.r_vb, 0, o.sizes.observed),
             inside: (0..o.sizes.modules).map(of_module).collect(),
+            pins: o.pins.panel(),
         }
     }
 }

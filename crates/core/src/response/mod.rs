@@ -6,7 +6,7 @@ mod energy;
 mod peaks;
 
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
-pub use peaks::{ForcePeaks, JointForces, JointPeaks, Peak, PositionPeaks};
+pub use peaks::{ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PositionPeaks};
 
 /// Counts of what the solver did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -48,6 +48,8 @@ pub struct Record {
     pub positions: Vec<usize>,
     /// Joint numbers, 2 to modules.
     pub joints: Vec<usize>,
+    /// Whether forces of pins are wanted.
+    pub pins: bool,
 }
 
 impl Record {
@@ -79,6 +81,8 @@ pub struct CrossingResponse {
     pub positions: Vec<PositionPeaks>,
     /// Peaks of each joint 2 to modules, in order.
     pub joints: Vec<JointPeaks>,
+    /// Peaks of the pins of each joint, then of their sum, at the instants of the balance; empty where they were not asked for.
+    pub pins: Vec<PinPeaks>,
     /// Largest downward deflection of the deck's two edges `[m]`.
     pub peak_edge_deflection_m: f64,
     /// Largest roll of a module end, either sense `[rad]`.
@@ -129,6 +133,8 @@ pub struct StaticResponse {
     pub deflection_m: Vec<f64>,
     /// Forces of each joint 2 to modules, in order.
     pub joints: Vec<JointForces>,
+    /// Force of each pin on the module left of it, along, across and up, joint after joint `[N]`.
+    pub pins_n: Vec<[f64; 3]>,
     /// Largest downward deflection of the deck's two edges `[m]`.
     pub peak_edge_deflection_m: f64,
     /// Largest roll of a module end, either sense `[rad]`.

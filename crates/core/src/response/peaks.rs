@@ -73,3 +73,35 @@ pub struct JointForces {
     /// Each connector's place across `[m]` and its force.
     pub connectors: Vec<(f64, f64)>,
 }
+
+/// Extremes of the force of a pin on the module left of it `[N]`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PinExtremes {
+    /// Along, across and up: largest against the axis (as compression) and with it (as tension).
+    pub components: [ForcePeaks; 3],
+    /// Largest resultant.
+    pub resultant: Peak,
+}
+
+impl PinExtremes {
+    /// Takes a force at `time_s`.
+    #[inline]
+    pub fn take(&mut self, force_n: [f64; 3], time_s: f64) {
+        for (peaks, force) in self.components.iter_mut().zip(force_n) {
+            peaks.take(force, time_s);
+        }
+        self.resultant
+            .take(force_n.iter().map(|f| f * f).sum::<f64>().sqrt(), time_s);
+    }
+}
+
+/// Extremes of a pin, or of all pins of a joint together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PinPeaks {
+    /// Number of the joint, 2 to modules.
+    pub joint: usize,
+    /// Place across `[m]`; none of the joint's sum.
+    pub y_m: Option<f64>,
+    /// Its extremes.
+    pub extremes: PinExtremes,
+}

@@ -87,7 +87,7 @@ fn against(table: TableName) -> &'static [Against] {
         TableName::Jobs | TableName::Connectors => &[Against::Speed],
         TableName::Positions => &[Against::X, Against::Speed],
         TableName::Histories => &[Against::Time],
-        TableName::Modes | TableName::Joints => &[],
+        TableName::Modes | TableName::Joints | TableName::Pins => &[],
     }
 }
 
@@ -96,6 +96,7 @@ impl MeasuredSpec {
     pub fn place(&self) -> Option<&'static str> {
         match (self.of.table, self.against) {
             (TableName::Positions, Against::X) | (TableName::Jobs | TableName::Modes | TableName::Joints, _) => None,
+            (TableName::Pins, _) => Some("joint"),
             (TableName::Positions | TableName::Histories, _) => Some("position"),
             (TableName::Connectors, _) => Some("joint"),
         }

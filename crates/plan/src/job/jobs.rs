@@ -95,6 +95,7 @@ impl Jobs<'_> {
             connection,
             load_n,
             worn,
+            pins: self.study.record.pins,
             task,
         };
         match job.checked_laws() {

@@ -56,6 +56,8 @@ pub struct Job {
     pub load_n: f64,
     /// Wear of its joints; none where gaps have no meaning or do not scatter.
     pub worn: Option<Worn>,
+    /// Whether forces of pins are recorded.
+    pub pins: bool,
     /// What is asked.
     pub task: Task,
 }

@@ -55,6 +55,9 @@ pub struct RecordSpec {
     /// Whether to write the table of connectors.
     #[serde(default = "yes")]
     pub connectors: bool,
+    /// Whether to write the table of pins: a step then costs more.
+    #[serde(default)]
+    pub pins: bool,
 }
 
 fn yes() -> bool {
@@ -67,6 +70,18 @@ impl Default for RecordSpec {
             histories: HistoriesSpec::default(),
             positions: true,
             connectors: true,
+            pins: false,
+        }
+    }
+}
+
+impl RecordSpec {
+    /// What is recorded of a crossing, as the mechanics takes it.
+    pub fn of_crossing(&self) -> Record {
+        Record {
+            positions: self.histories.positions.clone(),
+            joints: self.histories.joints.clone(),
+            pins: self.pins,
         }
     }
 }
@@ -87,14 +102,6 @@ impl HistoriesSpec {
     /// Whether any history is asked for.
     pub fn asked(&self) -> bool {
         !(self.positions.is_empty() && self.joints.is_empty())
-    }
-
-    /// What is recorded, as the mechanics takes it.
-    pub fn record(&self) -> Record {
-        Record {
-            positions: self.positions.clone(),
-            joints: self.joints.clone(),
-        }
     }
 }
 

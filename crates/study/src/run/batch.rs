@@ -161,5 +161,5 @@ fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) 
 }
 
 fn histories(study: &Study) -> Record {
-    study.record.histories.record()
+    study.record.of_crossing()
 }

@@ -8,10 +8,14 @@ use super::retry::RETRY_STEP_SHARE;
 use super::shared_models::SharedModels;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
-use pontoon_core::response::{CrossingResponse, ForcePeaks, JointPeaks, Peak, PositionPeaks, Quantity, Record};
+use pontoon_core::response::{
+    CrossingResponse, ForcePeaks, JointPeaks, Peak, PinPeaks, PositionPeaks, Quantity, Record,
+};
 use pontoon_core::vehicle::Vehicle;
 use pontoon_plan::job::CrossingJob;
-use pontoon_results::{ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, JobRecord, PositionRow, Summary};
+use pontoon_results::{
+    ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, JobRecord, PinRow, PositionRow, Summary,
+};
 
 /// A job's record or why it failed.
 pub(super) type JobResult = Result<JobRecord, JobFailure>;
@@ -213,12 +217,23 @@ fn joint_rows(joint: &JointPeaks) -> impl Iterator<Item = ConnectorRow> {
     std::iter::once(peaks_row(joint.joint, None, &joint.sum)).chain(each)
 }
 
+fn pin_row(peaks: &PinPeaks) -> PinRow {
+    let of = &peaks.extremes;
+    PinRow {
+        joint: peaks.joint,
+        y_m: peaks.y_m,
+        components: of.components.map(|axis| [axis.compression, axis.tension].map(extreme)),
+        resultant: extreme(of.resultant),
+    }
+}
+
 fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
     let positions: Vec<PositionRow> = (0..)
         .zip(&response.positions)
         .map(|(i, peaks): (usize, _)| position_row(peaks, static_peaks_m.map(|of| of[i])))
         .collect();
     let connectors: Vec<ConnectorRow> = response.joints.iter().flat_map(joint_rows).collect();
+    let pins = response.pins.iter().map(pin_row).collect();
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
     let mut summary = Summary {
         peak_edge_deflection_m: Some(response.peak_edge_deflection_m),
@@ -248,6 +263,7 @@ fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) 
         connectors,
         histories: history_rows(response),
         modes: Vec::new(),
+        pins,
     }
 }
 

@@ -20,6 +20,7 @@ pub(super) fn solve(job: &Job, asked: &ModesAnalysis, models: &SharedModels) -> 
         ..Summary::default()
     };
     Ok(JobRecord {
+        pins: Vec::new(),
         job: job.number,
         failure: None,
         retried: None,

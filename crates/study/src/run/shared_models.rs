@@ -12,7 +12,7 @@ use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, Operato
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
-use pontoon_core::operator::BridgeOperator;
+use pontoon_core::operator::{BridgeOperator, Pinned};
 use pontoon_core::stop::Stop;
 use pontoon_journal::PreparationKey;
 use pontoon_plan::job::{CrossingJob, Job, Task};
@@ -29,21 +29,26 @@ type BridgeKey = (Model, Arc<str>);
 type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
 type CrossingKey = (DampingKey, [u64; 2], [usize; 2]);
 /// Crossings of one key are solved side by side.
-pub(super) type LaneBatchKey = (CrossingKey, u64, Option<u64>);
+pub(super) type LaneBatchKey = (CrossingKey, OperatorKey, Option<u64>);
 type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, Option<[u8; 32]>, u64);
 
 /// What an operator depends on: a bridge, and how far its flexibility may be off.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct OperatorKey {
+pub(super) struct OperatorKey {
     bridge: BridgeKey,
     tolerance: u64,
+    pinned: Pinned,
 }
 
 impl OperatorKey {
     /// What its file in the cache is named by.
     fn name(&self) -> String {
         let (model, structure) = &self.bridge;
-        Cache::name(&format!("{} {structure} {:016x}", word(*model), self.tolerance))
+        let pins = match self.pinned {
+            Pinned::Yes => " pins",
+            Pinned::No => "",
+        };
+        Cache::name(&format!("{} {structure} {:016x}{pins}", word(*model), self.tolerance))
     }
 }
 
@@ -226,7 +231,7 @@ impl SharedModels {
         };
         made.built.fetch_add(1, Ordering::Relaxed);
         let asked = || cancel.is_asked();
-        let operator = BridgeOperator::new_unless(&bridge, tolerance, Stop::when(&asked))?;
+        let operator = BridgeOperator::new_unless(&bridge, tolerance, key.pinned, Stop::when(&asked))?;
         if let Some(cache) = cache {
             // a cache that cannot be written costs time at the next run, and nothing else
             let _ = cache.write(&name, &operator);
@@ -267,8 +272,7 @@ impl SharedModels {
     /// Crossings of one key are solved side by side; none of the reference solver's, which are solved one by one.
     pub(super) fn lane_batch_key(crossing: &CrossingJob<'_>) -> Option<LaneBatchKey> {
         let auto = crossing.analysis.time_step.tolerance().map(f64::to_bits);
-        let tolerance = crossing.operator_tolerance()?.to_bits();
-        Some((crossing_key(crossing), tolerance, auto))
+        Some((crossing_key(crossing), operator_key(crossing)?, auto))
     }
 
     /// The operator's solver of a crossing.
@@ -507,6 +511,7 @@ fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
     Some(OperatorKey {
         bridge: bridge_key(crossing.job),
         tolerance: crossing.operator_tolerance()?.to_bits(),
+        pinned: if crossing.job.pins { Pinned::Yes } else { Pinned::No },
     })
 }
 

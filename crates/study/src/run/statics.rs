@@ -6,7 +6,7 @@ use super::failure::JobFailure;
 use super::shared_models::{SharedModels, static_case};
 use pontoon_core::response::StaticResponse;
 use pontoon_plan::job::{Job, StandingLoad};
-use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PositionRow, Summary};
+use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PinRow, PositionRow, Summary};
 
 /// Solves the static case of a job.
 pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
@@ -57,5 +57,35 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         connectors,
         histories: HistoryRows::default(),
         modes: Vec::new(),
+        pins: if job.pins {
+            pin_rows(job, &response.pins_n)
+        } else {
+            Vec::new()
+        },
+    }
+}
+
+/// The rows of the pins, joint after joint, and of each joint's sum.
+fn pin_rows(job: &Job, forces_n: &[[f64; 3]]) -> Vec<PinRow> {
+    let design = &job.bridge.design;
+    let (mut forces, mut rows) = (forces_n.iter().copied(), Vec::new());
+    for joint in 2..=design.modules {
+        let mut sum = [0.0; 3];
+        for (&y_m, force) in design.hinges_of(joint).y_m.iter().zip(&mut forces) {
+            (0..3).for_each(|axis| sum[axis] += force[axis]);
+            rows.push(pin_row(joint, Some(y_m), force));
+        }
+        rows.push(pin_row(joint, None, sum));
+    }
+    rows
+}
+
+fn pin_row(joint: usize, y_m: Option<f64>, force_n: [f64; 3]) -> PinRow {
+    let sides = |force: f64| [0.0 - force, force].map(|side| Extreme::timeless(side.max(0.0)));
+    PinRow {
+        joint,
+        y_m,
+        components: force_n.map(sides),
+        resultant: Extreme::timeless(force_n.iter().map(|f| f * f).sum::<f64>().sqrt()),
     }
 }

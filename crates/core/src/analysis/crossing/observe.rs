@@ -5,7 +5,8 @@
 use super::step::Motion;
 use crate::bridge::Bridge;
 use crate::response::{
-    CrossingResponse, EnergyBalance, ForcePeaks, History, JointPeaks, Peak, PositionPeaks, Quantity, Record, Statistics,
+    CrossingResponse, EnergyBalance, ForcePeaks, History, JointPeaks, Peak, PinExtremes, PinPeaks, PositionPeaks,
+    Quantity, Record, Statistics,
 };
 
 /// Gathers the response of one crossing.
@@ -14,6 +15,7 @@ pub(super) struct Observer<'a> {
     bridge: &'a Bridge,
     positions: Vec<PositionPeaks>,
     joints: Vec<JointPeaks>,
+    pins: PinWatch,
     edge: f64,
     roll: f64,
     min_contact_force_n: f64,
@@ -49,6 +51,7 @@ impl<'a> Observer<'a> {
             bridge,
             positions,
             joints,
+            pins: PinWatch::new(bridge, record.pins),
             edge: 0.0,
             roll: 0.0,
             min_contact_force_n: f64::INFINITY,
@@ -74,6 +77,9 @@ impl<'a> Observer<'a> {
         self.statistics.contact_switches += old.states.iter().zip(&new.states).filter(|(a, b)| a != b).count();
         self.energy.take(&new.spent);
         self.record_peaks(new);
+        if let Some((time_s, pins)) = &new.pins {
+            self.pins.take(pins, *time_s);
+        }
     }
 
     fn record_peaks(&mut self, now: &Motion) {
@@ -136,6 +142,7 @@ impl<'a> Observer<'a> {
         CrossingResponse {
             positions: self.positions,
             joints: self.joints,
+            pins: self.pins.peaks,
             peak_edge_deflection_m: self.edge,
             peak_roll_rad: self.roll,
             min_contact_force_n: self.min_contact_force_n,
@@ -145,6 +152,48 @@ impl<'a> Observer<'a> {
             energy: self.energy.summary(),
             history_time_s: self.history_time_s,
             histories: self.histories,
+        }
+    }
+}
+
+/// Watches the pins: each joint's, then their sum.
+#[derive(Debug)]
+pub(super) struct PinWatch {
+    /// Nothing where nobody asks.
+    pub(super) peaks: Vec<PinPeaks>,
+}
+
+impl PinWatch {
+    pub(super) fn new(bridge: &Bridge, wanted: bool) -> Self {
+        let mut peaks = Vec::new();
+        for joint in bridge
+            .pins
+            .chunk_by(|a, b| wanted && a.joint == b.joint)
+            .filter(|_| wanted)
+        {
+            let places = joint.iter().map(|pin| Some(pin.y_m)).chain([None]);
+            peaks.extend(places.map(|y_m| PinPeaks {
+                joint: joint[0].joint,
+                y_m,
+                extremes: PinExtremes::default(),
+            }));
+        }
+        Self { peaks }
+    }
+
+    /// Takes the forces of all pins, joint after joint, at `time_s`.
+    pub(super) fn take(&mut self, forces_n: &[[f64; 3]], time_s: f64) {
+        let (mut forces, mut sum) = (forces_n.iter(), [0.0; 3]);
+        for peaks in &mut self.peaks {
+            let force = match peaks.y_m {
+                None => std::mem::take(&mut sum),
+                Some(_) => {
+                    let force = *forces.next().unwrap_or(&[0.0; 3]);
+                    (0..3).for_each(|d| sum[d] += force[d]);
+                    force
+                }
+            };
+            peaks.extremes.take(force, time_s);
         }
     }
 }

@@ -308,6 +308,11 @@ impl<C: StepClock> Crew<'_, C> {
         CrossingResponse {
             positions: positions.collect(),
             joints: peaks.joints(&design.connectors.y_m),
+            pins: if of.record.pins {
+                self.lanes.pin_peaks(lane)
+            } else {
+                Vec::new()
+            },
             peak_edge_deflection_m: peaks.edge_m,
             peak_roll_rad: peaks.roll_rad,
             min_contact_force_n: peaks.min_contact_force_n,

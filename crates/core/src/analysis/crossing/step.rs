@@ -4,7 +4,7 @@
 
 use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
-use crate::bridge::{Bridge, Load, Rider, Track};
+use crate::bridge::{Bridge, Load, PinPlace, Rider, Track};
 use crate::connector::State;
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
@@ -34,6 +34,8 @@ pub(super) struct Motion {
     pub newton_iterations: usize,
     /// Energies of the step that led here.
     pub spent: StepEnergies,
+    /// Forces of the pins at the instant of the balance of that step, and that instant `[s]`; none where nobody asks.
+    pub pins: Option<(f64, Vec<[f64; 3]>)>,
 }
 
 impl Motion {
@@ -67,6 +69,8 @@ pub(super) struct Stepper<'a> {
     pub rayleigh: Rayleigh,
     /// Law of each connector.
     pub laws: Vec<LinkLaw>,
+    /// Whether forces of pins are wanted.
+    pub pins: bool,
 }
 
 impl Stepper<'_> {
@@ -111,6 +115,7 @@ impl Stepper<'_> {
         new.elongations = contact.elongations;
         new.newton_iterations = contact.iterations;
         new.spent = self.account(matrix, old, &new, &d); // (R1)
+        new.pins = self.pins.then(|| self.pins_n(matrix, old, &new)); // (P1)
         Ok(new)
     }
 
@@ -238,6 +243,31 @@ impl Stepper<'_> {
                 ])
             }
         }
+    }
+
+    /// The forces of the pins where the balance holds, and when that is.
+    fn pins_n(&self, matrix: &StepMatrix, old: &Motion, new: &Motion) -> (f64, Vec<[f64; 3]>) {
+        let (s, Rayleigh { a, b }) = (&matrix.scheme, self.rayleigh);
+        let dofs = 0..new.u.len();
+        let v = |i: usize| s.at_f(new.v[i], old.v[i]);
+        let elastic: Vec<f64> = dofs.clone().map(|i| s.at_f(new.u[i], old.u[i]) + a * v(i)).collect();
+        let inertial: Vec<f64> = dofs.map(|i| s.at_m(new.a[i], old.a[i]) + b * v(i)).collect();
+        let shares = [(1.0 - s.alpha_f, 1.0 - s.alpha_m, new), (s.alpha_f, s.alpha_m, old)];
+        let down: Vec<SparseRow> = shares
+            .iter()
+            .flat_map(|(f, m, instant)| {
+                let riders = instant.load.riders.iter().zip(&instant.inertia);
+                let inertia = riders.map(move |(rider, q)| SparseRow::combine(&[(m * q, &rider.row)]));
+                inertia.chain([SparseRow::combine(&[(*f, &instant.load.weight)])])
+            })
+            .collect();
+        let force = |pin: &PinPlace| {
+            pin.rows
+                .each_ref()
+                .map(|row| row.force_n(&elastic, Some(&inertial), &down))
+        };
+        let time_s = s.at_f(new.time_s, old.time_s);
+        (time_s, self.bridge.pins.iter().map(force).collect())
     }
 
     /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives

@@ -6,7 +6,7 @@ mod creeping;
 
 use super::AnalysisError;
 use super::snapshot::{Snapshot, connectors, wheels};
-use crate::bridge::{Bridge, Load, VehiclePlacement};
+use crate::bridge::{Bridge, Load, PinPlace, VehiclePlacement};
 use crate::connector::{Connection, OwnLaws, State};
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
@@ -103,6 +103,7 @@ impl StaticSolver {
             // nothing is 0, not -0
             deflection_m: bridge.positions.iter().map(|row| 0.0 - row.dot(&u)).collect(),
             joints,
+            pins_n: self.pins_n(&load, &u),
             peak_edge_deflection_m: largest(&bridge.edges, &|z| -z),
             peak_roll_rad: largest(&bridge.rolls, &f64::abs),
             influential_length_m: self.influential_length_m(&u, case.load_x_m),
@@ -149,6 +150,13 @@ impl StaticSolver {
             self.flexibility.add_connector_response(i, -force, &mut u);
         }
         Ok((load, contact, u))
+    }
+
+    /// Force of each pin on the module left of it.
+    fn pins_n(&self, load: &Load, u: &[f64]) -> Vec<[f64; 3]> {
+        let down = std::slice::from_ref(&load.weight);
+        let force = |pin: &PinPlace| pin.rows.each_ref().map(|row| row.force_n(u, None, down));
+        self.bridge.pins.iter().map(force).collect()
     }
 
     /// Largest static deflection of any position over all places of the load along the bridge `[m]`.

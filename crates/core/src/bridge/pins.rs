@@ -1,0 +1,95 @@
+//! Pins: the forces in the hinges, which one module of a joint needs to move as it does.
+//!
+//! Knows the rows of a module's own matrices at its hinges. Does not know how the motion came about, nor peaks.
+
+use super::BridgeDesign;
+use super::prepared::{PreparedModule, Side, X, Y, Z};
+use super::row::Row;
+use crate::fem::{SparseRow, SymmetricMatrix};
+
+/// A hinge place of a joint, by the module left of it.
+#[derive(Debug, Clone)]
+pub(crate) struct PinPlace {
+    /// Number of the joint, 2 to modules.
+    pub joint: usize,
+    /// Place across `[m]`.
+    pub y_m: f64,
+    /// Along, across and up.
+    pub rows: [PinRow; 3],
+}
+
+/// The rows of one direction of a pin.
+#[derive(Debug, Clone)]
+pub(crate) struct PinRow {
+    /// Stiffness and mass of the module in the tied freedom, by the bridge's dofs.
+    pub stiffness: SparseRow,
+    pub mass: SparseRow,
+    /// Columns of the track that lie on the tied freedom and belong to this module, where the deck ends in the hinges.
+    pub columns: Vec<usize>,
+}
+
+impl PinRow {
+    /// Force of the pin on the module `[N]`: what moves it, less what acts on it from elsewhere. `elastic` is `u + a u'`,
+    /// `inertial` is `u'' + b u'` or nothing at rest, `down` what presses on each column of the track `[N]`.
+    /// Equation (P1).
+    pub(crate) fn force_n(&self, elastic: &[f64], inertial: Option<&[f64]>, down: &[SparseRow]) -> f64 {
+        let pressed = |row: &SparseRow| -> f64 {
+            let here = row.0.iter().filter(|(column, _)| self.columns.contains(column));
+            here.map(|(_, force)| force).sum()
+        };
+        let pressed: f64 = if self.columns.is_empty() {
+            0.0
+        } else {
+            down.iter().map(pressed).sum()
+        };
+        self.stiffness.dot(elastic) + inertial.map_or(0.0, |inertial| self.mass.dot(inertial)) + pressed
+    }
+}
+
+/// The pins of all joints, joint after joint, each joint's in the order of its hinges.
+/// `deck_z` are the dofs of the deck's z, `[module][ix][iy]`.
+pub(super) fn pins(
+    design: &BridgeDesign,
+    module: &PreparedModule,
+    row: &Row<'_>,
+    deck_z: &[Vec<Vec<usize>>],
+) -> Vec<PinPlace> {
+    let (grid, end) = (&module.grid, module.end_line(Side::Right));
+    let (nx, ny) = (grid.x.len(), grid.y.len());
+    let columns = |j: usize, dof: usize| -> Vec<usize> {
+        let nodes = (0..ny).flat_map(|line| (0..nx).map(move |ix| (line, ix)));
+        let here = nodes.filter(|&(line, ix)| deck_z[j][ix][line] == dof);
+        here.map(|(line, ix)| (line * design.modules + j) * nx + ix).collect()
+    };
+    let place = |joint: usize, y_m: f64| {
+        let (j, iy) = (joint - 2, grid.y_line(y_m)?);
+        let pin = |direction: usize| {
+            let dof = module.dof(grid.bottom(end, iy), direction)?;
+            let of = |matrix: &SymmetricMatrix| row.global(j, &SparseRow(matrix.column(dof).collect()));
+            Some(PinRow {
+                stiffness: of(&module.k),
+                mass: of(&module.m),
+                columns: match (direction, row.map[j][dof]) {
+                    (Z, Some(tied)) => columns(j, tied),
+                    _ => Vec::new(),
+                },
+            })
+        };
+        let [x, y, z] = [X, Y, Z].map(pin);
+        Some(PinPlace {
+            joint,
+            y_m,
+            rows: [x?, y?, z?],
+        })
+    };
+    (2..=design.modules)
+        .flat_map(|joint| {
+            design
+                .hinges_of(joint)
+                .y_m
+                .iter()
+                .filter_map(move |&y| place(joint, y))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
