@@ -130,6 +130,17 @@ pub(super) fn read(file: &mut File, columns: Option<&[&str]>, rows: &Range<usize
     Ok(frames)
 }
 
+/// Bytes that a file's rows take in memory: as arrays of the table library and as columns of this program.
+pub(super) fn bytes_in_memory(file: &mut File) -> io::Result<u64> {
+    let metadata = read_metadata(file).map_err(io::Error::other)?;
+    let rows: usize = metadata.row_groups.iter().map(RowGroupMetadata::num_rows).sum();
+    let columns = metadata.schema_descr.columns().len();
+    Ok(2 * CELL_BYTES * (rows as u64) * columns as u64)
+}
+
+/// Bytes of a cell, numbers and words together: measured on tables of jobs, with what a report makes of them.
+const CELL_BYTES: u64 = 20;
+
 fn read_group(
     file: &mut File,
     group: &RowGroupMetadata,

@@ -5,8 +5,9 @@
 
 use super::documents::RunDocuments;
 use super::files::MANIFEST;
-use super::frame::read;
+use super::frame::{bytes_in_memory, read};
 use super::layout::Layout;
+use super::memory::too_large;
 use super::registry::Column;
 use super::results_error::ResultsError;
 use super::table::{Table, TableName};
@@ -108,6 +109,7 @@ impl Results {
                         return Err(damaged(&path, "not the bytes that the manifest names"));
                     }
                     if table == TableName::Jobs || wanted.contains(&table) {
+                        check_memory(&path)?;
                         let read = read_table(&path).map_err(|e| damaged(&path, &e.to_string()))?;
                         tables.insert(table, read);
                     } else {
@@ -249,6 +251,19 @@ fn numbers_of(jobs: &Table) -> Option<Vec<u64>> {
     let numbers: Vec<u64> = (0..jobs.rows()).map(whole).collect::<Option<_>>()?;
     let distinct: HashSet<&u64> = numbers.iter().collect();
     (distinct.len() == numbers.len()).then_some(numbers)
+}
+
+/// Refuses a table that would not fit into memory, by what its footer says; one that cannot be read is told by who reads it.
+fn check_memory(path: &Path) -> Result<(), ResultsError> {
+    let needed = || bytes_in_memory(&mut File::open(path)?);
+    let needed = catch_unwind(AssertUnwindSafe(needed)).ok().and_then(Result::ok);
+    match needed.and_then(too_large) {
+        None => Ok(()),
+        Some(found) => Err(ResultsError::TooLarge {
+            file: path.to_owned(),
+            found,
+        }),
+    }
 }
 
 /// Reads a Parquet file; that the library panics over it is an error like any other.

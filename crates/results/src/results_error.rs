@@ -20,4 +20,12 @@ pub enum ResultsError {
         /// What is wrong with it.
         found: String,
     },
+    /// A table does not fit into memory.
+    #[error("{}: a table that needs {found}; read it in parts, with polars or DuckDB", file.display())]
+    TooLarge {
+        /// The file.
+        file: PathBuf,
+        /// What it needs and what is free.
+        found: String,
+    },
 }

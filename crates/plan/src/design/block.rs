@@ -6,7 +6,7 @@ use super::axes::{Axis, AxisValues, JobAxis, NamedAxis, Root, Varies, check_apar
 use super::cases::{CaseRun, Cases};
 use super::condition::{Conditions, Test};
 use super::forms::{AxisMap, Design, Form, SampleSpec};
-use super::points::{PointSource, RandomSample, SampledAxis, values};
+use super::points::{PointSource, RandomSample, SampledAxis, count_met, values};
 use super::sampling::SobolPoints;
 use super::values::{MOST_POINTS, Values, numbers};
 use crate::input::{Cell, DocumentPath, FoundValue, Refusal, RefusalKind};
@@ -373,7 +373,7 @@ impl DesignReader<'_> {
         let mut left = Vec::new();
         for mut block in blocks {
             block.tests = conditions.on(&block.axes);
-            block.count = block.points().count();
+            block.count = count_met(&block.axes, &block.source, &block.tests);
             left.extend(Some(block).filter(|block| !block.is_empty()));
         }
         if left.is_empty() {

@@ -145,12 +145,37 @@ pub(super) struct Test {
 }
 
 impl Test {
-    /// Whether the values of a point meet the condition. What is no number stands in no relation.
-    pub(super) fn met(&self, values: &[Cell<'_>]) -> bool {
-        let value = |axis: Option<usize>| axis.map_or(&Cell::Nothing, |axis| &values[axis]);
+    /// Whether a point meets the condition, `of_axis` its value of an axis. What is no number stands in no relation.
+    pub(super) fn met<'a>(&self, of_axis: impl Fn(usize) -> Cell<'a>) -> bool {
+        let value = |axis: Option<usize>| axis.map_or(Cell::Nothing, &of_axis);
         let own = value(self.axis);
         let stands = |&(relation, other): &(Relation, Option<usize>)| matches!((own.number(), value(other).number()), (Some(a), Some(b)) if relation.holds(a, b));
-        self.allowed.as_ref().is_none_or(|allowed| allowed.allows_exactly(own)) && self.compared.iter().all(stands)
+        self.allowed.as_ref().is_none_or(|allowed| allowed.allows_exactly(&own)) && self.compared.iter().all(stands)
+    }
+
+    /// The condition in parts that speak of at most two axes each.
+    pub(super) fn parts(&self) -> impl Iterator<Item = Self> {
+        let own = Self {
+            compared: Vec::new(),
+            ..self.clone()
+        };
+        let pairs = self.compared.iter().map(|compared| Self {
+            axis: self.axis,
+            allowed: None,
+            compared: vec![*compared],
+        });
+        std::iter::once(own).chain(pairs)
+    }
+
+    /// The axes that it speaks of, each once.
+    pub(super) fn axes(&self) -> Vec<usize> {
+        let mut axes: Vec<usize> = self.axis.into_iter().collect();
+        for axis in self.compared.iter().filter_map(|(_, other)| *other) {
+            if !axes.contains(&axis) {
+                axes.push(axis);
+            }
+        }
+        axes
     }
 }
 
@@ -255,7 +280,7 @@ mod tests {
                 allowed: condition.allowed,
                 compared: Vec::new(),
             };
-            assert!(test.met(&[Cell::Number(0.3)]) && !test.met(&[Cell::Number(0.1 + 0.2)]));
+            assert!(test.met(|_| Cell::Number(0.3)) && !test.met(|_| Cell::Number(0.1 + 0.2)));
         }
     }
 }

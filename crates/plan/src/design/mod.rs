@@ -8,6 +8,7 @@ mod cases;
 mod column;
 mod condition;
 mod forms;
+mod grid_sieve;
 mod points;
 mod sampling;
 #[cfg(test)]

@@ -5,6 +5,7 @@
 use super::axes::Axis;
 use super::column::ValueColumn;
 use super::condition::Test;
+use super::grid_sieve::GridSieve;
 use super::sampling::{LatinHypercubeAxis, SobolPoints};
 use super::values::{Values, rounded};
 use crate::input::Cell;
@@ -72,78 +73,151 @@ impl PointSource {
 }
 
 /// The points of some axes, in order, that meet conditions, each with its number among all: of a grid the first axis changes
-/// slowest.
+/// slowest. Of a point that does not meet them no value is made but those that conditions ask for.
 pub(super) fn values<'a>(
     axes: &'a [Axis],
     point_source: &'a PointSource,
     tests: &'a [Test],
 ) -> impl Iterator<Item = (usize, Vec<Cell<'a>>)> {
-    let mut source = ValueSource::of(axes, point_source);
-    (0..point_source.count().unwrap_or(0))
-        .map_while(move |number| Some((number, source.values(number)?)))
-        .filter(|(_, values)| tests.iter().all(|test| test.met(values)))
+    let values = |source: &ValueSource<'a>| (0..axes.len()).map(|axis| source.value(axis)).collect();
+    met(axes, point_source, tests, move |number, source| {
+        (number, values(source))
+    })
 }
 
-/// What the values of the next point come from.
+/// How many points meet conditions.
+pub(super) fn count_met(axes: &[Axis], point_source: &PointSource, tests: &[Test]) -> usize {
+    met(axes, point_source, tests, |_, _| ()).count()
+}
+
+/// What is made of each point that meets conditions.
+fn met<'a, T>(
+    axes: &'a [Axis],
+    point_source: &'a PointSource,
+    tests: &'a [Test],
+    of: impl Fn(usize, &ValueSource<'a>) -> T,
+) -> impl Iterator<Item = T> {
+    let mut source = ValueSource::of(axes, point_source);
+    let sieve = match point_source {
+        PointSource::Grid(values) if !tests.is_empty() => Some(GridSieve::new(values, tests)),
+        _ => None,
+    };
+    let mut numbers = 0..point_source.count().unwrap_or(0);
+    std::iter::from_fn(move || {
+        for number in numbers.by_ref() {
+            if sieve.as_ref().is_some_and(|sieve| !sieve.passes(number)) {
+                continue;
+            }
+            source.go_to(number)?;
+            if sieve.is_some() || tests.iter().all(|test| test.met(|axis| source.value(axis))) {
+                return Some(of(number, &source));
+            }
+        }
+        None
+    })
+}
+
+/// What the values of the point under way come from.
 enum ValueSource<'a> {
-    Grid(&'a [Values]),
-    Zip(&'a [Values]),
+    /// With the place of each axis's value.
+    Grid(&'a [Values], Vec<usize>),
+    /// With the number of the point.
+    Zip(&'a [Values], usize),
     /// With the coordinates of the ranges.
-    LatinHypercube(&'a [SampledAxis], Vec<LatinHypercubeAxis>),
+    LatinHypercube(Drawn<'a>, Vec<LatinHypercubeAxis>),
     /// With the dimension of each range, in the order of the axes.
-    Sobol(&'a [SampledAxis], Vec<usize>, SobolPoints),
-    Cases(&'a [ValueColumn]),
+    Sobol(Drawn<'a>, Vec<usize>, SobolPoints),
+    /// With the number of the point.
+    Cases(&'a [ValueColumn], usize),
+}
+
+/// Axes that are drawn, with the coordinate of each range at the point under way.
+struct Drawn<'a> {
+    axes: &'a [SampledAxis],
+    /// Of each axis the place of its coordinate, where it is a range.
+    places: Vec<usize>,
+    shares: Vec<f64>,
+}
+
+impl<'a> Drawn<'a> {
+    fn new(axes: &'a [SampledAxis]) -> Self {
+        let before = |i: usize| axes[..i].iter().filter(|axis| axis.is_range()).count();
+        Self {
+            axes,
+            places: (0..axes.len()).map(before).collect(),
+            shares: vec![0.0; before(axes.len())],
+        }
+    }
+
+    fn value(&self, axis: usize) -> Cell<'a> {
+        let share = || self.shares[self.places[axis]];
+        match &self.axes[axis] {
+            SampledAxis::Constant(value) => value.borrowed(),
+            SampledAxis::Range(from, to) => {
+                let x = rounded(from + (to - from) * share());
+                Cell::written(x.clamp(*from, *to))
+            }
+            SampledAxis::Whole(from, to) => {
+                let parts = usize::try_from(to - from).unwrap_or(usize::MAX).saturating_add(1);
+                Cell::Whole(from + part(share(), parts) as i64)
+            }
+            SampledAxis::OneOf(values) => values.at(part(share(), values.len())),
+        }
+    }
 }
 
 impl<'a> ValueSource<'a> {
     fn of(axes: &[Axis], point_source: &'a PointSource) -> Self {
         match point_source {
-            PointSource::Grid(values) => Self::Grid(values),
-            PointSource::Zip(values) => Self::Zip(values),
+            PointSource::Grid(values) => Self::Grid(values, vec![0; values.len()]),
+            PointSource::Zip(values) => Self::Zip(values, 0),
             PointSource::LatinHypercube(RandomSample { count, seed, drawn }) => {
                 let names = names_of_ranges(axes, drawn);
                 let strata = names.iter().map(|name| LatinHypercubeAxis::new(*count, *seed, name));
-                Self::LatinHypercube(drawn, strata.collect())
+                Self::LatinHypercube(Drawn::new(drawn), strata.collect())
             }
             PointSource::Sobol(RandomSample { seed, drawn, .. }) => {
                 let dimensions = dimensions(&names_of_ranges(axes, drawn));
                 let points = SobolPoints::new(dimensions.len(), *seed);
-                Self::Sobol(drawn, dimensions, points)
+                Self::Sobol(Drawn::new(drawn), dimensions, points)
             }
-            PointSource::Cases(columns, _) => Self::Cases(columns),
+            PointSource::Cases(columns, _) => Self::Cases(columns, 0),
         }
     }
 
-    /// The values of a point, to be asked from the first on; nothing where the sequence ends.
-    fn values(&mut self, number: usize) -> Option<Vec<Cell<'a>>> {
+    /// Goes to a point; of what is drawn from each to the next. Nothing where the sequence ends.
+    fn go_to(&mut self, number: usize) -> Option<()> {
         match self {
-            Self::Grid(axes) => {
-                let axes: &'a [Values] = axes;
+            Self::Grid(axes, places) => {
                 let mut rest = number;
-                let mut values = Vec::with_capacity(axes.len());
-                for axis in axes.iter().rev() {
-                    values.push(axis.at(rest % axis.len()));
+                for (axis, place) in axes.iter().zip(places).rev() {
+                    *place = rest % axis.len();
                     rest /= axis.len();
                 }
-                values.reverse();
-                Some(values)
             }
-            Self::Zip(axes) => {
-                let axes: &'a [Values] = axes;
-                let value = |values: &'a Values| values.at(if values.len() == 1 { 0 } else { number });
-                Some(axes.iter().map(value).collect())
-            }
+            Self::Zip(_, at) | Self::Cases(_, at) => *at = number,
             Self::LatinHypercube(drawn, strata) => {
-                drawn_values(drawn, strata.iter_mut().map(|strata| strata.share(number)))
+                for (share, strata) in drawn.shares.iter_mut().zip(strata) {
+                    *share = strata.share(number);
+                }
             }
             Self::Sobol(drawn, dimensions, points) => {
                 let shares = points.next()?;
-                drawn_values(drawn, dimensions.iter().map(|&dimension| shares[dimension]))
+                for (share, &dimension) in drawn.shares.iter_mut().zip(&*dimensions) {
+                    *share = shares[dimension];
+                }
             }
-            Self::Cases(columns) => {
-                let columns: &'a [ValueColumn] = columns;
-                Some(columns.iter().map(|column| column.at(number)).collect())
-            }
+        }
+        Some(())
+    }
+
+    /// The value of an axis at the point under way.
+    fn value(&self, axis: usize) -> Cell<'a> {
+        match self {
+            Self::Grid(axes, places) => axes[axis].at(places[axis]),
+            Self::Zip(axes, number) => axes[axis].at(if axes[axis].len() == 1 { 0 } else { *number }),
+            Self::LatinHypercube(drawn, _) | Self::Sobol(drawn, ..) => drawn.value(axis),
+            Self::Cases(columns, number) => columns[axis].at(*number),
         }
     }
 }
@@ -170,21 +244,4 @@ impl SampledAxis {
 /// The place of a share, 0 to 1, among so many equal parts.
 fn part(share: f64, parts: usize) -> usize {
     ((share * parts as f64) as usize).min(parts - 1)
-}
-
-/// The values of a point whose ranges have these coordinates.
-fn drawn_values<'a>(drawn: &'a [SampledAxis], mut shares: impl Iterator<Item = f64>) -> Option<Vec<Cell<'a>>> {
-    let value = |drawn: &'a SampledAxis| match drawn {
-        SampledAxis::Constant(value) => Some(value.borrowed()),
-        SampledAxis::Range(from, to) => {
-            let x = rounded(from + (to - from) * shares.next()?);
-            Some(Cell::written(x.clamp(*from, *to)))
-        }
-        SampledAxis::Whole(from, to) => {
-            let parts = usize::try_from(to - from).ok()?.saturating_add(1);
-            Some(Cell::Whole(from + part(shares.next()?, parts) as i64))
-        }
-        SampledAxis::OneOf(values) => Some(values.at(part(shares.next()?, values.len()))),
-    };
-    drawn.iter().map(value).collect()
 }

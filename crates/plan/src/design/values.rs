@@ -14,7 +14,10 @@ pub(super) const MOST_POINTS: usize = 10_000_000;
 
 const FORMS: &str = "a list of values, one number or word, {\"linspace\": [from, to, count]} or {\"geomspace\": [...]}";
 
-/// The values of an axis, at least one. A spaced range is computed value by value, so that a long one costs nothing.
+/// Values of a spaced range up to which they are computed once: rounding one costs as much as all else about a point.
+const COMPUTED_ONCE: usize = 10_000;
+
+/// The values of an axis, at least one. A long spaced range is computed value by value, so that it costs nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Values {
     /// As listed.
@@ -95,7 +98,38 @@ impl Values {
 /// A computed value to 15 significant digits, which every decimal of so many digits survives: the third of `[0, 0.3, 4]` is
 /// the number that a person writes as 0.2.
 pub(super) fn rounded(x: f64) -> f64 {
-    format!("{x:.14e}").parse().unwrap_or(x)
+    rounded_fast(x).unwrap_or_else(|| format!("{x:.14e}").parse().unwrap_or(x))
+}
+
+/// Powers of ten that floating-point numbers hold without loss.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
+];
+
+/// [`rounded`] without a text: the number times an exact power of ten is a whole number of 15 digits but for its fraction, and
+/// a whole number below 2^53 over an exact power is the number nearest to that decimal. None for numbers out of range and
+/// where rounding of the product could cross a half.
+fn rounded_fast(x: f64) -> Option<f64> {
+    let size = x.abs();
+    if !(1e-8..1e15).contains(&size) {
+        return None;
+    }
+    // the power that makes 15 digits before the point of it
+    let guess = (14.0 - size.log10().floor()) as usize;
+    let power = (guess.saturating_sub(1)..=guess + 1).find_map(|k| {
+        let power = *POWERS.get(k)?;
+        (1e14..1e15).contains(&(size * power)).then_some(power)
+    })?;
+    let scaled = size * power;
+    let whole = scaled.floor();
+    let fraction = scaled - whole;
+    // half a unit in the last place of numbers up to 1e15 is 1/16
+    if (fraction - 0.5).abs() < 0.07 {
+        return None;
+    }
+    let digits = if fraction > 0.5 { whole + 1.0 } else { whole };
+    Some((digits / power).copysign(x))
 }
 
 /// A list of so many numbers; none where it is anything else.
@@ -124,12 +158,17 @@ fn spaced(file: &Path, key: &str, geometric: bool, ends: &Value) -> Result<Value
         let found = format!("from {from:e} to {to:e}");
         return refuse(found.into(), "ends that are not so far apart");
     }
-    Ok(Values::Spaced {
+    let range = Values::Spaced {
         from,
         to,
         last: count as usize - 1,
         geometric,
-    })
+    };
+    if range.len() > COMPUTED_ONCE {
+        return Ok(range);
+    }
+    let values = (0..range.len()).map(|place| range.at(place).owned());
+    Ok(Values::Listed(values.collect()))
 }
 
 #[cfg(test)]
@@ -185,6 +224,22 @@ mod tests {
     }
 
     proptest! {
+        /// The text has the last word: both ways give the same bits, also beside halves and powers of ten.
+        #[test]
+        fn rounding_is_that_of_the_text(
+            x in prop_oneof![
+                any::<f64>().prop_filter("finite", |x| x.is_finite()),
+                (-1e9..1e9_f64),
+                (0..2_000_000_000_000_000_u64, 0..22_i32).prop_map(|(n, k)| n as f64 / 10_f64.powi(k)),
+                (-9..16_i32, -3..4_i64).prop_map(|(k, ulps)| {
+                    f64::from_bits((10_f64.powi(k).to_bits() as i64 + ulps) as u64)
+                }),
+            ],
+        ) {
+            let text: f64 = format!("{x:.14e}").parse().unwrap();
+            prop_assert_eq!(rounded(x).to_bits(), text.to_bits(), "{}", x);
+        }
+
         #[test]
         fn a_range_of_any_ends_has_its_count_and_its_ends_and_runs_one_way(
             (from, to, count) in (1e-3..1e6_f64, 1e-3..1e6_f64, 2_usize..300),

@@ -74,6 +74,26 @@ impl Merged {
 /// Puts shards together: their journals into the journal of `setting.out`, their records into its tables.
 ///
 /// # Errors
+/// Bytes of memory that merging takes for each job: its entry in the index of its shard and of all, its place among them and
+/// its line of the summary.
+const BYTES_A_JOB: u64 = 320;
+
+/// Refuses shards whose index would not fit into memory.
+fn check_memory(jobs: usize, folders: &[PathBuf], out: &Path) -> Result<(), Refusal> {
+    match pontoon_results::too_large(BYTES_A_JOB * jobs as u64) {
+        None => Ok(()),
+        Some(needs) => {
+            let found = format!("{jobs} jobs in {} shards, which need {needs}", folders.len());
+            Err(Refusal::new(
+                out,
+                "",
+                found,
+                "what fits into memory: a machine with more of it",
+            ))
+        }
+    }
+}
+
 /// [`SweepError::Refused`] of shards that do not belong together, contradict each other or leave jobs out.
 pub fn merge<'a>(
     merged: &'a Merged,
@@ -93,6 +113,7 @@ pub fn merge<'a>(
         .map(|folder| Lock::take(folder))
         .collect::<Result<Vec<_>, _>>()?;
     watcher.stage("checking shards");
+    check_memory(jobs.len(), folders, &setting.out)?;
     let now = binding(study, None);
     // what the folder of the results holds already counts like a shard
     let old = setting.out.join(FOLDER).exists().then(|| setting.out.clone());
