@@ -129,6 +129,16 @@ impl Bridge {
     pub fn dofs(&self) -> usize {
         self.k.order()
     }
+
+    /// z of the bottom's centre line at a place on the bridge, linear between two stations; at a joint that of its position.
+    pub(crate) fn place(&self, x_m: f64) -> SparseRow {
+        let line = &self.centre_line;
+        let behind = line.partition_point(|(x, _)| *x <= x_m);
+        let first = behind.saturating_sub(1).min(line.len() - 2);
+        let [(x0, left), (x1, right)] = [&line[first], &line[first + 1]];
+        let share = if x1 > x0 { ((x_m - x0) / (x1 - x0)).clamp(0.0, 1.0) } else { 0.0 };
+        SparseRow::combine(&[(1.0 - share, left), (share, right)])
+    }
 }
 
 /// Where a numbered row of modules is loaded and read: makes the rows of the bridge's dofs for places along it.

@@ -31,13 +31,13 @@ pub enum OperatorError {
     Factor(#[from] FemError),
 }
 
-/// Whether an operator knows the forces of pins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Pinned {
-    /// It does.
-    Yes,
-    /// It does not, and is smaller.
-    No,
+/// What an operator follows beside positions, joints and corners.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Followed {
+    /// Whether it knows the forces of pins; it is smaller without.
+    pub pins: bool,
+    /// Places along the bridge `[m]`.
+    pub places_x_m: Vec<f64>,
 }
 
 /// Numbers of rows and columns that all parts share.
@@ -74,12 +74,13 @@ impl Sizes {
     }
 }
 
-/// Where the observed rows stand among each other: positions, deck corners, bottom corners.
+/// Where the observed rows stand among each other: positions, deck corners, bottom corners, places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Observed {
     pub positions: usize,
     pub corners: usize,
     pub bottom_corners: usize,
+    pub places: usize,
 }
 
 /// Modes of the connector-free bridge up to a cut-off and the residual flexibilities among connectors, deck and observed
@@ -130,14 +131,19 @@ impl BridgeOperator {
     /// # Errors
     /// [`OperatorError::Factor`].
     pub fn new(bridge: &Bridge, tolerance: f64) -> Result<Self, OperatorError> {
-        Self::new_unless(bridge, tolerance, Pinned::No, Stop::never())
+        Self::new_unless(bridge, tolerance, &Followed::default(), Stop::never())
     }
 
-    /// Builds the operator, with or without what forces of pins need, unless a stop is asked for.
+    /// Builds the operator, with what is followed beside, unless a stop is asked for.
     ///
     /// # Errors
     /// As [`BridgeOperator::new`], and [`FemError::Stopped`].
-    pub fn new_unless(bridge: &Bridge, tolerance: f64, pinned: Pinned, stop: Stop<'_>) -> Result<Self, OperatorError> {
+    pub fn new_unless(
+        bridge: &Bridge,
+        tolerance: f64,
+        followed: &Followed,
+        stop: Stop<'_>,
+    ) -> Result<Self, OperatorError> {
         let factor = Factor::new("K + s M of the operator", &shifted(bridge)?)?;
         let track = Track::new(bridge);
         let judged = judged_rows(bridge, &track);
@@ -155,10 +161,10 @@ impl BridgeOperator {
                 dot(&judged[i], &pairs.shapes, k)
             });
             match judge.fewest(pairs, SHIFT, tolerance) {
-                Ok(cutoff) => return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), pinned, stop)?),
+                Ok(cutoff) => return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), followed, stop)?),
                 // every mode there is: nothing is left out but rounding
                 Err(cutoff) if pairs.lambda.len() >= bridge.dofs() => {
-                    return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), pinned, stop)?);
+                    return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), followed, stop)?);
                 }
                 Err(_) => search.extend()?,
             }
@@ -171,13 +177,13 @@ impl BridgeOperator {
         track: Track,
         solver: &ColumnSolver<'_>,
         (pairs, cutoff): (&EigenPairs, Cutoff),
-        pinned: Pinned,
+        followed: &Followed,
         stop: Stop<'_>,
     ) -> Result<Self, FemError> {
         let (m, design, shapes) = (cutoff.modes, bridge.design(), &pairs.shapes);
         let lambda = &pairs.lambda[..m];
         let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
-        let (rows, observed) = observed(bridge);
+        let (rows, observed) = observed(bridge, &followed.places_x_m);
         let (places, inside) = inside(bridge);
         let mut sizes = Sizes {
             modes: m,
@@ -198,7 +204,7 @@ impl BridgeOperator {
         let mut deck = all.deck(&track)?;
         let inside_bounds = inside_bounds(&all, lambda, &sizes, &deck);
         let mut pins = PinRows::default();
-        if pinned == Pinned::Yes {
+        if followed.pins {
             let (rows, of_deck) = pin_rows(bridge, solver, &track, (lambda, SHIFT), (shapes, &all), stop)?;
             let width = sizes.influence();
             sizes.pins = rows.stiffness.nrows();
@@ -269,6 +275,7 @@ impl BridgeOperator {
             r.bottom_corners,
             self.near,
             s.pins,
+            r.places,
         ];
         let cutoff = [
             self.cutoff.frequency_hz,
@@ -371,6 +378,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
         bottom_corners,
         near,
         pins,
+        places,
     ] = &counts[..]
     else {
         return None;
@@ -387,6 +395,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
         positions,
         corners,
         bottom_corners,
+        places,
     };
     Some((sizes, rows, near))
 }
@@ -397,7 +406,7 @@ fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
         && sizes.connectors == bridge.connectors.len()
         && rows.positions == bridge.positions.len()
         && rows.corners == bridge.deck_corners.len()
-        && sizes.observed == rows.positions + rows.corners + rows.bottom_corners
+        && sizes.observed == rows.positions + rows.corners + rows.bottom_corners + rows.places
         && sizes.modes <= bridge.dofs()
         && (sizes.pins == 0 || sizes.pins == 3 * bridge.pins.len())
 }
@@ -435,8 +444,8 @@ fn inside_bounds(all: &ResidualRows<'_>, lambda: &[f64], sizes: &Sizes, deck: &[
     (0..sizes.modules).map(of_module).collect()
 }
 
-/// The rows that are followed through every step: positions, deck corners, and where a draft is given bottom corners.
-fn observed(bridge: &Bridge) -> (Observed, Vec<SparseRow>) {
+/// The rows that are followed through every step: positions, deck corners, where a draft is given bottom corners, places.
+fn observed(bridge: &Bridge, places_x_m: &[f64]) -> (Observed, Vec<SparseRow>) {
     let bottom: &[SparseRow] = if bridge.design().draft_m.is_some() {
         &bridge.bottom_corners
     } else {
@@ -446,8 +455,10 @@ fn observed(bridge: &Bridge) -> (Observed, Vec<SparseRow>) {
         positions: bridge.positions.len(),
         corners: bridge.deck_corners.len(),
         bottom_corners: bottom.len(),
+        places: places_x_m.len(),
     };
-    let parts: [&[SparseRow]; 3] = [&bridge.positions, &bridge.deck_corners, bottom];
+    let places: Vec<SparseRow> = places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect();
+    let parts: [&[SparseRow]; 4] = [&bridge.positions, &bridge.deck_corners, bottom, &places];
     (rows, parts.concat())
 }
 

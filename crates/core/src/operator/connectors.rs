@@ -21,7 +21,7 @@ pub(super) struct Connectors {
     pub(super) rn: LaneArray,
     pub(super) rn_now: LaneArray,
     /// Elongation `[m]`, and in the step under way first without, then with its forces.
-    e: LaneArray,
+    pub(super) e: LaneArray,
     pub(super) e_now: LaneArray,
     /// `1 / (2 k)` of the first connector that works at all.
     half_compliance: LaneArray,

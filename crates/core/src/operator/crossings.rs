@@ -21,7 +21,7 @@ use super::vector::Ops;
 use super::wheel_lines::WheelCompliance;
 use crate::connector::State;
 use crate::contact::NotSettled;
-use crate::response::{PinPeaks, Statistics};
+use crate::response::{JointReading, PinPeaks, Reading, Statistics};
 use pulp::Simd;
 use std::sync::Arc;
 
@@ -239,17 +239,9 @@ impl Crossings {
         self.pins.peaks(lane)
     }
 
-    /// Deflection of a position now, positive downward `[m]`.
-    pub(crate) fn deflection_m(&self, lane: usize, position: usize) -> f64 {
-        // nothing is 0, not -0
-        0.0 - self.envelope.observed_m(position - 1, lane)
-    }
-
-    /// Force of a joint now, its connectors added, tension positive `[N]`.
-    pub(crate) fn joint_force_n(&self, lane: usize, joint: usize) -> f64 {
-        let per_joint = self.envelope.per_joint();
-        let first = (joint - 2) * per_joint;
-        (first..first + per_joint).map(|i| self.connectors.n.at(i, lane)).sum()
+    /// A lane as it stands after a step, to be read.
+    pub(crate) fn reading(&self, lane: usize) -> LaneReading<'_> {
+        LaneReading { of: self, lane }
     }
 
     /// Puts the weights of all vehicles where they are at the end of the step (V1).
@@ -334,5 +326,41 @@ impl Crossings {
         for (lane, saved) in unsettled.into_iter().flatten() {
             self.restore(lane, &saved);
         }
+    }
+}
+
+/// A lane after a step, to be read.
+pub(crate) struct LaneReading<'a> {
+    of: &'a Crossings,
+    lane: usize,
+}
+
+impl JointReading for LaneReading<'_> {
+    fn connector_n(&self, connector: usize) -> [f64; 2] {
+        let now = self.of.connectors.n.at(connector, self.lane);
+        [now, self.of.pins.connector_n(connector, self.lane)]
+    }
+
+    fn elongation_m(&self, connector: usize) -> f64 {
+        self.of.connectors.e.at(connector, self.lane)
+    }
+
+    fn pin_n(&self, pin: usize) -> [f64; 3] {
+        self.of.pins.force_n(pin, self.lane)
+    }
+}
+
+impl Reading for LaneReading<'_> {
+    fn times_s(&self) -> [f64; 2] {
+        let now_s = self.of.lanes[self.lane].time_s;
+        [now_s, self.of.pins.balance_s(self.lane).unwrap_or(now_s)]
+    }
+
+    fn position_m(&self, index: usize) -> f64 {
+        self.of.envelope.position_m(index, self.lane)
+    }
+
+    fn place_m(&self, index: usize) -> f64 {
+        self.of.envelope.place_m(index, self.lane)
     }
 }

@@ -88,19 +88,20 @@ impl Envelope {
         *self.axle.at_mut(0, lane) = f64::INFINITY;
     }
 
-    /// Connectors of a joint.
-    pub(super) fn per_joint(&self) -> usize {
-        self.per_joint
-    }
-
     /// Number of observed rows.
     pub(super) fn observed_rows(&self) -> usize {
         self.observed.rows()
     }
 
-    /// Height of an observed row now `[m]`.
-    pub(super) fn observed_m(&self, row: usize, lane: usize) -> f64 {
-        self.observed.at(row, lane)
+    /// Deflection of a position now, positive downward `[m]`.
+    pub(super) fn position_m(&self, index: usize, lane: usize) -> f64 {
+        // nothing is 0, not -0
+        0.0 - self.observed.at(index, lane)
+    }
+
+    /// Deflection of a place now, positive downward `[m]`.
+    pub(super) fn place_m(&self, index: usize, lane: usize) -> f64 {
+        0.0 - self.observed.at(self.observed.rows() - self.rows.places + index, lane)
     }
 
     /// Smallest force of an axle while it is whole on the bridge.
@@ -171,6 +172,7 @@ impl Envelope {
             positions,
             corners,
             bottom_corners,
+            ..
         } = self.rows;
         let observed = self.observed.vectors::<S>();
         let per = o.splat(1.0 / self.breadth_m);

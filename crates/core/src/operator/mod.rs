@@ -38,7 +38,7 @@ mod sums;
 mod vector;
 mod wheel_lines;
 
-pub use basis::{BridgeOperator, OperatorError, Pinned};
+pub use basis::{BridgeOperator, Followed, OperatorError};
 pub use clock::{StepClock, StepPart};
 pub(crate) use crossings::Crossings;
 pub use cutoff::Cutoff;

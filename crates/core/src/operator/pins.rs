@@ -230,6 +230,29 @@ impl Pins {
         }
     }
 
+    /// Instant of the last step's balance in a lane `[s]`; none where pins are not followed.
+    pub(super) fn balance_s(&self, lane: usize) -> Option<f64> {
+        (!self.is_empty()).then(|| self.time_s.at(0, lane))
+    }
+
+    /// Force of a connector at that instant `[N]`.
+    pub(super) fn connector_n(&self, connector: usize, lane: usize) -> f64 {
+        let first = 2 * self.old[0].rows();
+        if first + connector < self.balance.rows() {
+            self.balance.at(first + connector, lane)
+        } else {
+            0.0
+        }
+    }
+
+    /// Force of a pin at that instant `[N]`.
+    pub(super) fn force_n(&self, pin: usize, lane: usize) -> [f64; DIRECTIONS] {
+        std::array::from_fn(|axis| {
+            let row = DIRECTIONS * pin + axis;
+            if row < self.forces.rows() { self.forces.at(row, lane) } else { 0.0 }
+        })
+    }
+
     /// The peaks of a lane.
     pub(super) fn peaks(&self, lane: usize) -> Vec<PinPeaks> {
         let mut at = 0;

@@ -4,9 +4,17 @@
 
 mod energy;
 mod peaks;
+mod recorder;
+mod subject;
 
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
-pub use peaks::{ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PositionPeaks};
+pub use peaks::{
+    ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PlacePeaks, PositionPeaks, SectionPeaks,
+};
+pub(crate) use recorder::Recorder;
+pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak, resultant_n};
+pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
+pub(crate) use subject::{JointReading, Reading, joint_parts};
 
 /// Counts of what the solver did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -19,59 +27,6 @@ pub struct Statistics {
     pub contact_switches: usize,
     /// Steps that had to be halved.
     pub bisections: usize,
-}
-
-/// What a history records.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Quantity {
-    /// Deflection of a position, positive downward `[m]`.
-    Deflection,
-    /// Force of a joint, its connectors added, tension positive `[N]`.
-    Force,
-}
-
-/// One recorded history.
-#[derive(Debug, Clone, PartialEq)]
-pub struct History {
-    /// What was recorded.
-    pub quantity: Quantity,
-    /// Position or joint number.
-    pub position: usize,
-    /// A value for each entry of the response's `history_time_s`.
-    pub values: Vec<f64>,
-}
-
-/// Which histories to keep.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Record {
-    /// Position numbers, 1 to modules + 1.
-    pub positions: Vec<usize>,
-    /// Joint numbers, 2 to modules.
-    pub joints: Vec<usize>,
-    /// Whether forces of pins are wanted.
-    pub pins: bool,
-}
-
-impl Record {
-    /// Whether none is asked for.
-    pub fn is_empty(&self) -> bool {
-        self.positions.is_empty() && self.joints.is_empty()
-    }
-
-    /// The histories, still without values: positions, then joints.
-    pub fn histories(&self) -> Vec<History> {
-        let of = |quantity: Quantity, list: &[usize]| -> Vec<History> {
-            let empty = |&position: &usize| History {
-                quantity,
-                position,
-                values: Vec::new(),
-            };
-            list.iter().map(empty).collect()
-        };
-        let mut histories = of(Quantity::Deflection, &self.positions);
-        histories.extend(of(Quantity::Force, &self.joints));
-        histories
-    }
 }
 
 /// The response to one crossing.
@@ -97,10 +52,8 @@ pub struct CrossingResponse {
     pub statistics: Statistics,
     /// The energy balance.
     pub energy: EnergySummary,
-    /// Times of the histories `[s]`; empty where none was asked for.
-    pub history_time_s: Vec<f64>,
-    /// The histories, positions before joints.
-    pub histories: Vec<History>,
+    /// What else was recorded.
+    pub recorded: Recorded,
 }
 
 impl CrossingResponse {
@@ -135,6 +88,10 @@ pub struct StaticResponse {
     pub joints: Vec<JointForces>,
     /// Force of each pin on the module left of it, along, across and up, joint after joint `[N]`.
     pub pins_n: Vec<[f64; 3]>,
+    /// Angle and section forces of each joint in the order of [`Section::ALL`].
+    pub sections: Vec<[f64; SECTIONS]>,
+    /// Deflection of each place asked for, positive downward `[m]`.
+    pub places_m: Vec<f64>,
     /// Largest downward deflection of the deck's two edges `[m]`.
     pub peak_edge_deflection_m: f64,
     /// Largest roll of a module end, either sense `[rad]`.

@@ -34,6 +34,28 @@ pub struct PositionPeaks {
     pub uplift: Peak,
 }
 
+/// Peaks of a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlacePeaks {
+    /// The place along the bridge `[m]`.
+    pub x_m: f64,
+    /// Downward `[m]`.
+    pub deflection: Peak,
+    /// Upward `[m]`.
+    pub uplift: Peak,
+}
+
+/// Peaks of a section force or of the angle of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionPeaks {
+    /// Number of the joint, 2 to modules.
+    pub joint: usize,
+    /// Which one.
+    pub of: super::Section,
+    /// Largest negative (as compression) and positive value (as tension) in its unit.
+    pub peaks: ForcePeaks,
+}
+
 /// Peaks of a force, both as positive numbers `[N]`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ForcePeaks {

@@ -131,7 +131,7 @@ impl CrossingSolver {
             speed_m_s: crossing.speed_m_s,
             rayleigh: self.settings.rayleigh,
             laws: crossing.laws(self.bridge.connectors.len()),
-            pins: crossing.record.pins,
+            pins: crossing.record.needs_pins(),
         };
         let observer = Observer::new(&self.bridge, &crossing.record);
         CrossingRun::new(self, stepper, observer, crossing.tail_s)

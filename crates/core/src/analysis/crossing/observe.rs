@@ -4,9 +4,10 @@
 
 use super::step::Motion;
 use crate::bridge::Bridge;
+use crate::fem::SparseRow;
 use crate::response::{
-    CrossingResponse, EnergyBalance, ForcePeaks, History, JointPeaks, Peak, PinExtremes, PinPeaks, PositionPeaks,
-    Quantity, Record, Statistics,
+    CrossingResponse, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks, PositionPeaks, Reading,
+    Record, Recorder, Statistics,
 };
 
 /// Gathers the response of one crossing.
@@ -23,8 +24,9 @@ pub(super) struct Observer<'a> {
     deck_submerged: Option<bool>,
     statistics: Statistics,
     energy: EnergyBalance,
-    history_time_s: Vec<f64>,
-    histories: Vec<History>,
+    /// Rows of the places that are followed.
+    places: Vec<SparseRow>,
+    recorder: Recorder,
 }
 
 impl<'a> Observer<'a> {
@@ -46,7 +48,6 @@ impl<'a> Observer<'a> {
                 connectors: per_joint(&design.connectors.y_m),
             })
             .collect();
-        let histories = record.histories();
         Self {
             bridge,
             positions,
@@ -59,8 +60,8 @@ impl<'a> Observer<'a> {
             deck_submerged: design.freeboard_m.map(|_| false),
             statistics: Statistics::default(),
             energy: EnergyBalance::default(),
-            history_time_s: Vec::new(),
-            histories,
+            places: record.places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect(),
+            recorder: Recorder::new(design, record),
         }
     }
 
@@ -77,9 +78,14 @@ impl<'a> Observer<'a> {
         self.statistics.contact_switches += old.states.iter().zip(&new.states).filter(|(a, b)| a != b).count();
         self.energy.take(&new.spent);
         self.record_peaks(new);
-        if let Some((time_s, pins)) = &new.pins {
-            self.pins.take(pins, *time_s);
+        if let Some(balance) = &new.balance {
+            self.pins.take(&balance.pins_n, balance.time_s);
         }
+        self.recorder.take(&MotionReading {
+            bridge: self.bridge,
+            places: &self.places,
+            now: new,
+        });
     }
 
     fn record_peaks(&mut self, now: &Motion) {
@@ -122,23 +128,14 @@ impl<'a> Observer<'a> {
 
     /// Records the histories asked for at a whole step.
     pub(super) fn record_history(&mut self, now: &Motion) {
-        if self.histories.is_empty() {
-            return;
-        }
-        self.history_time_s.push(now.time_s);
-        let per_joint = self.bridge.design().connectors.y_m.len();
-        for history in &mut self.histories {
-            history.values.push(match history.quantity {
-                // nothing is 0, not -0
-                Quantity::Deflection => 0.0 - self.bridge.positions[history.position - 1].dot(&now.u),
-                Quantity::Force => now.forces[(history.position - 2) * per_joint..][..per_joint]
-                    .iter()
-                    .sum(),
-            });
-        }
+        self.recorder.note(&MotionReading {
+            bridge: self.bridge,
+            places: &self.places,
+            now,
+        });
     }
 
-    pub(super) fn finish(self) -> CrossingResponse {
+    pub(super) fn finish(mut self) -> CrossingResponse {
         CrossingResponse {
             positions: self.positions,
             joints: self.joints,
@@ -150,9 +147,47 @@ impl<'a> Observer<'a> {
             deck_submerged: self.deck_submerged,
             statistics: self.statistics,
             energy: self.energy.summary(),
-            history_time_s: self.history_time_s,
-            histories: self.histories,
+            recorded: self.recorder.finish(),
         }
+    }
+}
+
+/// A motion, to be read.
+struct MotionReading<'a> {
+    bridge: &'a Bridge,
+    places: &'a [SparseRow],
+    now: &'a Motion,
+}
+
+impl Reading for MotionReading<'_> {
+    fn times_s(&self) -> [f64; 2] {
+        let now_s = self.now.time_s;
+        [now_s, self.now.balance.as_ref().map_or(now_s, |balance| balance.time_s)]
+    }
+
+    fn position_m(&self, index: usize) -> f64 {
+        // nothing is 0, not -0
+        0.0 - self.bridge.positions[index].dot(&self.now.u)
+    }
+
+    fn place_m(&self, index: usize) -> f64 {
+        0.0 - self.places[index].dot(&self.now.u)
+    }
+}
+
+impl JointReading for MotionReading<'_> {
+    fn connector_n(&self, connector: usize) -> [f64; 2] {
+        let at_balance = self.now.balance.as_ref().and_then(|of| of.connectors_n.get(connector));
+        [self.now.forces[connector], at_balance.copied().unwrap_or(0.0)]
+    }
+
+    fn elongation_m(&self, connector: usize) -> f64 {
+        self.now.elongations[connector]
+    }
+
+    fn pin_n(&self, pin: usize) -> [f64; 3] {
+        let of = self.now.balance.as_ref().and_then(|of| of.pins_n.get(pin));
+        of.copied().unwrap_or_default()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
 };
-use crate::response::{CrossingResponse, History, PositionPeaks, Quantity, Record};
+use crate::response::{CrossingResponse, JointReading, PositionPeaks, Reading, Record, Recorder};
 use crate::vehicle::Vehicle;
 use std::sync::{Arc, OnceLock};
 
@@ -56,8 +56,7 @@ struct Under<'a> {
     record: &'a Record,
     step: usize,
     span: StepSpan,
-    time_s: Vec<f64>,
-    histories: Vec<History>,
+    recorder: Recorder,
 }
 
 impl OperatorSolver {
@@ -205,17 +204,16 @@ impl<C: StepClock> Crew<'_, C> {
         let span = StepSpan::new(length_m, vehicle, h, crossing.speed_m_s, crossing.tail_s);
         let start_s = span.time_s(0, h);
         self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
-        let mut of = Under {
+        let mut recorder = Recorder::new(&self.solver.design, &crossing.record);
+        recorder.note(&Start(start_s));
+        Under {
             index,
             vehicle,
             record: &crossing.record,
             step: 0,
             span,
-            time_s: Vec::new(),
-            histories: crossing.record.histories(),
-        };
-        of.note(start_s, |_, _| 0.0);
-        of
+            recorder,
+        }
     }
 
     /// The place of a vehicle among those kept ready.
@@ -253,15 +251,16 @@ impl<C: StepClock> Crew<'_, C> {
         if let Some(stuck) = self.lanes.unsettled(lane) {
             let mount = self.mount(of.vehicle);
             let span_s = [self.time_after(of.step - 1, of), time_s];
-            if let Err(error) = self.halve(lane, mount, stuck, span_s) {
+            if let Err(error) = self.halve((lane, mount), stuck, span_s, &mut of.recorder) {
                 return Some(Err(error));
             }
             if let Some(solo) = &self.solo {
-                of.note(time_s, |quantity, place| read(solo, 0, quantity, place));
+                of.recorder.note(&solo.reading(0));
             }
         } else {
-            let lanes = &self.lanes;
-            of.note(time_s, |quantity, place| read(lanes, lane, quantity, place));
+            let reading = self.lanes.reading(lane);
+            of.recorder.take(&reading);
+            of.recorder.note(&reading);
         }
         if !self.lanes.is_finite(lane) {
             return Some(Err(AnalysisError::NotFinite { time_s }));
@@ -270,7 +269,13 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     /// Does a lane's step again in halves, by itself.
-    fn halve(&mut self, lane: usize, mount: usize, stuck: NotSettled, span_s: [f64; 2]) -> Result<(), AnalysisError> {
+    fn halve(
+        &mut self,
+        (lane, mount): (usize, usize),
+        stuck: NotSettled,
+        span_s: [f64; 2],
+        recorder: &mut Recorder,
+    ) -> Result<(), AnalysisError> {
         let Some(input) = self.lanes.crossing(lane).cloned() else {
             return Ok(());
         };
@@ -288,6 +293,7 @@ impl<C: StepClock> Crew<'_, C> {
             crew: self,
             lane: &mut solo,
             mount,
+            recorder,
         };
         let done = halve(&mut alone, stuck, span_s, 0);
         self.lanes.restore(lane, &solo.save(0));
@@ -320,8 +326,7 @@ impl<C: StepClock> Crew<'_, C> {
             deck_submerged: design.freeboard_m.map(|board| peaks.corner_m > board),
             statistics: *self.lanes.statistics(lane),
             energy: peaks.energy,
-            history_time_s: std::mem::take(&mut of.time_s),
-            histories: std::mem::take(&mut of.histories),
+            recorded: of.recorder.finish(),
         }
     }
 }
@@ -331,6 +336,7 @@ struct Alone<'a, 's, C> {
     crew: &'a mut Crew<'s, C>,
     lane: &'a mut Crossings,
     mount: usize,
+    recorder: &'a mut Recorder,
 }
 
 impl<C: StepClock> Halving for Alone<'_, '_, C> {
@@ -346,7 +352,11 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
         let solver = self.crew.solver;
         let limit = solver.settings.newton_limit;
         step(self.lane, &solver.operator, solver.constants(halvings), limit, &mut ());
-        Ok(self.lane.unsettled(0).map_or(Ok(()), Err))
+        let unsettled = self.lane.unsettled(0);
+        if unsettled.is_none() {
+            self.recorder.take(&self.lane.reading(0));
+        }
+        Ok(unsettled.map_or(Ok(()), Err))
     }
 
     fn record_bisection(&mut self, stuck: NotSettled) {
@@ -367,22 +377,33 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
     }
 }
 
-fn read(lanes: &Crossings, lane: usize, quantity: Quantity, place: usize) -> f64 {
-    match quantity {
-        Quantity::Deflection => lanes.deflection_m(lane, place),
-        Quantity::Force => lanes.joint_force_n(lane, place),
+/// The rest before the first step, at its time `[s]`.
+struct Start(f64);
+
+impl JointReading for Start {
+    fn connector_n(&self, _: usize) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    fn elongation_m(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn pin_n(&self, _: usize) -> [f64; 3] {
+        [0.0; 3]
     }
 }
 
-impl Under<'_> {
-    /// Records the histories asked for.
-    fn note(&mut self, time_s: f64, read: impl Fn(Quantity, usize) -> f64) {
-        if self.record.is_empty() {
-            return;
-        }
-        self.time_s.push(time_s);
-        for history in &mut self.histories {
-            history.values.push(read(history.quantity, history.position));
-        }
+impl Reading for Start {
+    fn times_s(&self) -> [f64; 2] {
+        [self.0; 2]
+    }
+
+    fn position_m(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn place_m(&self, _: usize) -> f64 {
+        0.0
     }
 }

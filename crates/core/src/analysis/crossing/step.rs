@@ -34,8 +34,18 @@ pub(super) struct Motion {
     pub newton_iterations: usize,
     /// Energies of the step that led here.
     pub spent: StepEnergies,
-    /// Forces of the pins at the instant of the balance of that step, and that instant `[s]`; none where nobody asks.
-    pub pins: Option<(f64, Vec<[f64; 3]>)>,
+    /// Forces where the balance of that step holds; none where nobody asks for pins.
+    pub balance: Option<BalanceForces>,
+}
+
+/// Forces at the instant of the balance of a step.
+#[derive(Debug, Clone, Default)]
+pub(super) struct BalanceForces {
+    pub time_s: f64,
+    /// Of each connector.
+    pub connectors_n: Vec<f64>,
+    /// Of each pin on the module left of it.
+    pub pins_n: Vec<[f64; 3]>,
 }
 
 impl Motion {
@@ -115,7 +125,7 @@ impl Stepper<'_> {
         new.elongations = contact.elongations;
         new.newton_iterations = contact.iterations;
         new.spent = self.account(matrix, old, &new, &d); // (R1)
-        new.pins = self.pins.then(|| self.pins_n(matrix, old, &new)); // (P1)
+        new.balance = self.pins.then(|| self.balance(matrix, old, &new)); // (P1)
         Ok(new)
     }
 
@@ -245,8 +255,8 @@ impl Stepper<'_> {
         }
     }
 
-    /// The forces of the pins where the balance holds, and when that is.
-    fn pins_n(&self, matrix: &StepMatrix, old: &Motion, new: &Motion) -> (f64, Vec<[f64; 3]>) {
+    /// The forces of connectors and pins where the balance holds, and when that is.
+    fn balance(&self, matrix: &StepMatrix, old: &Motion, new: &Motion) -> BalanceForces {
         let (s, Rayleigh { a, b }) = (&matrix.scheme, self.rayleigh);
         let dofs = 0..new.u.len();
         let v = |i: usize| s.at_f(new.v[i], old.v[i]);
@@ -266,8 +276,12 @@ impl Stepper<'_> {
                 .each_ref()
                 .map(|row| row.force_n(&elastic, Some(&inertial), &down))
         };
-        let time_s = s.at_f(new.time_s, old.time_s);
-        (time_s, self.bridge.pins.iter().map(force).collect())
+        let connectors = new.forces.iter().zip(&old.forces);
+        BalanceForces {
+            time_s: s.at_f(new.time_s, old.time_s),
+            connectors_n: connectors.map(|(new, old)| s.at_f(*new, *old)).collect(),
+            pins_n: self.bridge.pins.iter().map(force).collect(),
+        }
     }
 
     /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives

@@ -11,7 +11,7 @@ use crate::connector::{Connection, OwnLaws, State};
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::flexibility::Flexibility;
-use crate::response::{Equilibrium, JointForces, StaticResponse};
+use crate::response::{Equilibrium, JointForces, JointReading, StaticResponse, joint_parts};
 use crate::vehicle::Vehicle;
 pub use creeping::CreepingLoad;
 use nalgebra::{DMatrix, DVector};
@@ -30,6 +30,8 @@ pub struct StaticCase {
     pub load_n: f64,
     /// Place of the vehicle's centre `[m]`.
     pub load_x_m: f64,
+    /// Places along the bridge whose deflection is wanted `[m]`.
+    pub places_x_m: Vec<f64>,
 }
 
 impl StaticCase {
@@ -99,11 +101,20 @@ impl StaticSolver {
         let largest = |rows: &[SparseRow], value: &dyn Fn(f64) -> f64| {
             rows.iter().map(|row| value(row.dot(&u))).fold(0.0_f64, f64::max)
         };
+        let pins_n = self.pins_n(&load, &u);
+        let at_rest = Rest {
+            contact: &contact,
+            pins_n: &pins_n,
+        };
+        let sections = joint_parts(design).iter().map(|parts| parts.sections(&at_rest)).collect();
+        let place_m = |&x_m: &f64| 0.0 - bridge.place(x_m).dot(&u);
         Ok(StaticResponse {
+            sections,
+            places_m: case.places_x_m.iter().map(place_m).collect(),
             // nothing is 0, not -0
             deflection_m: bridge.positions.iter().map(|row| 0.0 - row.dot(&u)).collect(),
             joints,
-            pins_n: self.pins_n(&load, &u),
+            pins_n,
             peak_edge_deflection_m: largest(&bridge.edges, &|z| -z),
             peak_roll_rad: largest(&bridge.rolls, &f64::abs),
             influential_length_m: self.influential_length_m(&u, case.load_x_m),
@@ -285,5 +296,25 @@ fn brought_on(
                 }
             }
         }
+    }
+}
+
+/// What joints do at rest, to be read.
+struct Rest<'a> {
+    contact: &'a ContactSolution,
+    pins_n: &'a [[f64; 3]],
+}
+
+impl JointReading for Rest<'_> {
+    fn connector_n(&self, connector: usize) -> [f64; 2] {
+        [self.contact.forces[connector]; 2]
+    }
+
+    fn elongation_m(&self, connector: usize) -> f64 {
+        self.contact.elongations[connector]
+    }
+
+    fn pin_n(&self, pin: usize) -> [f64; 3] {
+        self.pins_n[pin]
     }
 }

@@ -1,0 +1,256 @@
+//! What is recorded of a crossing beside the peaks that every crossing leaves: places, section forces, histories, and the
+//! whole response at the instant of a peak.
+//!
+//! Knows what was asked for. Does not know which solver steps, nor what a number means to a table.
+
+use super::peaks::{ForcePeaks, Peak, PlacePeaks, SectionPeaks};
+use super::subject::{Axis, JointParts, Reading, Section, Subject, joint_parts, read};
+use crate::bridge::BridgeDesign;
+
+/// What to record of a crossing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Record {
+    /// Positions whose deflection is kept as a history, 1 to modules + 1.
+    pub positions: Vec<usize>,
+    /// Joints whose force is kept as a history, 2 to modules.
+    pub joints: Vec<usize>,
+    /// Histories of anything else.
+    pub more: Vec<Subject>,
+    /// Places along the bridge whose deflection is followed `[m]`.
+    pub places_x_m: Vec<f64>,
+    /// Whether forces of pins are wanted.
+    pub pins: bool,
+    /// Whether section forces and angles of joints are wanted.
+    pub sections: bool,
+    /// Peaks at whose instant everything else is wanted.
+    pub at_peaks: Vec<WatchedPeak>,
+}
+
+/// A peak at whose instant everything else is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct WatchedPeak {
+    /// What is largest then.
+    pub of: PeakOf,
+    /// Position or joint; the largest of all where absent.
+    pub number: Option<usize>,
+}
+
+/// What may be watched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum PeakOf {
+    /// Deflection of a position.
+    Deflection,
+    /// Uplift of a position.
+    Uplift,
+    /// Compression of a joint, its connectors added.
+    Compression,
+    /// Tension of a joint, its connectors added.
+    Tension,
+    /// Resultant of a pin.
+    Pin,
+}
+
+impl Record {
+    /// Whether pins are followed.
+    pub fn needs_pins(&self) -> bool {
+        self.pins || self.sections || self.more.iter().any(|subject| subject.is_of_balance())
+    }
+
+    /// What histories are kept of: positions, then joints, then the rest.
+    pub fn histories(&self) -> Vec<Subject> {
+        let positions = self.positions.iter().map(|&position| Subject::Position(position));
+        let joints = self.joints.iter().map(|&joint| Subject::Joint(joint));
+        positions.chain(joints).chain(self.more.iter().copied()).collect()
+    }
+
+    /// All that is told of the instant of a peak.
+    fn told(&self, design: &BridgeDesign) -> Vec<Subject> {
+        let mut told: Vec<Subject> = (1..=design.positions()).map(Subject::Position).collect();
+        told.extend((0..self.places_x_m.len()).map(Subject::Place));
+        for joint in 2..=design.modules {
+            let connectors = 0..design.connectors.y_m.len();
+            told.push(Subject::Joint(joint));
+            told.extend(connectors.map(|index| Subject::Connector { joint, index }));
+            if self.pins {
+                let pins = 0..design.hinges_of(joint).y_m.len();
+                told.extend(pins.flat_map(|index| Axis::ALL.map(|axis| Subject::Pin { joint, index, axis })));
+            }
+            if self.sections {
+                told.extend(Section::ALL.map(|of| Subject::Section { joint, of }));
+            }
+        }
+        told
+    }
+}
+
+/// One recorded history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// What was recorded.
+    pub subject: Subject,
+    /// A value for each entry of the response's `history_time_s`; of pins and section forces each of `balance_time_s`.
+    pub values: Vec<f64>,
+}
+
+/// The response at the instant of a peak.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AtPeak {
+    /// The peak.
+    pub peak: WatchedPeak,
+    /// Its value and its time; a value of 0 never occurred.
+    pub largest: Peak,
+    /// Instant of the balance of that step `[s]`, of pins and section forces.
+    pub balance_s: f64,
+    /// The numbers of everything then; none where the peak never occurred.
+    pub numbers: Vec<(Subject, f64)>,
+}
+
+/// What was recorded.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Recorded {
+    /// Peaks of each place.
+    pub places: Vec<PlacePeaks>,
+    /// Peaks of angles and section forces, joint after joint.
+    pub sections: Vec<SectionPeaks>,
+    /// Times of the histories `[s]`; empty where none was asked for.
+    pub history_time_s: Vec<f64>,
+    /// Instants of the balance of the same steps `[s]`.
+    pub balance_time_s: Vec<f64>,
+    /// The histories, positions before joints.
+    pub histories: Vec<History>,
+    /// The response at instants of peaks.
+    pub at_peaks: Vec<AtPeak>,
+}
+
+/// Records a crossing step by step.
+#[derive(Debug, Clone)]
+pub(crate) struct Recorder {
+    joints: Vec<JointParts>,
+    told: Vec<Subject>,
+    positions: usize,
+    recorded: Recorded,
+}
+
+impl Recorder {
+    pub(crate) fn new(design: &BridgeDesign, record: &Record) -> Self {
+        let place = |&x_m: &f64| PlacePeaks {
+            x_m,
+            deflection: Peak::default(),
+            uplift: Peak::default(),
+        };
+        let joints = joint_parts(design);
+        let of_joint = |parts: &JointParts| {
+            let joint = parts.joint;
+            Section::ALL.map(|of| SectionPeaks {
+                joint,
+                of,
+                peaks: ForcePeaks::default(),
+            })
+        };
+        let sections = joints.iter().filter(|_| record.sections).flat_map(of_joint);
+        let history = |subject: Subject| History {
+            subject,
+            values: Vec::new(),
+        };
+        let at_peak = |&peak: &WatchedPeak| AtPeak {
+            peak,
+            largest: Peak::default(),
+            balance_s: 0.0,
+            numbers: Vec::new(),
+        };
+        Self {
+            told: if record.at_peaks.is_empty() {
+                Vec::new()
+            } else {
+                record.told(design)
+            },
+            positions: design.positions(),
+            recorded: Recorded {
+                places: record.places_x_m.iter().map(place).collect(),
+                sections: sections.collect(),
+                histories: record.histories().into_iter().map(history).collect(),
+                at_peaks: record.at_peaks.iter().map(at_peak).collect(),
+                ..Recorded::default()
+            },
+            joints,
+        }
+    }
+
+    /// Takes note of peaks after a step, be it whole or a part of one.
+    #[inline]
+    pub(crate) fn take(&mut self, reading: &impl Reading) {
+        let Recorded {
+            places,
+            sections,
+            at_peaks,
+            ..
+        } = &mut self.recorded;
+        if places.is_empty() && sections.is_empty() && at_peaks.is_empty() {
+            return;
+        }
+        let [now_s, balance_s] = reading.times_s();
+        for (index, place) in places.iter_mut().enumerate() {
+            let down = reading.place_m(index);
+            place.deflection.take(down, now_s);
+            place.uplift.take(-down, now_s);
+        }
+        for (peaks, parts) in sections.chunks_exact_mut(Section::ALL.len()).zip(&self.joints) {
+            for (peaks, value) in peaks.iter_mut().zip(parts.sections(reading)) {
+                let time_s = if peaks.of == Section::Angle { now_s } else { balance_s };
+                peaks.peaks.take(value, time_s);
+            }
+        }
+        for at in at_peaks {
+            let value = watched(at.peak, self.positions, &self.joints, reading);
+            if value > at.largest.value {
+                at.largest.take(value, if at.peak.of == PeakOf::Pin { balance_s } else { now_s });
+                at.balance_s = balance_s;
+                let number = |&subject: &Subject| (subject, read(subject, &self.joints, reading));
+                at.numbers = self.told.iter().map(number).collect();
+            }
+        }
+    }
+
+    /// Records the histories after a whole step, or at the beginning.
+    pub(crate) fn note(&mut self, reading: &impl Reading) {
+        let recorded = &mut self.recorded;
+        if recorded.histories.is_empty() {
+            return;
+        }
+        let [now_s, balance_s] = reading.times_s();
+        recorded.history_time_s.push(now_s);
+        recorded.balance_time_s.push(balance_s);
+        for history in &mut recorded.histories {
+            history.values.push(read(history.subject, &self.joints, reading));
+        }
+    }
+
+    /// What was recorded.
+    pub(crate) fn finish(&mut self) -> Recorded {
+        std::mem::take(&mut self.recorded)
+    }
+}
+
+/// The value of what is watched, of all numbers the largest where none is named.
+fn watched(peak: WatchedPeak, positions: usize, joints: &[JointParts], reading: &impl Reading) -> f64 {
+    let largest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, f64::max);
+    let numbered = |number: usize| peak.number.is_none_or(|only| only == number);
+    let joints = || joints.iter().filter(|parts| numbered(parts.joint));
+    let heights = || (0..positions).filter(|i| numbered(i + 1)).map(|i| reading.position_m(i));
+    let forces = || joints().map(|parts| parts.force_n(reading));
+    match peak.of {
+        PeakOf::Deflection => largest(&mut heights()),
+        PeakOf::Uplift => largest(&mut heights().map(|down| -down)),
+        PeakOf::Compression => largest(&mut forces().map(|force| -force)),
+        PeakOf::Tension => largest(&mut forces()),
+        PeakOf::Pin => {
+            let pins = joints().flat_map(|parts| parts.first_pin..parts.first_pin + parts.pins_y_m.len());
+            largest(&mut pins.map(|pin| resultant_n(reading.pin_n(pin))))
+        }
+    }
+}
+
+/// The length of a force `[N]`.
+pub fn resultant_n([x, y, z]: [f64; 3]) -> f64 {
+    (x * x + y * y + z * z).sqrt()
+}
