@@ -103,11 +103,11 @@ impl Wave {
             Record {
                 positions: vec![21],
                 joints: vec![],
-                pins: false,
+                ..Record::default()
             },
         );
         let r = solver.solve(&crossing).expect("solved");
-        let ahead_m = r.history_time_s.iter().map(|t| 200.0 - self.speed_m_s * t);
+        let ahead_m = r.recorded.history_time_s.iter().map(|t| 200.0 - self.speed_m_s * t);
         let all = ahead_m.zip(history(&r, Quantity::Deflection, 21).iter().copied());
         all.filter(|(ahead, _)| (-20.0..40.0).contains(ahead)).collect()
     }

@@ -187,7 +187,7 @@ impl Pair {
             Record {
                 positions: vec![2],
                 joints: vec![2],
-                pins: false,
+                ..Record::default()
             },
         );
         let solver = ready.crossings(&module.axle(0.0, 1, Inertia::None), &settings(self.rayleigh, h, 0.9));

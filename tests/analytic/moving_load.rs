@@ -102,7 +102,7 @@ fn crossed(span: Span, elements: usize, steps: usize) -> (Vec<f64>, Vec<f64>) {
         Record {
             positions: vec![2],
             joints: vec![],
-            pins: false,
+            ..Record::default()
         },
     );
     let r = ready
@@ -112,7 +112,7 @@ fn crossed(span: Span, elements: usize, steps: usize) -> (Vec<f64>, Vec<f64>) {
     let deflection_m = history(&r, Quantity::Deflection, 2).to_vec();
     // the step before t = 0 is rest
     (
-        r.history_time_s[1..=steps + 1].to_vec(),
+        r.recorded.history_time_s[1..=steps + 1].to_vec(),
         deflection_m[1..=steps + 1].to_vec(),
     )
 }

@@ -131,7 +131,7 @@ fn crossed(inertia: Inertia, elements: usize, h: f64) -> Vec<f64> {
         Record {
             positions: vec![2],
             joints: vec![],
-            pins: false,
+            ..Record::default()
         },
     );
     let solver = ready.crossings(
@@ -139,7 +139,12 @@ fn crossed(inertia: Inertia, elements: usize, h: f64) -> Vec<f64> {
         &settings(Rayleigh { a: 0.0, b: 0.0 }, h, 1.0),
     );
     let r = solver.solve(&crossing).expect("solved");
-    let start = r.history_time_s.iter().position(|t| t.abs() < 0.5 * h).expect("t = 0");
+    let start = r
+        .recorded
+        .history_time_s
+        .iter()
+        .position(|t| t.abs() < 0.5 * h)
+        .expect("t = 0");
     history(&r, Quantity::Deflection, 2)[start..=start + STEPS].to_vec()
 }
 

@@ -29,13 +29,13 @@ fn time_integration_is_of_second_order() {
             crossing.record = Record {
                 positions: vec![2, 3],
                 joints: vec![],
-                pins: false,
+                ..Record::default()
             };
             let solver = ready.crossings(&vehicle, &settings(ready.rayleigh(), h, 0.9));
             let r = solver.solve(&crossing).expect("solved");
             // every 0.1 s from t = 0, which is not where the motion starts
             let every = (0.1 / h).round() as usize;
-            let before = r.history_time_s.iter().filter(|&&t| t < -0.5 * h).count();
+            let before = r.recorded.history_time_s.iter().filter(|&&t| t < -0.5 * h).count();
             let of = |position| {
                 history(&r, Quantity::Deflection, position)
                     .iter()

@@ -211,11 +211,12 @@ const ROUNDS: usize = 8;
 fn mean_active(answer: &CrossingResponse, connectors_of_a_joint: f64) -> f64 {
     let at_work = |values: &[f64]| values.iter().filter(|force| **force != 0.0).count();
     let joints = answer
+        .recorded
         .histories
         .iter()
-        .filter(|history| history.quantity == Quantity::Force);
+        .filter(|history| history.subject.quantity() == Quantity::Force);
     let instants: usize = joints.map(|history| at_work(&history.values)).sum();
-    connectors_of_a_joint * instants as f64 / answer.history_time_s.len() as f64
+    connectors_of_a_joint * instants as f64 / answer.recorded.history_time_s.len() as f64
 }
 
 /// Least time of something that is done again and again for a while.

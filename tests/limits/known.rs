@@ -27,7 +27,7 @@ fn recorded(mut crossing: Crossing) -> Crossing {
     crossing.record = Record {
         positions: vec![1, 2, 3, 4],
         joints: vec![2, 3],
-        pins: false,
+        ..Record::default()
     };
     crossing
 }
@@ -168,7 +168,7 @@ fn axles_superpose() {
     let (front, rear) = ((0.0, 0.3, 1.0), (5.0, 0.7, 0.0));
     let history_of = |r: &CrossingResponse| -> Vec<f64> {
         // from t = 0 on, to where the shortest ends; a vehicle that comes later finds the bridge at rest
-        let first = (r.history_time_s[0] / 0.01).round() as i64;
+        let first = (r.recorded.history_time_s[0] / 0.01).round() as i64;
         let from_zero = |quantity: Quantity| -> Vec<f64> {
             let values = history(r, quantity, 2);
             let at = |step: i64| usize::try_from(step - first).map_or(0.0, |i| values[i]);
@@ -405,17 +405,17 @@ fn rigid_module_follows_two_equations_of_motion() {
         crossing.record = Record {
             positions: vec![1, 2],
             joints: vec![],
-            pins: false,
+            ..Record::default()
         };
         let r = solver.solve(&crossing).expect("solved");
         // the motion starts from rest a step before the first point comes on, which is the front or somewhat behind it
-        let late = (r.history_time_s[1] / h).round() as usize;
+        let late = (r.recorded.history_time_s[1] / h).round() as usize;
         let behind_m = vehicle.points().map(|p| -p.ahead_m).fold(f64::INFINITY, f64::min);
         assert_eq!(late, (behind_m / speed_m_s / h).ceil() as usize);
-        assert!((r.history_time_s[0] - (late as f64 - 1.0) * h).abs() < 1e-9);
+        assert!((r.recorded.history_time_s[0] - (late as f64 - 1.0) * h).abs() < 1e-9);
         let steps = match inertia {
             Inertia::Convective => (l / speed_m_s / h) as usize - late,
-            _ => r.history_time_s.len() - 2,
+            _ => r.recorded.history_time_s.len() - 2,
         };
         let ends = history(&r, Quantity::Deflection, 1)
             .iter()

@@ -178,7 +178,7 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
             states.push(under.snapshot());
         }
         assert_eq!(under.finish(), solved);
-        assert_eq!(states.len(), solved.history_time_s.len());
+        assert_eq!(states.len(), solved.recorded.history_time_s.len());
         let closed = |state: State| states.iter().flat_map(|s| &s.connectors).any(|c| c.state == state);
         assert!(closed(State::Open) && closed(State::Tension) && closed(State::Compression));
         let largest = solved.joints[0]
@@ -189,9 +189,9 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
         let (mut unbalanced, mut unbalanced_twin) = (0.0_f64, 0.0_f64);
         let (mut off_deck, mut off_deck_twin) = (0.0_f64, 0.0_f64);
         for (i, state) in states.iter().enumerate() {
-            assert_eq!(state.time_s, solved.history_time_s[i]);
+            assert_eq!(state.time_s, solved.recorded.history_time_s[i]);
             let joint: f64 = state.connectors[..2].iter().map(|c| c.force_n).sum();
-            assert_eq!(joint, solved.histories[2].values[i]);
+            assert_eq!(joint, solved.recorded.histories[2].values[i]);
             let hinged = whole.meshed.hinge_forces_n(&state.elastic, state.inertial.as_deref());
             let hinged: f64 = hinged[..3].iter().sum();
             unbalanced = unbalanced.max((joint + hinged).abs() / largest);
@@ -214,7 +214,7 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
                 .find(|h| h.joint == 2 && h.y_m == 0.0)
                 .expect("a hinge");
             let deflection = -moved[at_2.nodes[0]][2];
-            assert!((deflection - solved.histories[0].values[i]).abs() < 1e-12);
+            assert!((deflection - solved.recorded.histories[0].values[i]).abs() < 1e-12);
             if state.wheels.iter().all(|wheel| wheel.row.is_some()) {
                 // an axle counts from 50 ms after its last point came onto a module
                 let length_m = design.module.length_m;

@@ -73,7 +73,7 @@ fn agree(
     let [right, wrong] = [&found, &wrong].map(|r| Apart::of(r, &expected, crossing.load_n).most());
     held(what, ROUNDING, right, wrong);
     assert_eq!(
-        found.history_time_s, expected.history_time_s,
+        found.recorded.history_time_s, expected.recorded.history_time_s,
         "{what}: times of the histories"
     );
     assert_eq!(
@@ -106,7 +106,7 @@ fn crossing(pair: &Pair, connection: Connection) -> Crossing {
     crossing.record = Record {
         positions: vec![1, 2, 3, 4],
         joints: vec![2, 3],
-        pins: false,
+        ..Record::default()
     };
     crossing
 }

@@ -36,7 +36,7 @@ fn cross(h: f64, vehicle: &Vehicle, connection: Connection, speed_m_s: f64) -> [
     crossing.record = Record {
         positions: (1..=ready.design.positions()).collect(),
         joints: (2..=ready.design.modules).collect(),
-        pins: false,
+        ..Record::default()
     };
     let heavy = Crossing {
         load_n: 1.05 * PAPER_LOAD_N,
@@ -84,7 +84,11 @@ fn contacts_of_the_default_bridge_are_close() {
         let [found, expected, heavy] = cross(0.01, &vehicle, PAPER_GAPS, 15.0);
         let first = first_force(&expected);
         let start = |r: &CrossingResponse| -> Vec<f64> {
-            let deflections = r.histories.iter().filter(|h| h.quantity == Quantity::Deflection);
+            let deflections = r
+                .recorded
+                .histories
+                .iter()
+                .filter(|h| h.subject.quantity() == Quantity::Deflection);
             deflections.flat_map(|h| h.values[..first].to_vec()).collect()
         };
         assert!(
@@ -160,7 +164,11 @@ fn halved_steps_are_as_near() {
 
 /// Steps until a joint has a force.
 fn first_force(r: &CrossingResponse) -> usize {
-    let forces = r.histories.iter().filter(|h| h.quantity == Quantity::Force);
+    let forces = r
+        .recorded
+        .histories
+        .iter()
+        .filter(|h| h.subject.quantity() == Quantity::Force);
     let first = forces.filter_map(|h| h.values.iter().position(|f| *f != 0.0)).min();
     first.expect("a contact")
 }

@@ -58,7 +58,7 @@ fn jobs() -> Vec<Job> {
                 crossing.record = Record {
                     positions: vec![2, 3],
                     joints: vec![2, 3],
-                    pins: false,
+                    ..Record::default()
                 };
             }
             (vehicle, crossing)

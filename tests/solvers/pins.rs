@@ -8,7 +8,7 @@ use pontoon_core::analysis::crossing::{Crossing, OperatorSolver};
 use pontoon_core::analysis::statics::StaticSolver;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
-use pontoon_core::operator::{BridgeOperator, Pinned};
+use pontoon_core::operator::{BridgeOperator, Followed};
 use pontoon_core::response::{CrossingResponse, PinPeaks, Record};
 use pontoon_core::stop::Stop;
 use pontoon_core::vehicle::{Inertia, Vehicle};
@@ -18,7 +18,11 @@ use std::sync::Arc;
 
 /// The operator of a bridge with its pins.
 fn operator(ready: &Ready, tolerance: f64) -> Arc<BridgeOperator> {
-    let made = BridgeOperator::new_unless(&ready.bridge, tolerance, Pinned::Yes, Stop::never());
+    let followed = Followed {
+        pins: true,
+        places_x_m: PLACES_X_M.to_vec(),
+    };
+    let made = BridgeOperator::new_unless(&ready.bridge, tolerance, &followed, Stop::never());
     Arc::new(made.expect("an operator"))
 }
 

@@ -168,6 +168,7 @@ impl ChainScenario {
                     own_laws,
                     load_n,
                     load_x_m: spec.place(&design, moves)?,
+                    places_x_m: Vec::new(),
                 })
             }
         };

@@ -153,6 +153,7 @@ impl Ready {
             own_laws: [].into(),
             load_n,
             load_x_m,
+            places_x_m: Vec::new(),
         }
     }
 
@@ -266,9 +267,10 @@ pub fn frequency_hz(modes: &[Mode], name: &str) -> f64 {
 /// History of a position's deflection or a joint's force.
 pub fn history(response: &CrossingResponse, quantity: Quantity, position: usize) -> &[f64] {
     let found = response
+        .recorded
         .histories
         .iter()
-        .find(|h| h.quantity == quantity && h.position == position);
+        .find(|h| h.subject.quantity() == quantity && h.subject.position() == Some(position));
     &found.expect("a history that was asked for").values
 }
 

@@ -147,8 +147,8 @@ pub fn forces(r: &CrossingResponse) -> Vec<f64> {
 
 /// All recorded histories of a quantity, one after the other.
 pub fn curve(r: &CrossingResponse, quantity: Quantity) -> Vec<f64> {
-    let of = r.histories.iter().filter(|h| h.quantity == quantity);
-    of.flat_map(|h| history(r, quantity, h.position)).copied().collect()
+    let of = r.recorded.histories.iter().filter(|h| h.subject.quantity() == quantity);
+    of.flat_map(|h| h.values.iter().copied()).collect()
 }
 
 /// A row of numbers between 0 and 1 that is always the same.

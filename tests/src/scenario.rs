@@ -64,7 +64,7 @@ impl Scenario {
         Record {
             positions: (1..=modules + 1).collect(),
             joints: (2..=modules).collect(),
-            pins: false,
+            ..Record::default()
         }
     }
 

@@ -9,13 +9,14 @@ use pontoon_plan::input::Cell;
 use std::collections::{HashMap, HashSet};
 
 /// Suffixes of names with the units that they tell, the longer before the shorter.
-const UNITS: [(&str, &str); 16] = [
+const UNITS: [(&str, &str); 17] = [
     ("_kg_m3", "kg/m³"),
     ("_kg_m2", "kg/m²"),
     ("_pa_m", "Pa/m"),
     ("_kg_m", "kg/m"),
     ("_m_s", "m/s"),
     ("_n_m", "N/m"),
+    ("_nm", "N m"),
     ("_1_s", "1/s"),
     ("_m2", "m²"),
     ("_m4", "m⁴"),

@@ -10,8 +10,9 @@ use crate::JobRecord;
 use pontoon_plan::design::{AxisValues, NamedAxis, Varies};
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
-use pontoon_plan::study_file::{Kind, Study};
+use pontoon_plan::study_file::{Kind, RecordSpec, Study};
 use std::io;
+use std::sync::Arc;
 
 /// The column behind which those of the axes stand.
 const BEFORE_AXES: &str = "failure";
@@ -51,6 +52,8 @@ pub(super) struct Layout {
     auto: bool,
     /// Whether any job may be solved again.
     verify: bool,
+    /// What is kept of jobs.
+    record: Arc<RecordSpec>,
 }
 
 impl Layout {
@@ -65,6 +68,9 @@ impl Layout {
             TableName::Histories => record.histories.asked() && loaded,
             TableName::Modes => !loaded,
             TableName::Pins => record.pins && loaded,
+            TableName::Sections => record.sections && loaded,
+            TableName::Places => !record.places_x_m.is_empty() && loaded,
+            TableName::AtPeaks => !record.at_peak_of.is_empty() && kind == Kind::Crossing,
             TableName::Joints => study.wear.is_some() && loaded,
         };
         let crossings = || jobs.iter().filter_map(Job::as_crossing);
@@ -78,6 +84,7 @@ impl Layout {
             tables: TableName::ALL.into_iter().filter(left).collect(),
             auto: crossings().any(|crossing| crossing.analysis.time_step.tolerance().is_some()),
             verify: crossings().any(|crossing| crossing.analysis.verify().is_some()),
+            record: Arc::clone(record),
         }
     }
 
@@ -117,6 +124,18 @@ impl Layout {
                     let rows = rows(records, |record| &record.pins);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
+                ColumnSource::Section(of) => {
+                    let rows = rows(records, |record| &record.sections);
+                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                }
+                ColumnSource::Place(of) => {
+                    let rows = rows(records, |record| &record.places);
+                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                }
+                ColumnSource::AtPeak(of) => {
+                    let rows = rows(records, |record| &record.at_peaks);
+                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                }
                 ColumnSource::Joint(of) => {
                     let rows = jobs.iter().flat_map(worn_joints);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
@@ -146,6 +165,10 @@ impl Layout {
             When::Modes => self.kind == Kind::Modes,
             When::AutoTimeStep => self.auto,
             When::Verify => self.verify,
+            When::Pins => self.record.pins && self.kind != Kind::Modes,
+            When::Sections => self.record.sections && self.kind != Kind::Modes,
+            When::PlaceHistories => !self.record.histories.places_x_m.is_empty(),
+            When::PinHistories => !self.record.histories.pins.is_empty(),
         }
     }
 }
@@ -174,17 +197,17 @@ fn worn_joints(job: &Job) -> impl Iterator<Item = JointRow> {
 /// The samples of a record's histories, one history after the other.
 fn samples(record: &JobRecord) -> impl Iterator<Item = HistorySample<'_>> {
     let histories = &record.histories;
-    histories.series.iter().flat_map(|(quantity, position, values)| {
-        histories
-            .time_s
-            .iter()
-            .zip(values)
-            .map(|(&time_s, &value)| HistorySample {
-                job: record.job,
-                time_s,
-                quantity,
-                position: *position,
-                value,
-            })
+    histories.series.iter().flat_map(|series| {
+        let times = if series.of_balance {
+            &histories.balance_time_s
+        } else {
+            &histories.time_s
+        };
+        times.iter().zip(&series.values).map(|(&time_s, &value)| HistorySample {
+            job: record.job,
+            time_s,
+            of: &series.of,
+            value,
+        })
     })
 }

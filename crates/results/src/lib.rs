@@ -51,8 +51,13 @@ pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::TableProvenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
-pub use record::{ConnectorRow, Extreme, HistoryRows, JobRecord, ModeRow, PinRow, PositionRow, Summary};
-pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, QUANTITIES, SpeedFigure, When, registered};
+pub use record::{
+    AtPeakRow, ConnectorRow, Extreme, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow,
+    PositionRow, SectionRow, Summary,
+};
+pub use registry::{
+    COLUMNS, Card, Column, ColumnRole, Curve, Digits, QUANTITIES, SECTION_QUANTITIES, SpeedFigure, When, registered,
+};
 pub use results::Results;
 pub use results_error::ResultsError;
 pub use summary::SummaryTable;

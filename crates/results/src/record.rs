@@ -4,6 +4,7 @@
 //! written and read back without loss, so that a journal can stand between the jobs and the tables.
 
 use super::failure::Failure;
+use super::registry::SECTION_QUANTITIES;
 use pontoon_plan::job::Job;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,12 @@ pub struct JobRecord {
     pub modes: Vec<ModeRow>,
     /// Its rows of the table of pins.
     pub pins: Vec<PinRow>,
+    /// Its rows of the table of section forces.
+    pub sections: Vec<SectionRow>,
+    /// Its rows of the table of places.
+    pub places: Vec<PlaceRow>,
+    /// Its rows of the table of what is at peaks.
+    pub at_peaks: Vec<AtPeakRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
@@ -54,6 +61,18 @@ pub struct Summary {
     pub peak_tension_n: Option<f64>,
     /// Its joint.
     pub peak_tension_joint: Option<usize>,
+    /// Largest resultant of any pin `[N]`; null where pins are not recorded.
+    pub peak_pin_n: Option<f64>,
+    /// Its joint.
+    pub peak_pin_joint: Option<usize>,
+    /// Largest angle of any joint, either sense `[rad]`; null where sections are not recorded.
+    pub peak_angle_rad: Option<f64>,
+    /// Its joint.
+    pub peak_angle_joint: Option<usize>,
+    /// Largest bending moment of any joint, either sense `[N m]`; null where sections are not recorded.
+    pub peak_bending_nm: Option<f64>,
+    /// Its joint.
+    pub peak_bending_joint: Option<usize>,
     /// Largest deflection of the deck's edges `[m]`.
     pub peak_edge_deflection_m: Option<f64>,
     /// Largest roll of a module end `[rad]`.
@@ -186,6 +205,58 @@ pub struct PinRow {
     pub resultant: Extreme,
 }
 
+/// A row of the table of section forces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SectionRow {
+    /// Position number of the joint.
+    pub joint: usize,
+    /// Which section force, or the angle, by its word.
+    pub quantity: String,
+    /// Largest against its sense, and with it.
+    pub sides: [Extreme; 2],
+}
+
+/// A row of the table of places.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlaceRow {
+    /// The place `[m]`.
+    pub x_m: f64,
+    /// Largest deflection `[m]`.
+    pub deflection: Extreme,
+    /// Largest uplift `[m]`.
+    pub uplift: Extreme,
+    /// Deflection of a static job, positive downward `[m]`.
+    pub static_deflection_m: Option<f64>,
+}
+
+/// Where and what a recorded number is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NumberPlace {
+    /// Its word, which has its unit.
+    pub quantity: String,
+    /// Position or joint; null of a place.
+    pub position: Option<usize>,
+    /// Place along `[m]`, where it is of a place.
+    pub x_m: Option<f64>,
+    /// Place across of a connector or pin `[m]`.
+    pub y_m: Option<f64>,
+}
+
+/// A row of the table of what is at peaks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AtPeakRow {
+    /// Column of the peak.
+    pub at_peak_of: String,
+    /// Position or joint that was asked for; null where the largest of all was.
+    pub peak_at: Option<usize>,
+    /// When the value holds `[s]`.
+    pub time_s: f64,
+    /// What it is.
+    pub of: NumberPlace,
+    /// The value, in the unit of its quantity.
+    pub value: f64,
+}
+
 /// One mode; the shares are those of its kinetic energy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModeRow {
@@ -210,22 +281,35 @@ pub struct ModeRow {
 pub struct HistoryRows {
     /// The times `[s]`.
     pub time_s: Vec<f64>,
-    /// Quantity, position and a value for each time.
-    pub series: Vec<(String, usize, Vec<f64>)>,
+    /// Instants of the balance of the same steps `[s]`; empty where no series is of them.
+    pub balance_time_s: Vec<f64>,
+    /// The histories.
+    pub series: Vec<HistorySeries>,
+}
+
+/// A history.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HistorySeries {
+    /// What it is of.
+    pub of: NumberPlace,
+    /// Whether its times are instants of the balance.
+    pub of_balance: bool,
+    /// A value for each time.
+    pub values: Vec<f64>,
 }
 
 impl HistoryRows {
     /// Bytes of its numbers.
     pub fn bytes(&self) -> usize {
-        let values: usize = self.series.iter().map(|(.., values)| values.len()).sum();
-        8 * (values + self.time_s.len())
+        let values: usize = self.series.iter().map(|series| series.values.len()).sum();
+        8 * (values + self.time_s.len() + self.balance_time_s.len())
     }
 }
 
 /// The rows of the pins of a job that failed; none where pins are not recorded.
 fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
     let design = &job.bridge.design;
-    let joints = if job.pins { 2..=design.modules } else { 1..=0 };
+    let joints = if job.record.pins { 2..=design.modules } else { 1..=0 };
     let row = |joint: usize, y_m: Option<f64>| PinRow {
         joint,
         y_m,
@@ -237,6 +321,23 @@ fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
             let places = design.hinges_of(joint).y_m.iter().copied().map(Some).chain([None]);
             places.map(move |y_m| row(joint, y_m))
         })
+        .collect()
+}
+
+/// The rows of the section forces of a job that failed; none where they are not recorded.
+fn section_rows_of_none(job: &Job) -> Vec<SectionRow> {
+    let joints = if job.record.sections {
+        2..=job.bridge.design.modules
+    } else {
+        1..=0
+    };
+    let row = |joint: usize, quantity: &str| SectionRow {
+        joint,
+        quantity: quantity.to_owned(),
+        sides: [Extreme::default(); 2],
+    };
+    joints
+        .flat_map(|joint| SECTION_QUANTITIES.map(|quantity| row(joint, quantity)))
         .collect()
 }
 
@@ -262,6 +363,12 @@ impl JobRecord {
                 tension: none,
             })
         });
+        let places = job.record.places_x_m.iter().map(|&x_m| PlaceRow {
+            x_m,
+            deflection: none,
+            uplift: none,
+            static_deflection_m: None,
+        });
         Self {
             job: job.number,
             failure: Some(failure),
@@ -272,11 +379,36 @@ impl JobRecord {
             histories: HistoryRows::default(),
             modes: Vec::new(),
             pins: pin_rows_of_none(job),
+            sections: section_rows_of_none(job),
+            places: places.collect(),
+            at_peaks: Vec::new(),
         }
     }
 }
 
 impl Summary {
+    /// Fills in the peaks of pins and joints, where these are recorded (the first of equals; no place where the peak is zero).
+    pub fn take_joint_peaks(&mut self, pins: &[PinRow], sections: &[SectionRow]) {
+        let largest = |rows: &mut dyn Iterator<Item = (usize, Option<f64>)>| {
+            let mut best: (Option<usize>, Option<f64>) = (None, None);
+            for (joint, value) in rows {
+                if value > best.1 {
+                    best = (Some(joint).filter(|_| value > Some(0.0)), value);
+                }
+            }
+            best
+        };
+        let each = pins.iter().filter(|pin| pin.y_m.is_some());
+        let found = largest(&mut each.map(|pin| (pin.joint, pin.resultant.value)));
+        (self.peak_pin_joint, self.peak_pin_n) = found;
+        let of = |quantity: &'static str| {
+            let rows = sections.iter().filter(move |row| row.quantity == quantity);
+            rows.flat_map(|row| row.sides.map(|side| (row.joint, side.value)))
+        };
+        (self.peak_angle_joint, self.peak_angle_rad) = largest(&mut of("angle_rad"));
+        (self.peak_bending_joint, self.peak_bending_nm) = largest(&mut of("bending_nm"));
+    }
+
     /// Fills in the peaks of the whole bridge from the rows of its positions and joints (the first of equals; no place
     /// where the peak is zero).
     pub fn take_peaks(&mut self, positions: &[PositionRow], connectors: &[ConnectorRow]) {
@@ -354,7 +486,6 @@ mod tests {
             time_s: Some(1.0 / 3.0),
         };
         let record = JobRecord {
-            pins: Vec::new(),
             job: 0,
             failure: Some(Failure::new(FailureKind::NotFinite, "why").with("time_s", 0.1)),
             retried: None,
@@ -373,9 +504,19 @@ mod tests {
             connectors: vec![row(2, None, -5.0)],
             histories: HistoryRows {
                 time_s: vec![0.1],
-                series: vec![("force_n".to_owned(), 7, vec![0.7])],
+                balance_time_s: vec![0.05],
+                series: vec![HistorySeries {
+                    of: NumberPlace {
+                        quantity: "pin_x_n".to_owned(),
+                        position: Some(7),
+                        x_m: None,
+                        y_m: Some(0.5),
+                    },
+                    of_balance: true,
+                    values: vec![0.7],
+                }],
             },
-            modes: Vec::new(),
+            ..JobRecord::default()
         };
         let bytes = postcard::to_allocvec(&record).unwrap();
         assert_eq!(postcard::from_bytes::<JobRecord>(&bytes).unwrap(), record);

@@ -5,7 +5,9 @@
 
 use crate::FailureKind;
 use crate::arrays::CellKind;
-use crate::record::{ConnectorRow, JobRecord, ModeRow, PinRow, PositionRow};
+use crate::record::{
+    AtPeakRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
+};
 use crate::table::TableName;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use pontoon_plan::design::NAMED_AXES;
@@ -70,6 +72,12 @@ pub(crate) enum ColumnSource {
     Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>),
     /// A pin.
     Pin(fn(&RowOf<'_, PinRow>) -> Cell<'static>),
+    /// A section force.
+    Section(for<'a> fn(&RowOf<'a, SectionRow>) -> Cell<'a>),
+    /// A place.
+    Place(fn(&RowOf<'_, PlaceRow>) -> Cell<'static>),
+    /// A number at a peak.
+    AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -102,9 +110,7 @@ pub(crate) struct HistorySample<'a> {
     /// Its time `[s]`.
     pub(crate) time_s: f64,
     /// What the history is of.
-    pub(crate) quantity: &'a str,
-    /// Position or joint number.
-    pub(crate) position: usize,
+    pub(crate) of: &'a NumberPlace,
     /// The value, in the unit of the quantity.
     pub(crate) value: f64,
 }
@@ -127,6 +133,14 @@ pub enum When {
     AutoTimeStep,
     /// Where jobs are solved again.
     Verify,
+    /// Where pins are recorded.
+    Pins,
+    /// Where section forces are recorded.
+    Sections,
+    /// Where histories of places are recorded.
+    PlaceHistories,
+    /// Where histories of pins are recorded.
+    PinHistories,
 }
 
 /// How many digits of a number people read.
@@ -329,6 +343,33 @@ const fn of_pin(
     column(TableName::Pins, (name, cells), names, ColumnSource::Pin(of))
 }
 
+const fn of_section(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: for<'a> fn(&RowOf<'a, SectionRow>) -> Cell<'a>,
+) -> Column {
+    column(TableName::Sections, (name, cells), names, ColumnSource::Section(of))
+}
+
+const fn of_place(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, PlaceRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Places, (name, cells), names, ColumnSource::Place(of))
+}
+
+const fn at_peak(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>,
+) -> Column {
+    column(TableName::AtPeaks, (name, cells), names, ColumnSource::AtPeak(of))
+}
+
 const fn of_joint(
     name: &'static str,
     cells: CellKind,
@@ -400,7 +441,40 @@ fn reason(record: &JobRecord) -> Cell<'_> {
 }
 
 /// The words of `quantity`: what a history is of, with its unit and its sense.
-pub const QUANTITIES: [&str; 2] = ["deflection_m", "force_n"];
+pub const QUANTITIES: [&str; 12] = [
+    "deflection_m",
+    "force_n",
+    "pin_x_n",
+    "pin_y_n",
+    "pin_z_n",
+    "angle_rad",
+    "axial_n",
+    "shear_y_n",
+    "shear_z_n",
+    "torsion_nm",
+    "bending_nm",
+    "lateral_bending_nm",
+];
+
+/// The words of [`QUANTITIES`] that are a joint's angle and section forces.
+pub const SECTION_QUANTITIES: [&str; 7] = [
+    "angle_rad",
+    "axial_n",
+    "shear_y_n",
+    "shear_z_n",
+    "torsion_nm",
+    "bending_nm",
+    "lateral_bending_nm",
+];
+
+/// The peaks that [`AtPeakRow`] may name.
+const PEAKS: [&str; 5] = [
+    "peak_deflection_m",
+    "peak_uplift_m",
+    "peak_compression_n",
+    "peak_tension_n",
+    "peak_pin_n",
+];
 
 /// The columns of all tables in their order; those of the axes stand behind the state of the jobs.
 #[rustfmt::skip]
@@ -427,6 +501,14 @@ pub const COLUMNS: &[Column] = &[
         .card(peak_card("largest tension", ("joint", "peak_tension_joint"), None))
         .curve(kilonewtons("Peak tension of a joint")),
     of_job("peak_tension_joint", Counts, ("peak tension joint", "its joint"), |r| r.summary.peak_tension_joint.into()).role(ColumnRole::Listed),
+    measure("peak_pin_n", "peak pin force", "largest resultant of any pin", |r| r.summary.peak_pin_n.into()).newtons().drawn().when(When::Pins)
+        .card(peak_card("largest pin force", ("joint", "peak_pin_joint"), None))
+        .curve(kilonewtons("Peak force of a pin")),
+    of_job("peak_pin_joint", Counts, ("peak pin joint", "its joint"), |r| r.summary.peak_pin_joint.into()).role(ColumnRole::Listed).when(When::Pins),
+    measure("peak_angle_rad", "peak joint angle", "largest angle of any joint, either sense", |r| r.summary.peak_angle_rad.into()).unit("rad").when(When::Sections),
+    of_job("peak_angle_joint", Counts, ("peak angle joint", "its joint"), |r| r.summary.peak_angle_joint.into()).when(When::Sections),
+    measure("peak_bending_nm", "peak bending moment", "largest bending moment of any joint, either sense", |r| r.summary.peak_bending_nm.into()).unit("N m").when(When::Sections),
+    of_job("peak_bending_joint", Counts, ("peak bending joint", "its joint"), |r| r.summary.peak_bending_joint.into()).when(When::Sections),
     measure("peak_edge_deflection_m", "peak edge deflection", "largest deflection of the deck's edges", |r| r.summary.peak_edge_deflection_m.into()).metres().drawn(),
     measure("peak_roll_rad", "peak roll", "largest roll of a module end", |r| r.summary.peak_roll_rad.into()).unit("rad"),
     measure("static_peak_deflection_m", "static peak deflection", "largest static deflection of any position while the same weight moves slowly over the bridge, without inertia, over the job's connection and gaps", |r| r.summary.static_peak_deflection_m.into()).metres().drawn(),
@@ -470,9 +552,11 @@ pub const COLUMNS: &[Column] = &[
     of_connector("peak_tension_time_s", Numbers, ("peak tension time", "its time"), |r| r.row.tension.time_s.into()).unit("s"),
 
     of_sample("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
-    of_sample("time_s", Numbers, ("time", "time since the vehicle's front passed x = 0; below zero before"), |r| r.time_s.into()).unit("s").role(ColumnRole::Key),
-    of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.quantity.into()).role(ColumnRole::Key),
-    of_sample("position", Counts, ("position", "position of a deflection, joint of a force"), |r| r.position.into()).role(ColumnRole::Key),
+    of_sample("time_s", Numbers, ("time", "time since the vehicle's front passed x = 0; below zero before; forces of pins and sections hold a part of a time step before the others"), |r| r.time_s.into()).unit("s").role(ColumnRole::Key),
+    of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.of.quantity.as_str().into()).role(ColumnRole::Key),
+    of_sample("position", Counts, ("position", "position of a deflection, joint of a force; null of a place"), |r| r.of.position.into()).role(ColumnRole::Key),
+    of_sample("x_m", Numbers, ("x", "place along the bridge, of the deflection of a place"), |r| r.of.x_m.into()).unit("m").role(ColumnRole::Key).when(When::PlaceHistories),
+    of_sample("y_m", Numbers, ("y", "place across, of the force of a pin"), |r| r.of.y_m.into()).unit("m").role(ColumnRole::Key).when(When::PinHistories),
     of_sample("value", Numbers, ("value", "the quantity, in its unit"), |r| r.value.into()),
 
     of_mode("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
@@ -506,6 +590,32 @@ pub const COLUMNS: &[Column] = &[
     of_pin("peak_plus_z_time_s", Numbers, ("peak force, along z, time", "its time"), |r| r.row.components[2][1].time_s.into()).unit("s"),
     of_pin("peak_resultant_n", Numbers, ("peak resultant", "largest resultant"), |r| r.row.resultant.value.into()).newtons(),
     of_pin("peak_resultant_time_s", Numbers, ("peak resultant time", "its time"), |r| r.row.resultant.time_s.into()).unit("s"),
+
+    of_section("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_section("joint", Counts, ("joint", "number of the joint, from 2"), |r| r.row.joint.into()).role(ColumnRole::Key),
+    of_section("quantity", Words(&SECTION_QUANTITIES), ("quantity", "which number of the joint: its angle, positive where it opens at the deck; forces of the right part on the left one, moments about the centre of the hinge line"), |r| r.row.quantity.as_str().into()).role(ColumnRole::Key),
+    of_section("peak_minus", Numbers, ("peak, against its sense", "largest value against its sense, in the unit of the quantity: joint closed at the deck, compression, hogging"), |r| r.row.sides[0].value.into()),
+    of_section("peak_minus_time_s", Numbers, ("peak, against its sense, time", "its time"), |r| r.row.sides[0].time_s.into()).unit("s"),
+    of_section("peak_plus", Numbers, ("peak, with its sense", "largest value with its sense, in the unit of the quantity: joint open at the deck, tension, sagging"), |r| r.row.sides[1].value.into()),
+    of_section("peak_plus_time_s", Numbers, ("peak, with its sense, time", "its time"), |r| r.row.sides[1].time_s.into()).unit("s"),
+
+    of_place("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_place("x_m", Numbers, ("x", "the place along the bridge"), |r| r.row.x_m.into()).unit("m").role(ColumnRole::Key),
+    of_place("peak_deflection_m", Numbers, ("peak deflection", "largest deflection"), |r| r.row.deflection.value.into()).metres(),
+    of_place("peak_deflection_time_s", Numbers, ("peak deflection time", "its time"), |r| r.row.deflection.time_s.into()).unit("s"),
+    of_place("peak_uplift_m", Numbers, ("peak uplift", "largest uplift"), |r| r.row.uplift.value.into()).metres(),
+    of_place("peak_uplift_time_s", Numbers, ("peak uplift time", "its time"), |r| r.row.uplift.time_s.into()).unit("s"),
+    of_place("deflection_m", Numbers, ("deflection", "deflection of a static case, positive downward"), |r| r.row.static_deflection_m.into()).metres().when(When::Static),
+
+    at_peak("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    at_peak("at_peak_of", Words(&PEAKS), ("at peak of", "the peak at whose instant the value holds"), |r| r.row.at_peak_of.as_str().into()).role(ColumnRole::Key),
+    at_peak("peak_at", Counts, ("peak at", "position or joint of that peak where one was named; null where it is the largest of all"), |r| r.row.peak_at.into()).role(ColumnRole::Key),
+    at_peak("time_s", Numbers, ("time", "when the value holds; of pins and sections a part of a time step before the others"), |r| r.row.time_s.into()).unit("s"),
+    at_peak("quantity", Words(&QUANTITIES), ("quantity", "what the value is, with its unit"), |r| r.row.of.quantity.as_str().into()).role(ColumnRole::Key),
+    at_peak("position", Counts, ("position", "position of a deflection, joint of all else; null of a place"), |r| r.row.of.position.into()).role(ColumnRole::Key),
+    at_peak("x_m", Numbers, ("x", "place along the bridge, of the deflection of a place"), |r| r.row.of.x_m.into()).unit("m").role(ColumnRole::Key),
+    at_peak("y_m", Numbers, ("y", "place across, of the force of a connector or pin"), |r| r.row.of.y_m.into()).unit("m").role(ColumnRole::Key),
+    at_peak("value", Numbers, ("value", "the quantity, in its unit"), |r| r.row.value.into()),
 ];
 
 impl Column {

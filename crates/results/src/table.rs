@@ -31,11 +31,17 @@ pub enum TableName {
     Joints,
     /// One row a pin of a job, or a joint with its pins added.
     Pins,
+    /// One row a section force or angle of a joint of a job.
+    Sections,
+    /// One row a recorded place of a job.
+    Places,
+    /// One row a number of a job at the instant of a peak.
+    AtPeaks,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
@@ -43,6 +49,9 @@ impl TableName {
         Self::Modes,
         Self::Joints,
         Self::Pins,
+        Self::Sections,
+        Self::Places,
+        Self::AtPeaks,
     ];
 
     /// Its name as files and references have it.
@@ -55,6 +64,9 @@ impl TableName {
             Self::Modes => "modes",
             Self::Joints => "joints",
             Self::Pins => "pins",
+            Self::Sections => "sections",
+            Self::Places => "places",
+            Self::AtPeaks => "at_peaks",
         }
     }
 

@@ -136,7 +136,11 @@ impl Bridge {
         let behind = line.partition_point(|(x, _)| *x <= x_m);
         let first = behind.saturating_sub(1).min(line.len() - 2);
         let [(x0, left), (x1, right)] = [&line[first], &line[first + 1]];
-        let share = if x1 > x0 { ((x_m - x0) / (x1 - x0)).clamp(0.0, 1.0) } else { 0.0 };
+        let share = if x1 > x0 {
+            ((x_m - x0) / (x1 - x0)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         SparseRow::combine(&[(1.0 - share, left), (share, right)])
     }
 }

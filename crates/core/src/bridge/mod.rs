@@ -21,7 +21,11 @@ pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports,
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
+#[cfg(test)]
+pub(crate) use pins::ModuleForces;
 pub(crate) use pins::PinPlace;
+#[cfg(test)]
+pub(crate) use prepared::Side;
 pub(crate) use placement::VehiclePlacement;
 pub use prepared::PreparedModule;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};

@@ -93,3 +93,69 @@ pub(super) fn pins(
         })
         .collect()
 }
+
+/// What acts on each dof of each module, for tests of free bodies.
+#[cfg(test)]
+pub(crate) struct ModuleForces {
+    /// Dof of the bridge; none where a support holds it.
+    pub global: Option<usize>,
+    /// Direction of a translation on the modules' ends that hinges may tie: side, place across, direction.
+    pub tied: Option<(Side, f64, usize)>,
+    /// What moves the module there, less what presses on its deck `[N or N m]`.
+    pub force: f64,
+    /// Translations of the dof along, across and up, where it is one.
+    pub rigid: [f64; 3],
+}
+
+#[cfg(test)]
+impl ModuleForces {
+    /// Of each module, at each of its dofs; arguments as of [`PinRow::force_n`].
+    pub(crate) fn of(
+        design: &BridgeDesign,
+        module: &PreparedModule,
+        elastic: &[f64],
+        inertial: Option<&[f64]>,
+        down: &[SparseRow],
+    ) -> Vec<Vec<Self>> {
+        let row = Row::number(design, module, super::Ends::Supported);
+        let (grid, nx, ny) = (&module.grid, module.grid.x.len(), module.grid.y.len());
+        let of_module = |j: usize| {
+            let own = |x: &[f64]| -> Vec<f64> { row.map[j].iter().map(|dof| dof.map_or(0.0, |dof| x[dof])).collect() };
+            let (elastic, inertial) = (own(elastic), inertial.map(own));
+            let mut forces: Vec<Self> = (0..module.dofs())
+                .map(|dof| {
+                    let of = |matrix: &SymmetricMatrix, x: &[f64]| SparseRow(matrix.column(dof).collect()).dot(x);
+                    Self {
+                        global: row.map[j][dof],
+                        tied: None,
+                        force: of(&module.k, &elastic) + inertial.as_ref().map_or(0.0, |x| of(&module.m, x)),
+                        rigid: [0.0; 3],
+                    }
+                })
+                .collect();
+            for node in 0..module.mesh.nodes.len() {
+                for direction in [X, Y, Z] {
+                    if let Some(dof) = module.dof(crate::fem::NodeId(node), direction) {
+                        forces[dof].rigid[direction] = 1.0;
+                    }
+                }
+            }
+            for side in [Side::Left, Side::Right] {
+                for (iy, direction) in (0..ny).flat_map(|iy| [X, Y, Z].map(|direction| (iy, direction))) {
+                    if let Some(dof) = module.dof(grid.bottom(module.end_line(side), iy), direction) {
+                        forces[dof].tied = Some((side, grid.y[iy], direction));
+                    }
+                }
+            }
+            for (line, ix) in (0..ny).flat_map(|line| (0..nx).map(move |ix| (line, ix))) {
+                let column = (line * design.modules + j) * nx + ix;
+                let pressed = down.iter().flat_map(|row| &row.0).filter(|(of, _)| *of == column);
+                if let Some(dof) = module.dof(grid.deck(ix, line), Z) {
+                    forces[dof].force += pressed.map(|(_, force)| force).sum::<f64>();
+                }
+            }
+            forces
+        };
+        (0..design.modules).map(of_module).collect()
+    }
+}

@@ -18,7 +18,7 @@ pub(super) const Z: usize = 2;
 
 /// The two ends of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum Side {
     Left,
     Right,
 }

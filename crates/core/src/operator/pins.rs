@@ -249,7 +249,11 @@ impl Pins {
     pub(super) fn force_n(&self, pin: usize, lane: usize) -> [f64; DIRECTIONS] {
         std::array::from_fn(|axis| {
             let row = DIRECTIONS * pin + axis;
-            if row < self.forces.rows() { self.forces.at(row, lane) } else { 0.0 }
+            if row < self.forces.rows() {
+                self.forces.at(row, lane)
+            } else {
+                0.0
+            }
         })
     }
 

@@ -112,8 +112,7 @@ impl PinExtremes {
         for (peaks, force) in self.components.iter_mut().zip(force_n) {
             peaks.take(force, time_s);
         }
-        self.resultant
-            .take(force_n.iter().map(|f| f * f).sum::<f64>().sqrt(), time_s);
+        self.resultant.take(super::resultant_n(force_n), time_s);
     }
 }
 

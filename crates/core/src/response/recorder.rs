@@ -97,9 +97,11 @@ pub struct History {
 pub struct AtPeak {
     /// The peak.
     pub peak: WatchedPeak,
-    /// Its value and its time; a value of 0 never occurred.
-    pub largest: Peak,
-    /// Instant of the balance of that step `[s]`, of pins and section forces.
+    /// Its value; 0 never occurred.
+    pub largest: f64,
+    /// End of the step in which it occurred `[s]`.
+    pub time_s: f64,
+    /// Instant of that step's balance, of pins and section forces `[s]`.
     pub balance_s: f64,
     /// The numbers of everything then; none where the peak never occurred.
     pub numbers: Vec<(Subject, f64)>,
@@ -154,7 +156,8 @@ impl Recorder {
         };
         let at_peak = |&peak: &WatchedPeak| AtPeak {
             peak,
-            largest: Peak::default(),
+            largest: 0.0,
+            time_s: 0.0,
             balance_s: 0.0,
             numbers: Vec::new(),
         };
@@ -202,9 +205,8 @@ impl Recorder {
         }
         for at in at_peaks {
             let value = watched(at.peak, self.positions, &self.joints, reading);
-            if value > at.largest.value {
-                at.largest.take(value, if at.peak.of == PeakOf::Pin { balance_s } else { now_s });
-                at.balance_s = balance_s;
+            if value > at.largest {
+                (at.largest, at.time_s, at.balance_s) = (value, now_s, balance_s);
                 let number = |&subject: &Subject| (subject, read(subject, &self.joints, reading));
                 at.numbers = self.told.iter().map(number).collect();
             }
@@ -236,7 +238,11 @@ fn watched(peak: WatchedPeak, positions: usize, joints: &[JointParts], reading: 
     let largest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, f64::max);
     let numbered = |number: usize| peak.number.is_none_or(|only| only == number);
     let joints = || joints.iter().filter(|parts| numbered(parts.joint));
-    let heights = || (0..positions).filter(|i| numbered(i + 1)).map(|i| reading.position_m(i));
+    let heights = || {
+        (0..positions)
+            .filter(|i| numbered(i + 1))
+            .map(|i| reading.position_m(i))
+    };
     let forces = || joints().map(|parts| parts.force_n(reading));
     match peak.of {
         PeakOf::Deflection => largest(&mut heights()),

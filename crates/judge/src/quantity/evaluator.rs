@@ -3,7 +3,7 @@
 //! Knows rows, filters and what is made of them. Does not know what a quantity should be, nor whether the results can
 //! have what it names.
 
-use super::history::{Moments, ValueHistory, moments_of};
+use super::history::{Along, Moments, ValueHistory, moments_of};
 use super::no_value::{NoValue, failed_jobs};
 use super::spec::{HistoryQuantity, Quantity, Reduction, SelectQuantity};
 use pontoon_plan::input::filter::Filter;
@@ -17,8 +17,8 @@ pub(crate) struct Evaluator<'a> {
     pub(crate) results: &'a Results,
     /// Rows of each job in each table that was looked at, jobs in the order of their own table.
     of_jobs: RefCell<BTreeMap<TableName, Rc<Vec<Vec<usize>>>>>,
-    /// Rows of each history, by job, quantity and position.
-    histories: OnceCell<HashMap<(u64, String, u64), Vec<usize>>>,
+    /// Rows of each history.
+    histories: OnceCell<HashMap<HistoryKey, Vec<usize>>>,
     /// What is to be said of the quantities evaluated since the last look.
     notes: RefCell<BTreeSet<String>>,
 }
@@ -194,34 +194,42 @@ impl<'a> Evaluator<'a> {
             return Err(NoValue::SeveralJobs);
         };
         let job = self.results.jobs().number("job", row).unwrap_or_default() as u64;
-        let history = self.recorded(job, &asked.quantity, asked.position as u64)?;
+        let along = match (asked.position, asked.x_m) {
+            (Some(position), _) => Along::Position(position),
+            (None, x_m) => Along::X(x_m.unwrap_or_default()),
+        };
+        let history = self.recorded(job, asked, along)?;
         if !asked.needs_moments() {
             return history.reduced(&Moments::default(), asked.reduce);
         }
-        let moments = moments_of(self.results, row, asked.position)?;
+        let moments = moments_of(self.results, row, along)?;
         history
             .part(&moments, asked.from, asked.to)
             .and_then(|part| part.reduced(&moments, asked.reduce))
     }
 
     /// A recorded history.
-    fn recorded(&self, job: u64, quantity: &str, position: u64) -> Result<ValueHistory, NoValue> {
+    fn recorded(&self, job: u64, asked: &HistoryQuantity, along: Along) -> Result<ValueHistory, NoValue> {
         let table = self.table(TableName::Histories)?;
         let index = self.histories.get_or_init(|| {
-            let mut index: HashMap<(u64, String, u64), Vec<usize>> = HashMap::new();
+            let mut index: HashMap<HistoryKey, Vec<usize>> = HashMap::new();
             for row in 0..table.rows() {
-                let number = |column| table.number(column, row).unwrap_or_default() as u64;
+                let number = |column| table.number(column, row);
+                let job = number("job").unwrap_or_default() as u64;
                 let quantity = table.cell("quantity", row).text();
-                index
-                    .entry((number("job"), quantity, number("position")))
-                    .or_default()
-                    .push(row);
+                let place = ["position", "x_m", "y_m"].map(|column| number(column).map(place_bits));
+                index.entry((job, quantity, place)).or_default().push(row);
             }
             index
         });
-        let Some(rows) = index.get(&(job, quantity.to_owned(), position)) else {
-            let quantity = quantity.to_owned();
-            return Err(NoValue::NoHistory { quantity, position });
+        let place = [asked.position.map(|position| position as f64), asked.x_m, asked.y_m];
+        let key = (job, asked.quantity.clone(), place.map(|of| of.map(place_bits)));
+        let Some(rows) = index.get(&key) else {
+            let across = asked.y_m.map(|y_m| format!(" and y {y_m} m")).unwrap_or_default();
+            return Err(NoValue::NoHistory {
+                quantity: asked.quantity.clone(),
+                place: format!("{along}{across}"),
+            });
         };
         let point = |&row: &usize| table.number("time_s", row).zip(table.number("value", row));
         match rows.iter().map(point).collect::<Option<Vec<(f64, f64)>>>() {
@@ -232,6 +240,14 @@ impl<'a> Evaluator<'a> {
             None => Err(NoValue::BrokenHistory),
         }
     }
+}
+
+/// A history's job, quantity and place: its position or joint, its x and its y, by their bits.
+type HistoryKey = (u64, String, [Option<u64>; 3]);
+
+/// The bits of a place; zero has one sign.
+fn place_bits(place: f64) -> u64 {
+    (place + 0.0).to_bits()
 }
 
 /// A quantity of several parts, from their values.

@@ -20,22 +20,40 @@ pub(super) struct ValueHistory {
     pub values: Vec<f64>,
 }
 
-/// The moments of a crossing that matter at one position.
+/// The moments of a crossing that matter at one place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Moments {
     /// Speed `[m/s]`.
     pub speed_m_s: f64,
-    /// When the vehicle's centre is at the position `[s]`.
+    /// When the vehicle's centre is there `[s]`.
     pub arrival_s: f64,
     /// When the vehicle's last point leaves the bridge `[s]`.
     pub leaving_s: f64,
+}
+
+/// Where along the bridge a history is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Along {
+    /// At a position or joint.
+    Position(usize),
+    /// At a place `[m]`.
+    X(f64),
+}
+
+impl std::fmt::Display for Along {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Position(position) => write!(f, "{position}"),
+            Self::X(x_m) => write!(f, "{x_m} m"),
+        }
+    }
 }
 
 /// The moments of the crossing in a row of the table of jobs.
 ///
 /// # Errors
 /// [`NoValue`] where the job is no crossing, or its documents are not read any more.
-pub fn moments_of(results: &Results, row: usize, position: usize) -> Result<Moments, NoValue> {
+pub fn moments_of(results: &Results, row: usize, along: Along) -> Result<Moments, NoValue> {
     let speed_m_s = results.jobs().number("speed_m_s", row).ok_or(NoValue::NoSpeed)?;
     let file = Path::new("results");
     let documents = results.documents.bridge_and_vehicle();
@@ -52,9 +70,13 @@ pub fn moments_of(results: &Results, row: usize, position: usize) -> Result<Mome
     let vehicle = filled_vehicle(&vehicle)
         .and_then(|vehicle| vehicle.check(bridge.module.breadth_m))
         .map_err(|e| Refusal::of(file, "vehicle", e))?;
+    let x_m = match along {
+        Along::Position(position) => bridge.position_x_m(position),
+        Along::X(x_m) => x_m,
+    };
     Ok(Moments {
         speed_m_s,
-        arrival_s: (bridge.position_x_m(position) - vehicle.centre_ahead_m()) / speed_m_s,
+        arrival_s: (x_m - vehicle.centre_ahead_m()) / speed_m_s,
         leaving_s: (bridge.length_m() + vehicle.behind_m()) / speed_m_s,
     })
 }

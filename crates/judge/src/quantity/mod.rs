@@ -20,7 +20,7 @@ mod spec;
 
 pub(crate) use check_input::CheckInput;
 pub(crate) use evaluator::Evaluator;
-pub use history::{Moments, moments_of};
+pub use history::{Along, Moments, moments_of};
 pub use no_value::NoValue;
 pub(crate) use place::Place;
 pub use spec::{Edge, HistoryQuantity, HistoryReduction, Quantity, Reduction, SelectQuantity, Tolerance};

@@ -64,12 +64,12 @@ pub enum NoValue {
         x: f64,
     },
     /// No such history was recorded.
-    #[error("no history of {quantity} at {position} was recorded")]
+    #[error("no history of {quantity} at {place} was recorded")]
     NoHistory {
         /// What it would be of.
         quantity: String,
-        /// Position or joint.
-        position: u64,
+        /// Position, joint or place.
+        place: String,
     },
     /// A history has empty values.
     #[error("a history with empty values")]

@@ -2,7 +2,7 @@
 //!
 //! Knows where in the reference a check stands. Does not know results.
 
-use super::spec::{Quantity, Tolerance};
+use super::spec::{HistoryQuantity, Quantity, Tolerance};
 use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
 use pontoon_results::QUANTITIES;
 use std::path::Path;
@@ -51,6 +51,26 @@ impl Place<'_> {
         Err(self.refuse(key, "numbers alone", "a select or a history somewhere in it"))
     }
 
+    /// Refuses a history that is nowhere or at two places, and one of a pin that says not which.
+    fn history_place(&self, key: &str, history: &HistoryQuantity) -> Result<(), Refusal> {
+        let refuse = |part: &str, found: &str, allowed: &str, kind: RefusalKind| {
+            let refused = self.refuse(&format!("{key}.history{part}"), found, allowed);
+            Err(refused.because(kind))
+        };
+        match (history.position, history.x_m) {
+            (None, None) => return refuse("", "no place", "position, or x_m of a place", RefusalKind::Missing),
+            (Some(_), Some(_)) => {
+                return refuse(".x_m", "a position beside it", "position or x_m", RefusalKind::Conflict);
+            }
+            _ => {}
+        }
+        match (history.quantity.starts_with("pin_"), history.y_m) {
+            (true, None) => refuse("", "no y_m", "y_m, the place of the pin across", RefusalKind::Missing),
+            (false, Some(_)) => refuse(".y_m", "a place across", "none but of pins", RefusalKind::Misplaced),
+            _ => Ok(()),
+        }
+    }
+
     fn part(&self, key: &str, quantity: &Quantity, along: Option<&str>) -> Result<(), Refusal> {
         for (name, part) in quantity.parts() {
             self.part(&format!("{key}.{name}"), part, along)?;
@@ -65,6 +85,7 @@ impl Place<'_> {
                     let key = format!("{}.{key}.history.quantity", self.key);
                     return Err(Refusal::unknown(self.file, key, &history.quantity, &known));
                 }
+                self.history_place(key, history)?;
                 Some(("history", &history.filter))
             }
             Quantity::Select(select) => Some(("select", &select.filter)),

@@ -64,10 +64,17 @@ pub enum Reduction {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HistoryQuantity {
-    /// `deflection_m` or `force_n`.
+    /// What it is of, as `deflection_m` or `force_n`.
     pub quantity: String,
     /// Position or joint number.
-    pub position: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<usize>,
+    /// Place of a deflection in place of a position `[m]`, of `record.places_x_m`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_m: Option<f64>,
+    /// Place across of a pin `[m]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_m: Option<f64>,
     /// Which job, beside the check's own rows; keys are columns of the table of jobs.
     #[serde(default, rename = "where", skip_serializing_if = "Filter::is_empty")]
     pub filter: Filter,

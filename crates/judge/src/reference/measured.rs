@@ -5,7 +5,7 @@
 
 use pontoon_plan::input::filter::Filter;
 use pontoon_plan::input::{Cell, FoundValue, Refusal, RefusalKind};
-use pontoon_results::{Column, QUANTITIES, TableName};
+use pontoon_results::{Column, TableName};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -70,10 +70,13 @@ impl Against {
     }
 }
 
+/// The quantities whose histories figures draw.
+const DRAWN_HISTORIES: [&str; 2] = ["deflection_m", "force_n"];
+
 /// What of a table can be drawn: columns, of histories their quantities.
 fn drawn(table: TableName) -> Vec<String> {
     match table {
-        TableName::Histories => QUANTITIES.map(str::to_owned).to_vec(),
+        TableName::Histories => DRAWN_HISTORIES.map(str::to_owned).to_vec(),
         table => {
             let drawn = Column::of_table(table).filter(|column| column.drawn);
             drawn.map(|column| column.name.to_owned()).collect()
@@ -87,7 +90,12 @@ fn against(table: TableName) -> &'static [Against] {
         TableName::Jobs | TableName::Connectors => &[Against::Speed],
         TableName::Positions => &[Against::X, Against::Speed],
         TableName::Histories => &[Against::Time],
-        TableName::Modes | TableName::Joints | TableName::Pins => &[],
+        TableName::Modes
+        | TableName::Joints
+        | TableName::Pins
+        | TableName::Sections
+        | TableName::Places
+        | TableName::AtPeaks => &[],
     }
 }
 
@@ -95,10 +103,10 @@ impl MeasuredSpec {
     /// The column of `where` that fixes the place; none where the points have their own or are the whole bridge's.
     pub fn place(&self) -> Option<&'static str> {
         match (self.of.table, self.against) {
-            (TableName::Positions, Against::X) | (TableName::Jobs | TableName::Modes | TableName::Joints, _) => None,
-            (TableName::Pins, _) => Some("joint"),
+            (TableName::Positions, Against::X) => None,
             (TableName::Positions | TableName::Histories, _) => Some("position"),
             (TableName::Connectors, _) => Some("joint"),
+            _ => None,
         }
     }
 

@@ -7,7 +7,7 @@ use super::seen::SeenJobs;
 use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
-use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study, check_histories};
+use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{InvalidInput, bound};
 use std::collections::HashSet;
@@ -57,7 +57,7 @@ impl Jobs<'_> {
         let bridge = self.documents.bridge(self.study, point)?;
         let vehicle = self.documents.vehicle(self.study, point, &bridge)?;
         let analysis = self.documents.analysis(self.study, point)?;
-        check_histories(&self.study.file, &self.study.record.histories, bridge.design.modules)?;
+        self.study.record.check(&self.study.file, &bridge.design)?;
         let short = Short {
             study: self.study,
             point,
@@ -95,7 +95,7 @@ impl Jobs<'_> {
             connection,
             load_n,
             worn,
-            pins: self.study.record.pins,
+            record: Arc::clone(&self.study.record),
             task,
         };
         match job.checked_laws() {

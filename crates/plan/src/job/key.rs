@@ -74,9 +74,6 @@ pub(super) fn key_of(job: &Job) -> JobKey {
     let mut number = |x: f64| {
         hasher.update(&(x + 0.0).to_bits().to_le_bytes());
     };
-    if job.pins {
-        number(-2.0);
-    }
     number(job.load_n);
     let (kind, of_kind) = match job.task {
         Task::Crossing { speed_m_s } => (0.0, speed_m_s),

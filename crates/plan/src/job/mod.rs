@@ -29,7 +29,7 @@ pub use shard::{NoShard, Shard};
 
 use crate::design::{JobAxis, Root, Varies};
 use crate::input::Cell;
-use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, Solver, VerifySpec};
+use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, RecordSpec, Solver, VerifySpec};
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::JointGaps;
@@ -56,8 +56,8 @@ pub struct Job {
     pub load_n: f64,
     /// Wear of its joints; none where gaps have no meaning or do not scatter.
     pub worn: Option<Worn>,
-    /// Whether forces of pins are recorded.
-    pub pins: bool,
+    /// What is kept of it beyond its peaks.
+    pub record: Arc<RecordSpec>,
     /// What is asked.
     pub task: Task,
 }

@@ -5,19 +5,19 @@
 //! | `raw` | a study as its file writes it |
 //! | `analysis` | what is asked, checked, with its defaults |
 //! | `study` | a study opened: its files read, its own numbers checked |
+//! | `record` | what is kept of each job beyond its peaks |
 //! | `wear` | how the gaps of joints scatter |
 //!
 //! Knows what a person may write and where it is relative to. Does not know what a job is or how it runs.
 
 mod analysis;
 mod raw;
+mod record;
 mod study;
 mod wear;
 
 pub use analysis::{Analysis, CrossingAnalysis, ModesAnalysis, Solver, StaticAnalysis, TimeStep};
-pub use raw::{
-    AnalysisSpec, DampingSpec, HistoriesSpec, Kind, ModelSpec, RecordSpec, SolverSpec, StudySpec, VerifySpec,
-};
-pub(crate) use study::check_histories;
+pub use raw::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, StudySpec, VerifySpec};
+pub use record::{HistoriesSpec, PeakAt, PeakColumn, PeakSpec, RecordSpec};
 pub use study::{BridgeFile, Study, filled_vehicle, read_bridge};
 pub use wear::{ScatterSpec, WearSpec};

@@ -3,10 +3,10 @@
 //! Knows what a person may write. Does not know ranges or which keys go together: `analysis` and `study` make of this what a
 //! run is asked.
 
+use super::record::RecordSpec;
 use super::wear::WearSpec;
 use crate::design::Design;
 use pontoon_core::bridge::Model;
-use pontoon_core::response::Record;
 use pontoon_core::vehicle::VehicleDesign;
 use schemars::JsonSchema;
 use serde::de::{Error, Unexpected};
@@ -40,69 +40,6 @@ pub struct StudySpec {
     /// What to keep of each job beyond its peaks.
     #[serde(default)]
     pub record: RecordSpec,
-}
-
-/// What to keep of each job beyond its peaks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RecordSpec {
-    /// Histories of crossings.
-    #[serde(default)]
-    pub histories: HistoriesSpec,
-    /// Whether to write the table of positions.
-    #[serde(default = "yes")]
-    pub positions: bool,
-    /// Whether to write the table of connectors.
-    #[serde(default = "yes")]
-    pub connectors: bool,
-    /// Whether to write the table of pins: a step then costs more.
-    #[serde(default)]
-    pub pins: bool,
-}
-
-fn yes() -> bool {
-    true
-}
-
-impl Default for RecordSpec {
-    fn default() -> Self {
-        Self {
-            histories: HistoriesSpec::default(),
-            positions: true,
-            connectors: true,
-            pins: false,
-        }
-    }
-}
-
-impl RecordSpec {
-    /// What is recorded of a crossing, as the mechanics takes it.
-    pub fn of_crossing(&self) -> Record {
-        Record {
-            positions: self.histories.positions.clone(),
-            joints: self.histories.joints.clone(),
-            pins: self.pins,
-        }
-    }
-}
-
-/// Whose histories to keep.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HistoriesSpec {
-    /// Position numbers, 1 to modules + 1: deflection.
-    #[serde(default)]
-    pub positions: Vec<usize>,
-    /// Joint numbers, 2 to modules: force.
-    #[serde(default)]
-    pub joints: Vec<usize>,
-}
-
-impl HistoriesSpec {
-    /// Whether any history is asked for.
-    pub fn asked(&self) -> bool {
-        !(self.positions.is_empty() && self.joints.is_empty())
-    }
 }
 
 /// What is asked of the bridge.

@@ -3,7 +3,8 @@
 //! Knows files. Does not know jobs: what holds for a single point is checked where jobs are made.
 
 use super::analysis::Analysis;
-use super::raw::{AnalysisSpec, HistoriesSpec, Kind, RecordSpec, StudySpec};
+use super::raw::{AnalysisSpec, Kind, StudySpec};
+use super::record::RecordSpec;
 use super::wear::WearSpec;
 use crate::design::{Block, Goes, JobAxis, NAMED_AXES, Varies};
 use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
@@ -11,6 +12,7 @@ use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::vehicle::VehicleDesign;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A bridge file, read and checked.
 #[derive(Debug, Clone)]
@@ -62,7 +64,7 @@ pub struct Study {
     /// How the gaps of joints scatter before axes, where they do.
     pub wear: Option<WearSpec>,
     /// What to keep of each job beyond its peaks.
-    pub record: RecordSpec,
+    pub record: Arc<RecordSpec>,
     /// Seeds of its designs, in the order of the file.
     pub seeds: Vec<u64>,
     /// Its bridge before axes.
@@ -113,7 +115,7 @@ impl Study {
         let vehicle = filled_vehicle(&spec.vehicle).and_then(|v| v.check(bridge.design.module.breadth_m).map(|_| v));
         let vehicle = vehicle.map_err(|e| Refusal::of(&file, "vehicle", e))?;
         let analysis = Analysis::of(&spec.analysis).map_err(|e| Refusal::of(&file, "analysis", e))?;
-        check_histories(&file, &spec.record.histories, bridge.design.modules)?;
+        spec.record.check(&file, &bridge.design)?;
         if let Some(wear) = &spec.wear {
             wear.check().map_err(|e| Refusal::of(&file, "wear", e))?;
             if analysis.kind() == Kind::Modes {
@@ -145,7 +147,7 @@ impl Study {
             analysis_written: spec.analysis,
             analysis,
             wear: spec.wear,
-            record: spec.record,
+            record: Arc::new(spec.record),
             bridge,
             blocks,
         })
@@ -236,30 +238,6 @@ fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().to_ascii_lowercase();
     let numbered = stem.strip_suffix(|c: char| ('1'..='9').contains(&c));
     DEVICES[..4].contains(&stem.as_str()) || numbered.is_some_and(|stem| DEVICES[4..].contains(&stem))
-}
-
-/// Refuses histories of what the bridge does not have, and the same one twice.
-pub(crate) fn check_histories(file: &Path, histories: &HistoriesSpec, modules: usize) -> Result<(), Refusal> {
-    for (of, list, from, to) in [
-        ("positions", &histories.positions, 1, modules + 1),
-        ("joints", &histories.joints, 2, modules),
-    ] {
-        for (i, &number) in list.iter().enumerate() {
-            let key = format!("record.histories.{of}[{i}]");
-            if !(from..=to).contains(&number) {
-                let allowed = if from > to {
-                    "none: the bridge has no joint".to_owned()
-                } else {
-                    format!("{from} to {to}")
-                };
-                return Err(Refusal::new(file, key, number, allowed));
-            }
-            if list[..i].contains(&number) {
-                return Err(Refusal::new(file, key, number, "each number once").because(RefusalKind::Repeated));
-            }
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

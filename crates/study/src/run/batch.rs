@@ -96,7 +96,7 @@ fn records(jobs: &[(&Study, &Job)], places: &[usize], models: &SharedModels) -> 
     let lane_batch: Vec<(CrossingJob<'_>, Record)> = of
         .iter()
         .filter(|(_, job)| job.by_operator())
-        .filter_map(|(study, job)| Some((job.as_crossing()?, histories(study))))
+        .filter_map(|(study, job)| Some((job.as_crossing()?, histories(study, job))))
         .collect();
     let solved: Vec<JobResult> = if lane_batch.len() == of.len() {
         by_operator(&lane_batch, models)
@@ -127,7 +127,7 @@ fn by_operator(lane_batch: &[(CrossingJob<'_>, Record)], models: &SharedModels) 
 /// A job that shares nothing of its solution with others.
 fn alone(study: &Study, job: &Job, models: &SharedModels) -> JobResult {
     match (job.task, job.as_crossing(), job.as_modes()) {
-        (Task::Crossing { .. }, Some(crossing), _) => crossing::solve(&crossing, histories(study), models),
+        (Task::Crossing { .. }, Some(crossing), _) => crossing::solve(&crossing, histories(study, job), models),
         (Task::Static(load), ..) => statics::solve(job, load, models),
         (Task::Modes, _, Some(asked)) => modes::solve(job, asked, models),
         _ => Err(JobFailure::of_program("a task of another analysis")),
@@ -138,7 +138,7 @@ fn alone(study: &Study, job: &Job, models: &SharedModels) -> JobResult {
 fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) -> JobRecord {
     let solved = match (solved, job.as_crossing()) {
         (Err(failed), Some(crossing)) if failed.half_step_may_help => {
-            guard::guarded(|| crossing::again_at_half_step(&crossing, histories(study), models, &failed))
+            guard::guarded(|| crossing::again_at_half_step(&crossing, histories(study, job), models, &failed))
         }
         (solved, _) => solved,
     };
@@ -160,6 +160,6 @@ fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) 
     record
 }
 
-fn histories(study: &Study) -> Record {
-    study.record.of_crossing()
+fn histories(study: &Study, job: &Job) -> Record {
+    study.record.of_crossing(&job.bridge.design)
 }

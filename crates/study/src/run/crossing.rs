@@ -4,17 +4,22 @@
 //! columns, or how a crossing is stepped.
 
 use super::failure::{JobFailure, too_many_steps};
+use super::quantity_words::quantity_word;
 use super::retry::RETRY_STEP_SHARE;
 use super::shared_models::SharedModels;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
+use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::{
-    CrossingResponse, ForcePeaks, JointPeaks, Peak, PinPeaks, PositionPeaks, Quantity, Record,
+    AtPeak, CrossingResponse, ForcePeaks, JointPeaks, Peak, PinPeaks, PlacePeaks, PositionPeaks, Quantity, Record,
+    Recorded, SectionPeaks, Subject,
 };
 use pontoon_core::vehicle::Vehicle;
-use pontoon_plan::job::CrossingJob;
+use pontoon_plan::job::{CrossingJob, Job};
+use pontoon_plan::study_file::PeakColumn;
 use pontoon_results::{
-    ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, JobRecord, PinRow, PositionRow, Summary,
+    AtPeakRow, ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, HistorySeries, JobRecord, NumberPlace, PinRow,
+    PlaceRow, PositionRow, SectionRow, Summary,
 };
 
 /// A job's record or why it failed.
@@ -178,7 +183,7 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
 fn recorded(crossing: &CrossingJob<'_>, response: CrossingResponse, models: &SharedModels) -> JobResult {
     let job = crossing.job;
     let static_peaks_m = models.creeping_peaks_m(job)?;
-    let mut record = rows(job.number, response, static_peaks_m.as_deref().map(Vec::as_slice));
+    let mut record = rows(job, response, static_peaks_m.as_deref().map(Vec::as_slice));
     record.summary.step_warning = crossing.is_step_long();
     Ok(record)
 }
@@ -227,13 +232,18 @@ fn pin_row(peaks: &PinPeaks) -> PinRow {
     }
 }
 
-fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
+fn rows(job: &Job, mut response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
     let positions: Vec<PositionRow> = (0..)
         .zip(&response.positions)
         .map(|(i, peaks): (usize, _)| position_row(peaks, static_peaks_m.map(|of| of[i])))
         .collect();
     let connectors: Vec<ConnectorRow> = response.joints.iter().flat_map(joint_rows).collect();
-    let pins = response.pins.iter().map(pin_row).collect();
+    let pins: Vec<PinRow> = response.pins.iter().map(pin_row).collect();
+    let sections: Vec<SectionRow> = response.recorded.sections.iter().map(section_row).collect();
+    let named = Named {
+        design: &job.bridge.design,
+        places_x_m: &job.record.places_x_m,
+    };
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
     let mut summary = Summary {
         peak_edge_deflection_m: Some(response.peak_edge_deflection_m),
@@ -250,33 +260,98 @@ fn rows(job: usize, response: CrossingResponse, static_peaks_m: Option<&[f64]>) 
         ..Summary::default()
     };
     summary.take_peaks(&positions, &connectors);
+    summary.take_joint_peaks(&pins, &sections);
     summary.dynamic_amplification = summary
         .peak_deflection_m
         .zip(static_peak_m.filter(|&peak| peak > 0.0))
         .map(|(moving, creeping)| moving / creeping);
+    let recorded = &mut response.recorded;
     JobRecord {
-        job,
+        job: job.number,
         failure: None,
         retried: None,
         summary,
         positions,
         connectors,
-        histories: history_rows(response),
+        places: recorded.places.iter().map(place_row).collect(),
+        at_peaks: recorded.at_peaks.iter().flat_map(|at| named.at_peak(at)).collect(),
+        histories: named.histories(recorded),
         modes: Vec::new(),
         pins,
+        sections,
     }
 }
 
-fn history_rows(response: CrossingResponse) -> HistoryRows {
-    let series = response.histories.into_iter().map(|history| {
-        let quantity = match history.quantity {
-            Quantity::Deflection => "deflection_m",
-            Quantity::Force => "force_n",
+/// What rows tell of the numbers of a bridge's response.
+struct Named<'a> {
+    design: &'a BridgeDesign,
+    places_x_m: &'a [f64],
+}
+
+impl Named<'_> {
+    fn place(&self, subject: Subject) -> NumberPlace {
+        let (x_m, y_m) = match subject {
+            Subject::Place(index) => (self.places_x_m.get(index).copied(), None),
+            Subject::Connector { index, .. } => (None, self.design.connectors.y_m.get(index).copied()),
+            Subject::Pin { joint, index, .. } => (None, self.design.hinges_of(joint).y_m.get(index).copied()),
+            Subject::Position(_) | Subject::Joint(_) | Subject::Section { .. } => (None, None),
         };
-        (quantity.to_owned(), history.position, history.values)
-    });
-    HistoryRows {
-        time_s: response.history_time_s,
-        series: series.collect(),
+        NumberPlace {
+            quantity: quantity_word(subject.quantity()).to_owned(),
+            position: subject.position(),
+            x_m,
+            y_m,
+        }
+    }
+
+    fn histories(&self, recorded: &mut Recorded) -> HistoryRows {
+        let histories = std::mem::take(&mut recorded.histories);
+        let any_of_balance = histories.iter().any(|history| history.subject.is_of_balance());
+        let series = histories.into_iter().map(|history| HistorySeries {
+            of: self.place(history.subject),
+            of_balance: history.subject.is_of_balance(),
+            values: history.values,
+        });
+        HistoryRows {
+            series: series.collect(),
+            time_s: std::mem::take(&mut recorded.history_time_s),
+            balance_time_s: if any_of_balance {
+                std::mem::take(&mut recorded.balance_time_s)
+            } else {
+                Vec::new()
+            },
+        }
+    }
+
+    fn at_peak(&self, at: &AtPeak) -> Vec<AtPeakRow> {
+        let row = |&(subject, value): &(Subject, f64)| AtPeakRow {
+            at_peak_of: PeakColumn::word_of(at.peak.of).to_owned(),
+            peak_at: at.peak.number,
+            time_s: if subject.is_of_balance() {
+                at.balance_s
+            } else {
+                at.time_s
+            },
+            of: self.place(subject),
+            value: value + 0.0,
+        };
+        at.numbers.iter().map(row).collect()
+    }
+}
+
+fn section_row(peaks: &SectionPeaks) -> SectionRow {
+    SectionRow {
+        joint: peaks.joint,
+        quantity: quantity_word(Quantity::Section(peaks.of)).to_owned(),
+        sides: [peaks.peaks.compression, peaks.peaks.tension].map(extreme),
+    }
+}
+
+fn place_row(peaks: &PlacePeaks) -> PlaceRow {
+    PlaceRow {
+        x_m: peaks.x_m,
+        deflection: extreme(peaks.deflection),
+        uplift: extreme(peaks.uplift),
+        static_deflection_m: None,
     }
 }

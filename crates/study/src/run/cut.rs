@@ -3,6 +3,7 @@
 //! Knows how many rows a job leaves. Does not know threads: the cuts depend on the study and its jobs alone, as the row
 //! groups of the tables follow them.
 
+use pontoon_core::response::SECTIONS;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
 
@@ -55,6 +56,12 @@ fn rows(study: &Study, job: &Job) -> usize {
     } else {
         0
     };
-    let series = record.histories.positions.len() + record.histories.joints.len();
-    1 + positions + of_joint * design.modules.saturating_sub(1) + series * job.steps()
+    let joints = design.modules.saturating_sub(1);
+    let pins = if record.pins { 1 + design.hinges.y_m.len() } else { 0 };
+    let sections = if record.sections { SECTIONS } else { 0 };
+    let places = record.places_x_m.len();
+    // at a peak all of it and each direction of a pin
+    let at_peaks = record.at_peak_of.len() * (design.positions() + places + (of_joint + 3 * pins + sections) * joints);
+    let series = record.histories.series(design) * job.steps();
+    1 + positions + places + (of_joint + pins + sections) * joints + at_peaks + series
 }

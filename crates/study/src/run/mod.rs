@@ -27,6 +27,7 @@ mod monitor;
 mod pool;
 mod probe;
 mod progress;
+mod quantity_words;
 mod resume_index;
 mod retry;
 pub mod self_test;
@@ -51,12 +52,13 @@ use batch::NoObserver;
 use monitor::Monitor;
 use pontoon_journal::{JournalIndex, PreparationKey};
 use pontoon_plan::job::Job;
-use pontoon_plan::study_file::Study;
+use pontoon_plan::study_file::{HistoriesSpec, Study};
 use pontoon_results::{Failure, Failures, JobRecord, Outcome, Preparation, Verification};
 pub(crate) use shared_models::preparation_key_of;
 use shared_models::{SharedModels, by_bridge};
 use std::collections::BTreeMap;
 use std::error::Error as StdError;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The instructions that crossings by the operator run on here.
@@ -268,8 +270,13 @@ pub fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: imp
         let modules = job.bridge.design.modules;
         whole.entry(modules).or_insert_with(|| {
             let mut study = study.clone();
-            study.record.histories.positions = (1..=modules + 1).collect();
-            study.record.histories.joints = (2..=modules).collect();
+            let record = Arc::make_mut(&mut study.record);
+            record.histories = HistoriesSpec {
+                positions: (1..=modules + 1).collect(),
+                joints: (2..=modules).collect(),
+                ..HistoriesSpec::default()
+            };
+            record.at_peak_of.clear();
             study
         });
     }

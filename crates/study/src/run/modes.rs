@@ -8,7 +8,7 @@ use crate::modes::rows;
 use pontoon_core::bridge::Ends;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::ModesAnalysis;
-use pontoon_results::{HistoryRows, JobRecord, Summary};
+use pontoon_results::{JobRecord, Summary};
 
 /// Finds the modes of a job.
 pub(super) fn solve(job: &Job, asked: &ModesAnalysis, models: &SharedModels) -> Result<JobRecord, JobFailure> {
@@ -20,14 +20,9 @@ pub(super) fn solve(job: &Job, asked: &ModesAnalysis, models: &SharedModels) -> 
         ..Summary::default()
     };
     Ok(JobRecord {
-        pins: Vec::new(),
         job: job.number,
-        failure: None,
-        retried: None,
         summary,
-        positions: Vec::new(),
-        connectors: Vec::new(),
-        histories: HistoryRows::default(),
         modes,
+        ..JobRecord::default()
     })
 }

@@ -12,13 +12,14 @@ use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, Operato
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
-use pontoon_core::operator::{BridgeOperator, Pinned};
+use pontoon_core::operator::{BridgeOperator, Followed};
 use pontoon_core::stop::Stop;
 use pontoon_journal::PreparationKey;
 use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -37,18 +38,31 @@ type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, Option<[u8; 32]>, u
 pub(super) struct OperatorKey {
     bridge: BridgeKey,
     tolerance: u64,
-    pinned: Pinned,
+    pins: bool,
+    /// Places that are followed, by their bits.
+    places: Vec<u64>,
 }
 
 impl OperatorKey {
     /// What its file in the cache is named by.
     fn name(&self) -> String {
         let (model, structure) = &self.bridge;
-        let pins = match self.pinned {
-            Pinned::Yes => " pins",
-            Pinned::No => "",
-        };
-        Cache::name(&format!("{} {structure} {:016x}{pins}", word(*model), self.tolerance))
+        let mut name = format!("{} {structure} {:016x}", word(*model), self.tolerance);
+        if self.pins {
+            name.push_str(" pins");
+        }
+        for place in &self.places {
+            let _ = write!(name, " {place:016x}");
+        }
+        Cache::name(&name)
+    }
+
+    /// What it follows.
+    fn followed(&self) -> Followed {
+        Followed {
+            pins: self.pins,
+            places_x_m: self.places.iter().copied().map(f64::from_bits).collect(),
+        }
     }
 }
 
@@ -231,7 +245,7 @@ impl SharedModels {
         };
         made.built.fetch_add(1, Ordering::Relaxed);
         let asked = || cancel.is_asked();
-        let operator = BridgeOperator::new_unless(&bridge, tolerance, key.pinned, Stop::when(&asked))?;
+        let operator = BridgeOperator::new_unless(&bridge, tolerance, &key.followed(), Stop::when(&asked))?;
         if let Some(cache) = cache {
             // a cache that cannot be written costs time at the next run, and nothing else
             let _ = cache.write(&name, &operator);
@@ -400,6 +414,7 @@ pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
         own_laws: job.own_laws(),
         load_n: job.load_n,
         load_x_m,
+        places_x_m: job.record.places_x_m.clone(),
     }
 }
 
@@ -508,10 +523,12 @@ fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
 }
 
 fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
+    let followed = crossing.job.record.followed();
     Some(OperatorKey {
         bridge: bridge_key(crossing.job),
         tolerance: crossing.operator_tolerance()?.to_bits(),
-        pinned: if crossing.job.pins { Pinned::Yes } else { Pinned::No },
+        pins: followed.pins,
+        places: followed.places_x_m.into_iter().map(f64::to_bits).collect(),
     })
 }
 

@@ -3,10 +3,11 @@
 //! Knows which number of a response fills which field of a record. Does not know columns, or how a case is solved.
 
 use super::failure::JobFailure;
+use super::quantity_words::quantity_word;
 use super::shared_models::{SharedModels, static_case};
-use pontoon_core::response::StaticResponse;
+use pontoon_core::response::{Quantity, SECTIONS, Section, StaticResponse, resultant_n};
 use pontoon_plan::job::{Job, StandingLoad};
-use pontoon_results::{ConnectorRow, Extreme, HistoryRows, JobRecord, PinRow, PositionRow, Summary};
+use pontoon_results::{ConnectorRow, Extreme, JobRecord, PinRow, PlaceRow, PositionRow, SectionRow, Summary};
 
 /// Solves the static case of a job.
 pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
@@ -48,20 +49,26 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         ..Summary::default()
     };
     summary.take_peaks(&positions, &connectors);
+    let pins = if job.record.pins {
+        pin_rows(job, &response.pins_n)
+    } else {
+        Vec::new()
+    };
+    let sections = if job.record.sections {
+        section_rows(&response.sections)
+    } else {
+        Vec::new()
+    };
+    summary.take_joint_peaks(&pins, &sections);
     JobRecord {
         job: job.number,
-        failure: None,
-        retried: None,
         summary,
         positions,
         connectors,
-        histories: HistoryRows::default(),
-        modes: Vec::new(),
-        pins: if job.pins {
-            pin_rows(job, &response.pins_n)
-        } else {
-            Vec::new()
-        },
+        pins,
+        sections,
+        places: place_rows(job, &response.places_m),
+        ..JobRecord::default()
     }
 }
 
@@ -81,11 +88,42 @@ fn pin_rows(job: &Job, forces_n: &[[f64; 3]]) -> Vec<PinRow> {
 }
 
 fn pin_row(joint: usize, y_m: Option<f64>, force_n: [f64; 3]) -> PinRow {
-    let sides = |force: f64| [0.0 - force, force].map(|side| Extreme::timeless(side.max(0.0)));
     PinRow {
         joint,
         y_m,
         components: force_n.map(sides),
-        resultant: Extreme::timeless(force_n.iter().map(|f| f * f).sum::<f64>().sqrt()),
+        resultant: Extreme::timeless(resultant_n(force_n)),
     }
+}
+
+/// The rows of angles and section forces, joint after joint.
+fn section_rows(sections: &[[f64; SECTIONS]]) -> Vec<SectionRow> {
+    let row = |joint: usize, (of, value): (Section, f64)| SectionRow {
+        joint,
+        quantity: quantity_word(Quantity::Section(of)).to_owned(),
+        sides: sides(value),
+    };
+    let joints = (2..).zip(sections);
+    let of_joint = |(joint, values): (usize, &[f64; SECTIONS])| {
+        Section::ALL.into_iter().zip(*values).map(move |of| row(joint, of))
+    };
+    joints.flat_map(of_joint).collect()
+}
+
+fn place_rows(job: &Job, places_m: &[f64]) -> Vec<PlaceRow> {
+    let row = |(&x_m, &deflection_m): (&f64, &f64)| {
+        let [uplift, deflection] = sides(deflection_m);
+        PlaceRow {
+            x_m,
+            deflection,
+            uplift,
+            static_deflection_m: Some(deflection_m),
+        }
+    };
+    job.record.places_x_m.iter().zip(places_m).map(row).collect()
+}
+
+/// A static number against its sense and with it.
+fn sides(number: f64) -> [Extreme; 2] {
+    [0.0 - number, number].map(|side| Extreme::timeless(side.max(0.0)))
 }

@@ -24,7 +24,7 @@ pub(super) fn binding(study: &Study, shard: Option<Shard>) -> Binding {
         bridge: to_value(&study.bridge.design.without_words()),
         vehicle,
         analysis: to_value(&study.analysis.written()),
-        record: to_value(&study.record),
+        record: to_value(&*study.record),
     }
 }
 

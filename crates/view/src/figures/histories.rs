@@ -8,7 +8,7 @@ use super::marks::Chart;
 use super::panels::{Split, by_speed, caption};
 use super::series_group::series_groups;
 use crate::thinning::thinned;
-use pontoon_judge::quantity::moments_of;
+use pontoon_judge::quantity::{Along, moments_of};
 use pontoon_results::{Table, TableName};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
@@ -152,7 +152,7 @@ fn points(table: &Table, rows: &Range<usize>, y: FigureMeasure) -> Vec<[f64; 2]>
 /// When the vehicle's centre is at a position, where it is so for all jobs at once.
 fn arrival(context: &FigureContext<'_>, rows: &[usize], position: u32) -> Vec<FigureMoment> {
     let at = |row: &usize| {
-        moments_of(context.results, *row, position as usize)
+        moments_of(context.results, *row, Along::Position(position as usize))
             .ok()
             .map(|moments| moments.arrival_s)
     };

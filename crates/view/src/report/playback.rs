@@ -159,8 +159,8 @@ fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
     };
     let histories = &record.histories;
     let of = |quantity: &str| -> Vec<&Vec<f64>> {
-        let named = histories.series.iter().filter(|(name, ..)| name == quantity);
-        named.map(|(.., values)| values).collect()
+        let named = histories.series.iter().filter(|series| series.of.quantity == quantity);
+        named.map(|series| &series.values).collect()
     };
     let (deflections, forces) = (of("deflection_m"), of("force_n"));
     let frames = frames(histories);
@@ -222,10 +222,10 @@ fn frames(histories: &HistoryRows) -> Vec<usize> {
     let mut frames: BTreeSet<usize> = (0..steps).step_by(every).collect();
     frames.insert(last);
     for quantity in ["deflection_m", "force_n"] {
-        let lines = || histories.series.iter().filter(|(name, ..)| name == quantity);
+        let lines = || histories.series.iter().filter(|series| series.of.quantity == quantity);
         for sign in [1.0, -1.0] {
             let mut largest = (0.0, None);
-            for (step, value) in lines().flat_map(|(.., values)| values.iter().enumerate()) {
+            for (step, value) in lines().flat_map(|series| series.values.iter().enumerate()) {
                 if sign * value > largest.0 {
                     largest = (sign * value, Some(step));
                 }

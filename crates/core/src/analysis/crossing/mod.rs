@@ -3,6 +3,8 @@
 //!
 //! Knows one vehicle on one bridge at one time step, on any model. Does not know studies or threads.
 
+#[cfg(test)]
+mod free_bodies;
 mod halving;
 mod observe;
 mod operated;

@@ -6,8 +6,8 @@ use super::step::Motion;
 use crate::bridge::Bridge;
 use crate::fem::SparseRow;
 use crate::response::{
-    CrossingResponse, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks, PositionPeaks, Reading,
-    Record, Recorder, Statistics,
+    CrossingResponse, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks, PositionPeaks,
+    Reading, Record, Recorder, Statistics,
 };
 
 /// Gathers the response of one crossing.

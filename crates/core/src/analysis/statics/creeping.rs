@@ -141,6 +141,7 @@ mod tests {
             own_laws: [].into(),
             load_n: 230_300.0,
             load_x_m: 0.0,
+            places_x_m: Vec::new(),
         };
         let apart = |factor: f64| {
             let [warm, cold] =

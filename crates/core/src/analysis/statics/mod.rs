@@ -106,7 +106,10 @@ impl StaticSolver {
             contact: &contact,
             pins_n: &pins_n,
         };
-        let sections = joint_parts(design).iter().map(|parts| parts.sections(&at_rest)).collect();
+        let sections = joint_parts(design)
+            .iter()
+            .map(|parts| parts.sections(&at_rest))
+            .collect();
         let place_m = |&x_m: &f64| 0.0 - bridge.place(x_m).dot(&u);
         Ok(StaticResponse {
             sections,

@@ -1,0 +1,341 @@
+//! What a study keeps of each job beyond its peaks.
+//!
+//! Knows which numbers a bridge has to record. Does not know tables.
+
+use crate::input::{FoundValue, Refusal, RefusalKind};
+use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::operator::Followed;
+use pontoon_core::response::{Axis, PeakOf, Record, Section, Subject, WatchedPeak};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// What to keep of each job beyond its peaks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RecordSpec {
+    /// Histories of crossings.
+    #[serde(default)]
+    pub histories: HistoriesSpec,
+    /// Whether to write the table of positions.
+    #[serde(default = "yes")]
+    pub positions: bool,
+    /// Whether to write the table of connectors.
+    #[serde(default = "yes")]
+    pub connectors: bool,
+    /// Whether to write the table of pins: a step then costs more.
+    #[serde(default)]
+    pub pins: bool,
+    /// Whether to write the table of section forces and angles of joints: a step then costs more.
+    #[serde(default)]
+    pub sections: bool,
+    /// Places along the bridge whose deflection is followed, for the table of places `[m]`.
+    #[serde(default)]
+    pub places_x_m: Vec<f64>,
+    /// Peaks of crossings at whose instant everything else is wanted, for the table of that.
+    #[serde(default)]
+    pub at_peak_of: Vec<PeakSpec>,
+}
+
+/// Whose histories to keep.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HistoriesSpec {
+    /// Position numbers, 1 to modules + 1: deflection.
+    #[serde(default)]
+    pub positions: Vec<usize>,
+    /// Joint numbers, 2 to modules: force.
+    #[serde(default)]
+    pub joints: Vec<usize>,
+    /// Places of `record.places_x_m`: deflection.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub places_x_m: Vec<f64>,
+    /// Joint numbers: force of each pin, along, across and up.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pins: Vec<usize>,
+    /// Joint numbers: angle and section forces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sections: Vec<usize>,
+}
+
+/// A peak at whose instant everything else is wanted: its column, or its column at a position or joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum PeakSpec {
+    /// The largest of the whole bridge.
+    Column(PeakColumn),
+    /// The largest at one place.
+    At(PeakAt),
+}
+
+/// A peak at one place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PeakAt {
+    /// Its column.
+    pub column: PeakColumn,
+    /// Position of a deflection or uplift.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<usize>,
+    /// Joint of a force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint: Option<usize>,
+}
+
+/// Peaks that may be named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PeakColumn {
+    /// Deflection of a position.
+    PeakDeflectionM,
+    /// Uplift of a position.
+    PeakUpliftM,
+    /// Compression of a joint, its connectors added.
+    PeakCompressionN,
+    /// Tension of a joint, its connectors added.
+    PeakTensionN,
+    /// Resultant of a pin.
+    PeakPinN,
+}
+
+impl PeakColumn {
+    /// All of them.
+    const ALL: [Self; 5] = [
+        Self::PeakDeflectionM,
+        Self::PeakUpliftM,
+        Self::PeakCompressionN,
+        Self::PeakTensionN,
+        Self::PeakPinN,
+    ];
+
+    /// Its name in files and tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::PeakDeflectionM => "peak_deflection_m",
+            Self::PeakUpliftM => "peak_uplift_m",
+            Self::PeakCompressionN => "peak_compression_n",
+            Self::PeakTensionN => "peak_tension_n",
+            Self::PeakPinN => "peak_pin_n",
+        }
+    }
+
+    /// What the mechanics calls it.
+    pub fn of(self) -> PeakOf {
+        match self {
+            Self::PeakDeflectionM => PeakOf::Deflection,
+            Self::PeakUpliftM => PeakOf::Uplift,
+            Self::PeakCompressionN => PeakOf::Compression,
+            Self::PeakTensionN => PeakOf::Tension,
+            Self::PeakPinN => PeakOf::Pin,
+        }
+    }
+
+    /// The name of what the mechanics calls it.
+    pub fn word_of(of: PeakOf) -> &'static str {
+        let named = Self::ALL.into_iter().find(|column| column.of() == of);
+        named.map_or("", Self::word)
+    }
+
+    /// Whether it is one of positions and not of joints.
+    fn is_of_positions(self) -> bool {
+        matches!(self, Self::PeakDeflectionM | Self::PeakUpliftM)
+    }
+}
+
+impl PeakSpec {
+    /// As the mechanics takes it.
+    fn watched(self) -> WatchedPeak {
+        match self {
+            Self::Column(column) => WatchedPeak {
+                of: column.of(),
+                number: None,
+            },
+            Self::At(at) => WatchedPeak {
+                of: at.column.of(),
+                number: at.position.or(at.joint),
+            },
+        }
+    }
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Default for RecordSpec {
+    fn default() -> Self {
+        Self {
+            histories: HistoriesSpec::default(),
+            positions: true,
+            connectors: true,
+            pins: false,
+            sections: false,
+            places_x_m: Vec::new(),
+            at_peak_of: Vec::new(),
+        }
+    }
+}
+
+impl HistoriesSpec {
+    /// Whether any history is asked for.
+    pub fn asked(&self) -> bool {
+        let joints = [&self.joints, &self.pins, &self.sections];
+        !(self.positions.is_empty() && self.places_x_m.is_empty() && joints.iter().all(|list| list.is_empty()))
+    }
+
+    /// How many series they are, on a bridge.
+    pub fn series(&self, design: &BridgeDesign) -> usize {
+        let pins: usize = self.pins.iter().map(|joint| design.hinges_of(*joint).y_m.len()).sum();
+        let sections = Section::ALL.len() * self.sections.len();
+        self.positions.len() + self.joints.len() + self.places_x_m.len() + Axis::ALL.len() * pins + sections
+    }
+}
+
+/// Places closer than this are one `[m]`.
+const ONE_PLACE_M: f64 = 1e-9;
+
+impl RecordSpec {
+    /// What is recorded of a crossing of a bridge, as the mechanics takes it.
+    pub fn of_crossing(&self, design: &BridgeDesign) -> Record {
+        let histories = &self.histories;
+        let at = |x_m: &f64| {
+            self.places_x_m
+                .iter()
+                .position(|place| (place - x_m).abs() < ONE_PLACE_M)
+        };
+        let mut more: Vec<Subject> = histories.places_x_m.iter().filter_map(at).map(Subject::Place).collect();
+        for &joint in &histories.pins {
+            let pins = 0..design.hinges_of(joint).y_m.len();
+            more.extend(pins.flat_map(|index| Axis::ALL.map(|axis| Subject::Pin { joint, index, axis })));
+        }
+        for &joint in &histories.sections {
+            more.extend(Section::ALL.map(|of| Subject::Section { joint, of }));
+        }
+        Record {
+            positions: histories.positions.clone(),
+            joints: histories.joints.clone(),
+            more,
+            places_x_m: self.places_x_m.clone(),
+            pins: self.pins,
+            sections: self.sections,
+            at_peaks: self.at_peak_of.iter().map(|peak| peak.watched()).collect(),
+        }
+    }
+
+    /// What an operator has to follow for it.
+    pub fn followed(&self) -> Followed {
+        let histories = &self.histories;
+        let of_histories = !(histories.pins.is_empty() && histories.sections.is_empty());
+        Followed {
+            pins: self.pins || self.sections || of_histories,
+            places_x_m: self.places_x_m.clone(),
+        }
+    }
+
+    /// Refuses what a bridge does not have, and what is asked for twice.
+    ///
+    /// # Errors
+    /// [`Refusal`] with the key's path.
+    pub(crate) fn check(&self, file: &Path, design: &BridgeDesign) -> Result<(), Refusal> {
+        let modules = design.modules;
+        let histories = &self.histories;
+        for (of, list, from, to) in [
+            ("positions", &histories.positions, 1, modules + 1),
+            ("joints", &histories.joints, 2, modules),
+            ("pins", &histories.pins, 2, modules),
+            ("sections", &histories.sections, 2, modules),
+        ] {
+            for (i, &number) in list.iter().enumerate() {
+                let key = format!("record.histories.{of}[{i}]");
+                check_number(file, &key, number, (from, to))?;
+                if list[..i].contains(&number) {
+                    return Err(Refusal::new(file, key, number, "each number once").because(RefusalKind::Repeated));
+                }
+            }
+        }
+        self.check_places(file, design.length_m())?;
+        self.check_peaks(file, modules)
+    }
+
+    /// Refuses places off the bridge, one twice, and histories of others.
+    fn check_places(&self, file: &Path, length_m: f64) -> Result<(), Refusal> {
+        let known = |list: &[f64], x_m: f64| list.iter().any(|place| (place - x_m).abs() < ONE_PLACE_M);
+        for (i, &x_m) in self.places_x_m.iter().enumerate() {
+            let key = format!("record.places_x_m[{i}]");
+            if !(0.0..=length_m).contains(&x_m) {
+                return Err(Refusal::new(
+                    file,
+                    key,
+                    x_m,
+                    format!("0 to {length_m}, the bridge's length in m"),
+                ));
+            }
+            if known(&self.places_x_m[..i], x_m) {
+                return Err(Refusal::new(file, key, x_m, "each place once").because(RefusalKind::Repeated));
+            }
+        }
+        let of_histories = &self.histories.places_x_m;
+        for (i, &x_m) in of_histories.iter().enumerate() {
+            let key = format!("record.histories.places_x_m[{i}]");
+            if !known(&self.places_x_m, x_m) {
+                return Err(Refusal::new(file, key, x_m, "a place of record.places_x_m"));
+            }
+            if known(&of_histories[..i], x_m) {
+                return Err(Refusal::new(file, key, x_m, "each place once").because(RefusalKind::Repeated));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses peaks of what there is not, one twice, and one of pins that are not recorded.
+    fn check_peaks(&self, file: &Path, modules: usize) -> Result<(), Refusal> {
+        for (i, &peak) in self.at_peak_of.iter().enumerate() {
+            let key = format!("record.at_peak_of[{i}]");
+            let column = match peak {
+                PeakSpec::Column(column) => column,
+                PeakSpec::At(at) => {
+                    let (own, of, other, from) = if at.column.is_of_positions() {
+                        ("position", at.position, at.joint.map(|joint| ("joint", joint)), 1)
+                    } else {
+                        ("joint", at.joint, at.position.map(|position| ("position", position)), 2)
+                    };
+                    if let Some((name, found)) = other {
+                        let refused = Refusal::new(file, format!("{key}.{name}"), found, own);
+                        return Err(refused.because(RefusalKind::Misplaced));
+                    }
+                    if let Some(number) = of {
+                        let to = if from == 1 { modules + 1 } else { modules };
+                        check_number(file, &format!("{key}.{own}"), number, (from, to))?;
+                    }
+                    at.column
+                }
+            };
+            if column == PeakColumn::PeakPinN && !self.followed().pins {
+                let found = FoundValue::value(column.word()).which("without record.pins");
+                let refused = Refusal::new(file, key, found, "record.pins true beside it");
+                return Err(refused.because(RefusalKind::Conflict));
+            }
+            if self.at_peak_of[..i]
+                .iter()
+                .any(|before| before.watched() == peak.watched())
+            {
+                let found = FoundValue::value(column.word());
+                return Err(Refusal::new(file, key, found, "each peak once").because(RefusalKind::Repeated));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a position or joint that the bridge does not have.
+fn check_number(file: &Path, key: &str, number: usize, (from, to): (usize, usize)) -> Result<(), Refusal> {
+    if (from..=to).contains(&number) {
+        return Ok(());
+    }
+    let allowed = if from > to {
+        "none: the bridge has no joint".to_owned()
+    } else {
+        format!("{from} to {to}")
+    };
+    Err(Refusal::new(file, key, number, allowed))
+}
