@@ -458,6 +458,7 @@ class ChainPeer:
 
     Posts are stiff beams on every node of the line. With `"posts": "rigid"` they are rigid links at the module ends
     alone, as somebody would script it; their nodes cannot be tied at the hinges as well, which are stiff springs then.
+    With `"hinges": "springs"` they are so in any case, and tell their forces.
     """
 
     def __init__(self, chain, connection):
@@ -479,6 +480,7 @@ class ChainPeer:
             law, *numbers = connector_law(connection, own["stiffness_n_m"], own)
             ops.uniaxialMaterial(law, self.material(joint), *numbers)
         rigid = chain.get("posts") == "rigid"
+        springs = rigid or chain.get("hinges") == "springs"
         for module in range(self.modules):
             for i in range(self.parts + 1):
                 node, x = self.node(module, i), module * chain["module_length_m"] + i * self.element_m
@@ -519,11 +521,12 @@ class ChainPeer:
                         mass_kg_m,
                         "-cMass",
                     )
-        self.connectors = []
+        self.connectors, self.hinges = [], []
         for module in range(1, self.modules):
             left, right = self.node(module - 1, self.parts), self.node(module, 0)
-            if rigid:
-                ops.element("zeroLength", next(elements), left, right, "-mat", 3, 3, "-dir", 1, 2)
+            if springs:
+                self.hinges.append(next(elements))
+                ops.element("zeroLength", self.hinges[-1], left, right, "-mat", 3, 3, "-dir", 1, 2)
             else:
                 ops.equalDOF(left, right, 1, 2)
             self.connectors.append(next(elements))
@@ -592,11 +595,13 @@ class ChainCrossing:
         """Deflections of the positions, upward [m], and forces of the joints [N], a row a step."""
         peer = self.peer
         z_m, force_n = np.zeros((self.steps, peer.modules + 1)), np.zeros((self.steps, peer.modules - 1))
+        self.hinges_n = np.zeros((self.steps, len(peer.hinges), 2))
         for step in range(self.steps):
             if ops.analyze(1, self.time_step_s) != 0:
                 sys.exit(f"OpenSees found no equilibrium in step {step} of {self.crossing}")
             z_m[step] = [ops.nodeDisp(node, 2) for node in peer.positions()]
             force_n[step] = [ops.basicForce(tag)[0] for tag in peer.connectors]
+            self.hinges_n[step] = [ops.basicForce(tag)[:2] for tag in peer.hinges]
         return z_m, force_n
 
 
@@ -611,10 +616,10 @@ def opensees_crossing(chain, crossing, time_step_s):
     }
 
 
-def opensees_chain_statics(chain, connection, position):
-    """Deflections of the positions [m] and forces of the joints [N], the load's centre on a position."""
+def opensees_chain_statics(chain, connection, centre_m):
+    """Deflections of the positions [m], forces of the joints and of hinges that are springs [N] under a load at a place."""
     peer, load = ChainPeer(chain, connection), chain["load"]
-    x_m = np.array([(position - 1) * chain["module_length_m"]])
+    x_m = np.array([centre_m])
     ops.timeSeries("Constant", 1)
     ops.pattern("Plain", 1, 1)
     for node, share in enumerate(load_shares(peer, load, x_m)[0], 1):
@@ -628,9 +633,10 @@ def opensees_chain_statics(chain, connection, position):
     ops.integrator("LoadControl", 1.0)
     ops.analysis("Static")
     if ops.analyze(1) != 0:
-        sys.exit(f"OpenSees found no equilibrium of the chain under a load at {position}")
+        sys.exit(f"OpenSees found no equilibrium of the chain under a load at {centre_m} m")
     deflection_m = np.array([0.0 - ops.nodeDisp(node, 2) for node in peer.positions()])
-    return deflection_m, np.array([ops.basicForce(tag)[0] for tag in peer.connectors])
+    force_n = np.array([ops.basicForce(tag)[0] for tag in peer.connectors])
+    return deflection_m, force_n, np.array([ops.basicForce(tag)[:2] for tag in peer.hinges])
 
 
 # ---- side by side
@@ -704,7 +710,8 @@ def compare_joints(table):
         worn = chain | {"joints": joints}
         still = {"joints": joints, "analysis": {"kind": "static"}, "load_position": LOAD_POSITION}
         ours, ours_s = timed(pontoon_chain, still)
-        (w_theirs, n_theirs), theirs_s = timed(opensees_chain_statics, worn, "nonlinear", LOAD_POSITION)
+        centre_m = (LOAD_POSITION - 1) * chain["module_length_m"]
+        (w_theirs, n_theirs, _), theirs_s = timed(opensees_chain_statics, worn, "nonlinear", centre_m)
         table.head(f"chain, {name}, static", ours_s, theirs_s)
         w_ours = np.array([p["deflection_m"] for p in ours["positions"]])
         n_ours = np.array([j["force_n"] for j in ours["joints"]])
@@ -726,6 +733,43 @@ def compare_joints(table):
             table.row("compression of joint 7", "N", ours["joints"][5]["peak_compression_n"], n[5], 2.0)
             pull = theirs["peak_tension_n"]
             table.row("largest tension, of the compression", "N", most["peak_tension_n"], max(pull), of=max(n))
+
+
+# places of the load's centre [m]: on a position, and half a module beyond it
+PINS_CENTRES_M = (40.2, 43.55)
+
+
+def compare_pins(table):
+    """Forces of the hinges on the part left of them: springs in OpenSees, what the left module needs to move in pontoon.
+
+    Points of the load pass a joint one by one, and its force upward jumps by theirs: 3 % of the largest in crossings.
+    """
+    chain = json.loads(CHAIN.read_text()) | {"hinges": "springs"}
+    for centre_m in PINS_CENTRES_M:
+        ours, ours_s = timed(pontoon_chain, {"analysis": {"kind": "static"}, "load_x_m": centre_m})
+        (_, _, theirs), theirs_s = timed(opensees_chain_statics, chain, "nonlinear", centre_m)
+        table.head(f"chain, pins, static at {centre_m:g} m", ours_s, theirs_s)
+        of = np.abs(theirs).max()
+        for joint in (6, 7, 8):
+            pin, (along, up) = ours["pins"][joint - 2], theirs[joint - 2]
+            table.row(f"pin {joint} along, of the largest", "N", pin["x_n"], along, 0.5, of=of)
+            table.row(f"pin {joint} up, of the largest", "N", pin["z_n"], up, 0.5, of=of)
+    crossing = {"connection": "nonlinear", "speed_m_s": 3.0}
+    ours, ours_s = timed(pontoon_chain, crossing)
+    peer = ChainCrossing(chain, crossing, CHAIN_TIME_STEP_S)
+    _, theirs_s = timed(peer.run)
+    table.head("chain, pins, 3 m/s", ours_s, theirs_s)
+    along, up = peer.hinges_n[:, :, 0], peer.hinges_n[:, :, 1]
+    of = max(np.abs(along).max(), np.abs(up).max())
+    for joint in (2, 7, 12):
+        pin = ours["pins"][joint - 2]
+        for key, values in (
+            ("peak_plus_x_n", along),
+            ("peak_minus_x_n", -along),
+            ("peak_plus_z_n", up),
+            ("peak_minus_z_n", -up),
+        ):
+            table.row(f"{key} of pin {joint}, of the largest", "N", pin[key], max(values[:, joint - 2].max(), 0.0), 3.0, of=of)
 
 
 def main():
@@ -751,6 +795,7 @@ def main():
         if options.part in ("chain", "all"):
             compare_chain(table)
             compare_joints(table)
+            compare_pins(table)
     print(f"\n{time.perf_counter() - start:.0f} s; beyond what is asked: {len(table.beyond)}")
     for name in table.beyond:
         print(f"  {name}")

@@ -9,7 +9,7 @@ use pontoon_core::analysis::statics::StaticSolver;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::operator::{BridgeOperator, Followed};
-use pontoon_core::response::{CrossingResponse, PinPeaks, Record};
+use pontoon_core::response::{Axis, CrossingResponse, PeakOf, PinPeaks, Record, Section, Subject, WatchedPeak};
 use pontoon_core::stop::Stop;
 use pontoon_core::vehicle::{Inertia, Vehicle};
 use pontoon_tests::chain::Chain;
@@ -26,15 +26,59 @@ fn operator(ready: &Ready, tolerance: f64) -> Arc<BridgeOperator> {
     Arc::new(made.expect("an operator"))
 }
 
-/// A crossing that records its pins.
+/// Places that are followed: at a joint, inside a module, near the end.
+const PLACES_X_M: [f64; 3] = [6.7, 9.4, 39.9];
+
+/// A crossing that records its pins and all that comes with them.
 fn with_pins(crossing: Crossing) -> Crossing {
+    let watched = |of: PeakOf, number: Option<usize>| WatchedPeak { of, number };
     Crossing {
         record: Record {
             pins: true,
+            sections: true,
+            places_x_m: PLACES_X_M.to_vec(),
+            more: vec![
+                Subject::Pin {
+                    joint: 3,
+                    index: 1,
+                    axis: Axis::Z,
+                },
+                Subject::Place(1),
+                Subject::Section {
+                    joint: 4,
+                    of: Section::Bending,
+                },
+            ],
+            at_peaks: vec![
+                watched(PeakOf::Deflection, None),
+                watched(PeakOf::Compression, Some(3)),
+                watched(PeakOf::Pin, None),
+            ],
             ..Record::default()
         },
         ..crossing
     }
+}
+
+/// Extremes of section forces of one kind, or of the angles. Axial force, shear across and lateral bending are what is
+/// left of pins and connectors of far larger forces, so that the largest force of a pin, with a lever of 1 m, stands beside
+/// them.
+fn sections(r: &CrossingResponse, of: Section) -> Vec<f64> {
+    let own = r.recorded.sections.iter().filter(|peaks| peaks.of == of);
+    let mut found: Vec<f64> = own
+        .flat_map(|peaks| [peaks.peaks.compression.value, peaks.peaks.tension.value])
+        .collect();
+    if matches!(of, Section::Axial | Section::ShearY | Section::LateralBending) {
+        found.push(largest(extremes(r.pins.iter())));
+    }
+    found
+}
+
+/// Largest deflection and uplift of each place.
+fn places(r: &CrossingResponse) -> Vec<f64> {
+    let each = r.recorded.places.iter();
+    each.flat_map(|place| [place.deflection.value, place.uplift.value])
+        .collect()
 }
 
 /// Six modules of smoke's.
@@ -105,16 +149,42 @@ fn operator_finds_the_pins_of_the_reference_solver() {
                 ..asked.clone()
             };
             let [found, expected] = both(&ready, tolerance, &vehicle, &asked);
-            let [wrong, _] = both(&ready, tolerance, &vehicle, &heavy);
-            let places = |r: &[PinPeaks]| r.iter().map(|pin| (pin.joint, pin.y_m)).collect::<Vec<_>>();
-            assert_eq!(places(&found.pins), places(&expected.pins));
+            let [heavier, _] = both(&ready, tolerance, &vehicle, &heavy);
+            let pins_at = |r: &[PinPeaks]| r.iter().map(|pin| (pin.joint, pin.y_m)).collect::<Vec<_>>();
+            assert_eq!(pins_at(&found.pins), pins_at(&expected.pins));
             assert_eq!(found.pins.len(), 5 * 4);
             for (what, allowed, is_sum) in [("pins", each, false), ("joints", sums, true)] {
                 let of = |r: &CrossingResponse| extremes(r.pins.iter().filter(|pin| pin.y_m.is_none() == is_sum));
-                let [right, wrong] = [&found, &wrong].map(|r| apart(&of(r), &of(&expected)));
+                let [right, wrong] = [&found, &heavier].map(|r| apart(&of(r), &of(&expected)));
                 held(
                     &format!("{what}, {inertia:?}, tolerance {tolerance}"),
                     allowed,
+                    right,
+                    wrong,
+                );
+            }
+            for of in Section::ALL {
+                let [right, wrong] = [&found, &heavier].map(|r| apart(&sections(r, of), &sections(&expected, of)));
+                held(
+                    &format!("{of:?}, {inertia:?}, tolerance {tolerance}"),
+                    each,
+                    right,
+                    wrong,
+                );
+            }
+            let [right, wrong] = [&found, &heavier].map(|r| apart(&places(r), &places(&expected)));
+            held(
+                &format!("places, {inertia:?}, tolerance {tolerance}"),
+                sums,
+                right,
+                wrong,
+            );
+            let curve = |r: &CrossingResponse, i: usize| r.recorded.histories[i].values.clone();
+            for i in 0..3 {
+                let [right, wrong] = [&found, &heavier].map(|r| apart(&curve(r, i), &curve(&expected, i)));
+                held(
+                    &format!("history {i}, {inertia:?}, tolerance {tolerance}"),
+                    2.0 * each,
                     right,
                     wrong,
                 );
@@ -151,6 +221,8 @@ fn pins_of_the_chain_are_those_of_independent_codes() {
     let found = |factor: f64| {
         let mut asked = with_pins(ready.crossing(chain.connection(false), factor * chain.weight_n, 3.0));
         asked.tail_s = chain.tail_s;
+        asked.record.more.clear();
+        asked.record.places_x_m.clear();
         let r = crossings.solve(&asked).expect("solved");
         let sum = r
             .pins
@@ -158,7 +230,17 @@ fn pins_of_the_chain_are_those_of_independent_codes() {
             .find(|pin| pin.joint == 7 && pin.y_m.is_none())
             .expect("joint 7");
         let [x, _, z] = sum.extremes.components;
+        let angle = r
+            .recorded
+            .sections
+            .iter()
+            .find(|of| of.joint == 7 && of.of == Section::Angle);
+        let angle = angle.expect("an angle").peaks;
+        println!("{angle:?}");
         [
+            // milliradians by their own largest, so that all numbers count alike
+            557.0 / 25.6 * 1e3 * angle.tension.value,
+            557.0 / 16.1 * 1e3 * angle.compression.value,
             x.tension.value / 1e3,
             z.compression.value / 1e3,
             z.tension.value / 1e3,
@@ -166,8 +248,51 @@ fn pins_of_the_chain_are_those_of_independent_codes() {
             100.0 * z.tension.time_s / 13.38,
         ]
     };
-    let expected = [557.0, 95.2, 96.8, 100.0, 100.0];
+    let expected = [557.0, 557.0, 557.0, 95.2, 96.8, 100.0, 100.0];
     let [right, wrong] = [1.0, 1.05].map(found);
     println!("{right:?}");
     held("3 m/s", 3e-2, apart(&right, &expected), apart(&wrong, &expected));
+}
+
+/// What is told of the instant of a peak is what histories have then, in both solvers: bit for bit. The peak itself is among it.
+#[test]
+fn the_response_at_a_peak_is_that_of_the_histories() {
+    let ready = Ready::new(&six(), Model::SuperElement);
+    let vehicle = footprint(&[-0.4, 2.4], Inertia::Local);
+    let asked = with_pins(ready.crossing(gaps(0.002, 0.001), PAPER_LOAD_N, 8.0));
+    for r in both(&ready, 6e-4, &vehicle, &asked) {
+        let recorded = &r.recorded;
+        for at in &recorded.at_peaks {
+            let told = |subject: Subject| at.numbers.iter().find(|(of, _)| *of == subject).expect("told").1;
+            for history in &recorded.histories {
+                let (times, time_s) = if history.subject.is_of_balance() {
+                    (&recorded.balance_time_s, at.balance_s)
+                } else {
+                    (&recorded.history_time_s, at.time_s)
+                };
+                let step = times.iter().position(|t| *t == time_s).expect("a step");
+                assert_eq!(history.values[step], told(history.subject), "{:?}", at.peak);
+            }
+            let expected = match at.peak.of {
+                PeakOf::Deflection => r.peak_deflection().deflection.value,
+                PeakOf::Compression => r.joints[1].sum.compression.value,
+                _ => r
+                    .pins
+                    .iter()
+                    .filter(|pin| pin.y_m.is_some())
+                    .map(|pin| pin.extremes.resultant.value)
+                    .fold(0.0, f64::max),
+            };
+            // vectors and numbers add squares in another order
+            assert!(
+                (at.largest - expected).abs() <= 1e-15 * expected,
+                "{:?}: {} {expected}",
+                at.peak,
+                at.largest
+            );
+        }
+        assert_eq!(recorded.at_peaks.len(), 3);
+        // a place at a joint is its position
+        assert_eq!(recorded.places[0].deflection, r.positions[1].deflection);
+    }
 }

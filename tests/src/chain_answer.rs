@@ -8,7 +8,7 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::CrossingSolver;
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::Model;
-use pontoon_core::response::{CrossingResponse, Peak, StaticResponse};
+use pontoon_core::response::{CrossingResponse, Peak, Section, StaticResponse};
 use pontoon_core::vehicle::Inertia;
 use serde_json::{Map, Value, json};
 
@@ -48,6 +48,23 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
         put(&mut row, "peak_tension", "n", j.sum.tension);
         Value::from(row)
     });
+    let pins = response.pins.iter().filter(|pin| pin.y_m.is_none()).map(|sum| {
+        let mut row = Map::from_iter([("joint".into(), json!(sum.joint))]);
+        let [x, _, z] = sum.extremes.components;
+        put(&mut row, "peak_minus_x", "n", x.compression);
+        put(&mut row, "peak_plus_x", "n", x.tension);
+        put(&mut row, "peak_minus_z", "n", z.compression);
+        put(&mut row, "peak_plus_z", "n", z.tension);
+        put(&mut row, "peak_resultant", "n", sum.extremes.resultant);
+        let of = response.recorded.sections.iter();
+        let mut angle = of.filter(|of| of.joint == sum.joint && of.of == Section::Angle);
+        if let Some(angle) = angle.next() {
+            put(&mut row, "peak_closing", "rad", angle.peaks.compression);
+            put(&mut row, "peak_opening", "rad", angle.peaks.tension);
+        }
+        Value::from(row)
+    });
+    let pins: Vec<_> = pins.collect();
     let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
     let mut largest = Map::new();
     for (list, of, unit, place) in [
@@ -55,13 +72,15 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
         (&positions, "peak_uplift", "m", "position"),
         (&joints, "peak_compression", "n", "joint"),
         (&joints, "peak_tension", "n", "joint"),
+        (&pins, "peak_resultant", "n", "pin_joint"),
     ] {
         let (key, time) = (format!("{of}_{unit}"), format!("{of}_time_s"));
+        let number = place.rsplit('_').next().unwrap_or(place);
         let row = largest_of(list, |row| row[&key].as_f64().unwrap_or(0.0));
         largest.insert(key.clone(), row.map_or(json!(0.0), |row| row[&key].clone()));
         largest.insert(
             format!("{of}_{place}"),
-            row.map_or(Value::Null, |row| row[place].clone()),
+            row.map_or(Value::Null, |row| row[number].clone()),
         );
         largest.insert(time.clone(), row.map_or(Value::Null, |row| row[&time].clone()));
     }
@@ -69,7 +88,7 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
         largest.insert("min_contact_force_n".into(), json!(response.min_contact_force_n));
     }
     json!({ "kind": "crossing", "time_step_s": time_step_s, "positions": positions, "joints": joints,
-            "largest": largest })
+            "pins": pins, "largest": largest })
 }
 
 fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticResponse) -> Value {
@@ -79,6 +98,13 @@ fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticRespo
     });
     let joints = response.joints.iter();
     let joints = joints.map(|j| json!({ "joint": j.joint, "force_n": j.sum_n }));
+    let places = scenario.design.hinges.y_m.len();
+    let pins = response.pins_n.chunks(places).zip(&response.sections);
+    let pins = (2..).zip(pins).map(|(joint, (each, sections))| {
+        let sum = |axis: usize| each.iter().map(|force| force[axis]).sum::<f64>();
+        json!({ "joint": joint, "x_n": sum(0), "z_n": sum(2), "angle_rad": sections[Section::Angle as usize] })
+    });
+    let pins: Vec<_> = pins.collect();
     let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
     let mut largest = Map::new();
     for (key, list, of, sign, place) in [
@@ -93,7 +119,7 @@ fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticRespo
         largest.insert(place.into(), row.map_or(Value::Null, |row| row[number].clone()));
     }
     json!({ "kind": "static", "time_step_s": null, "load_x_m": case.load_x_m, "positions": positions,
-            "joints": joints, "largest": largest })
+            "joints": joints, "pins": pins, "largest": largest })
 }
 
 /// A peak and its time; a value that never rose above zero has none.

@@ -151,7 +151,11 @@ impl ChainScenario {
                     load_n,
                     speed_m_s,
                     tail_s: not_negative("analysis.tail_s", analysis.tail_s.unwrap_or(chain.tail_s))?,
-                    record: Record::default(),
+                    record: Record {
+                        pins: true,
+                        sections: true,
+                        ..Record::default()
+                    },
                 };
                 let radius = analysis.spectral_radius.unwrap_or(0.9);
                 ChainTask::Crossing {

@@ -2,7 +2,7 @@
 //!
 //! Knows both solvers and the scales of what they answer. Does not know which differences are expected.
 
-use crate::{Ready, apart, history, largest};
+use crate::{Ready, apart, largest};
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::operator::BridgeOperator;

@@ -24,10 +24,10 @@ pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
 pub(crate) use pins::PinPlace;
-#[cfg(test)]
-pub(crate) use prepared::Side;
 pub(crate) use placement::VehiclePlacement;
 pub use prepared::PreparedModule;
+#[cfg(test)]
+pub(crate) use prepared::Side;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 use thiserror::Error;
 pub use track::Track;

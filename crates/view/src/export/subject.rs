@@ -218,6 +218,7 @@ fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<Stati
                 own_laws: job.own_laws(),
                 load_n: job.load_n,
                 load_x_m: load.x_m,
+                places_x_m: Vec::new(),
             },
         })),
         (Some(load), _) => static_case(source, design, vehicle.clone(), load).map(Some),
@@ -320,6 +321,7 @@ fn static_case(
             own_laws: design.own_laws(connection, None).map_err(of_bridge)?,
             load_n: load.load_n,
             load_x_m,
+            places_x_m: Vec::new(),
         },
     })
 }

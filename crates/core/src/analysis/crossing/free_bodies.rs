@@ -58,7 +58,11 @@ fn left_over(setup: &Setup, bodies: &[Vec<ModuleForces>], connectors_n: &[f64], 
     for (j, body) in bodies.iter().enumerate() {
         let mut sums = [0.0; 3];
         for dof in body {
-            let connector = dof.global.and_then(|global| pulled.get(&global)).copied().unwrap_or(0.0);
+            let connector = dof
+                .global
+                .and_then(|global| pulled.get(&global))
+                .copied()
+                .unwrap_or(0.0);
             let (joint, sign) = match dof.tied {
                 Some((crate::bridge::Side::Right, ..)) if j < last => (j + 2, 1.0),
                 Some((crate::bridge::Side::Left, ..)) if j > 0 => (j + 1, -1.0),
@@ -70,7 +74,11 @@ fn left_over(setup: &Setup, bodies: &[Vec<ModuleForces>], connectors_n: &[f64], 
                 Some(sign * (1.0 + off) * force[direction])
             });
             // a support's reaction is the rest of it
-            let left = if dof.global.is_none() { 0.0 } else { dof.force + connector - pin.unwrap_or(0.0) };
+            let left = if dof.global.is_none() {
+                0.0
+            } else {
+                dof.force + connector - pin.unwrap_or(0.0)
+            };
             worst = worst.max(left.abs());
             (0..3).for_each(|axis| sums[axis] += dof.rigid[axis] * left);
         }
@@ -84,7 +92,10 @@ fn connectors_n(state: &Snapshot) -> Vec<f64> {
 }
 
 fn pressed(wheel: &WheelNow, force_n: f64) -> SparseRow {
-    wheel.row.as_ref().map_or_else(SparseRow::default, |row| SparseRow::combine(&[(force_n, row)]))
+    wheel
+        .row
+        .as_ref()
+        .map_or_else(SparseRow::default, |row| SparseRow::combine(&[(force_n, row)]))
 }
 
 /// At rest: 1e-10 of the load, rounding of the solve. Twin: pins 5 % off.
@@ -108,7 +119,10 @@ fn static_free_bodies_are_in_equilibrium() {
             let down: Vec<SparseRow> = state.wheels.iter().map(|w| pressed(w, w.contact_force_n)).collect();
             let bodies = ModuleForces::of(&setup.design, &setup.module, &state.elastic, None, &down);
             let [right, wrong] = [0.0, 0.05].map(|off| left_over(&setup, &bodies, &connectors_n(&state), &pins_n, off));
-            assert!(right < 1e-10, "{model:?} at {load_x_m} m: {right:e} of the load is left over");
+            assert!(
+                right < 1e-10,
+                "{model:?} at {load_x_m} m: {right:e} of the load is left over"
+            );
             assert!(wrong > 1e-10, "pins 5 % off pass");
         }
     }
@@ -157,10 +171,24 @@ fn moving_free_bodies_are_in_equilibrium() {
         for (step, pair) in states.windows(2).enumerate() {
             let [old, new] = [&pair[0], &pair[1]];
             let balance = Balance::new(&scheme, settings.rayleigh, old, new);
-            let pins: Vec<[f64; 3]> = recorded.histories.chunks(3).map(|of| [0, 1, 2].map(|d| of[d].values[step + 1])).collect();
+            let pins: Vec<[f64; 3]> = recorded
+                .histories
+                .chunks(3)
+                .map(|of| [0, 1, 2].map(|d| of[d].values[step + 1]))
+                .collect();
             let down = balance.down(&vehicle);
-            let bodies = ModuleForces::of(&setup.design, &setup.module, &balance.elastic, Some(&balance.inertial), &down);
-            let connectors: Vec<f64> = connectors_n(new).iter().zip(connectors_n(old)).map(|(n, o)| scheme.at_f(*n, o)).collect();
+            let bodies = ModuleForces::of(
+                &setup.design,
+                &setup.module,
+                &balance.elastic,
+                Some(&balance.inertial),
+                &down,
+            );
+            let connectors: Vec<f64> = connectors_n(new)
+                .iter()
+                .zip(connectors_n(old))
+                .map(|(n, o)| scheme.at_f(*n, o))
+                .collect();
             let [r, w] = [0.0, 0.05].map(|off| left_over(&setup, &bodies, &connectors, &pins, off));
             (right, wrong) = (right.max(r), wrong.max(w));
         }
@@ -185,7 +213,9 @@ impl<'a> Balance<'a> {
         Self {
             elastic: dofs().map(|i| scheme.at_f(new.elastic[i], old.elastic[i])).collect(),
             inertial: dofs()
-                .map(|i| scheme.at_m(acceleration(new, i), acceleration(old, i)) + b * scheme.at_f(v(new, i), v(old, i)))
+                .map(|i| {
+                    scheme.at_m(acceleration(new, i), acceleration(old, i)) + b * scheme.at_f(v(new, i), v(old, i))
+                })
                 .collect(),
             scheme,
             states: [old, new],
@@ -194,7 +224,12 @@ impl<'a> Balance<'a> {
 
     /// What wheels press on the deck with: weights by one mean, inertia by the other.
     fn down(&self, vehicle: &Vehicle) -> Vec<SparseRow> {
-        let shares = || vehicle.patches.iter().flat_map(|patch| patch.points.iter().map(|point| point.share));
+        let shares = || {
+            vehicle
+                .patches
+                .iter()
+                .flat_map(|patch| patch.points.iter().map(|point| point.share))
+        };
         let [old, new] = self.states;
         let of = |state: &Snapshot, f: f64, m: f64| -> Vec<SparseRow> {
             let wheels = state.wheels.iter().zip(shares());
