@@ -19,6 +19,10 @@ WHEN = {
     "modes": "; of studies of modes",
     "auto_time_step": '; with `"time_step_s": "auto"`',
     "verify": "; with `verify`",
+    "pins": "; where pins are recorded",
+    "sections": "; where sections are recorded",
+    "place_histories": "; with histories of places",
+    "pin_histories": "; with histories of pins",
 }
 
 

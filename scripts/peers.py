@@ -601,7 +601,8 @@ class ChainCrossing:
                 sys.exit(f"OpenSees found no equilibrium in step {step} of {self.crossing}")
             z_m[step] = [ops.nodeDisp(node, 2) for node in peer.positions()]
             force_n[step] = [ops.basicForce(tag)[0] for tag in peer.connectors]
-            self.hinges_n[step] = [ops.basicForce(tag)[:2] for tag in peer.hinges]
+            for place, tag in enumerate(peer.hinges):
+                self.hinges_n[step, place] = ops.basicForce(tag)[:2]
         return z_m, force_n
 
 

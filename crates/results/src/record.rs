@@ -309,7 +309,7 @@ impl HistoryRows {
 /// The rows of the pins of a job that failed; none where pins are not recorded.
 fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
     let design = &job.bridge.design;
-    let joints = if job.record.pins { 2..=design.modules } else { 1..=0 };
+    let joints = (2..=design.modules).filter(|_| job.record.pins);
     let row = |joint: usize, y_m: Option<f64>| PinRow {
         joint,
         y_m,
@@ -326,11 +326,7 @@ fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
 
 /// The rows of the section forces of a job that failed; none where they are not recorded.
 fn section_rows_of_none(job: &Job) -> Vec<SectionRow> {
-    let joints = if job.record.sections {
-        2..=job.bridge.design.modules
-    } else {
-        1..=0
-    };
+    let joints = (2..=job.bridge.design.modules).filter(|_| job.record.sections);
     let row = |joint: usize, quantity: &str| SectionRow {
         joint,
         quantity: quantity.to_owned(),

@@ -18,6 +18,7 @@ mod figures;
 mod joints;
 mod old_results;
 mod operator;
+mod recorded;
 mod refusals;
 mod report;
 mod results;

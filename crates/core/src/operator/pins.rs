@@ -24,7 +24,7 @@ use pulp::Simd;
 /// Directions of a pin: along, across, up.
 const DIRECTIONS: usize = 3;
 
-/// The rows of all pins, three a pin (P1), (O9).
+/// The rows of all pins, three a pin (J5), (O9).
 #[derive(Debug, Clone, Default)]
 pub(super) struct PinRows {
     /// Joint and place across of each pin.

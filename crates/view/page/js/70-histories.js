@@ -4,8 +4,18 @@
   const { data, numbers, array } = page,
     { el, section, field, select } = page.dom;
   const TITLES = {
-    deflection_m: ['Deflection', 'deflection, downward', true, 'position'],
-    force_n: ['Connector force', 'force of a joint, tension upward', false, 'joint'],
+    deflection_m: ['Deflection', 'deflection, downward', true],
+    force_n: ['Connector force', 'force of a joint, tension upward', false],
+    pin_x_n: ['Pin force along the bridge', 'force on the module on the left, toward the right end upward', false],
+    pin_y_n: ['Pin force across', 'force on the module on the left, toward +y upward', false],
+    pin_z_n: ['Vertical pin force', 'force on the module on the left, upward', false],
+    angle_rad: ['Joint angle', 'angle, open at the deck upward', false],
+    axial_n: ['Axial force', 'axial force, tension upward', false],
+    shear_y_n: ['Shear across', 'shear across', false],
+    shear_z_n: ['Vertical shear', 'shear, upward on the part on the left', false],
+    torsion_nm: ['Torsion', 'torsion', false],
+    bending_nm: ['Bending moment', 'bending moment, deck compressed upward', false],
+    lateral_bending_nm: ['Lateral bending moment', 'bending moment about the vertical', false],
   };
 
   function histories() {
@@ -54,14 +64,14 @@
 
   function draw(job, quantity, width) {
     const mine = data.histories.filter(h => h.job === job && h.quantity === quantity),
-      [, axis, reverse, place] = TITLES[quantity] ?? [quantity, quantity, false, 'position'];
+      [, axis, reverse] = TITLES[quantity] ?? [quantity, quantity, false];
     if (!mine.length) return { empty: `Job ${job} did not record this.` };
     const series = mine.map((h, i) => {
       const time = array(h.time_s),
         value = array(h.value);
       return {
-        key: `${place}-${h.position}`,
-        label: `${place} ${h.position}`,
+        key: h.place,
+        label: h.place,
         ...page.look(i, mine.length),
         symbol: null,
         dots: false,
@@ -69,7 +79,7 @@
         points: Array.from(time, (t, k) => ({
           x: t,
           y: value[k],
-          text: () => `${place} ${h.position} at ${numbers.quantity(t, 's')}: ${numbers.quantity(value[k], h.unit)}`,
+          text: () => `${h.place} at ${numbers.quantity(t, 's')}: ${numbers.quantity(value[k], h.unit)}`,
         })),
       };
     });
@@ -96,7 +106,7 @@
     });
     return {
       ...out,
-      note: mine.length > 1 ? mine[0].axes : `${place} ${mine[0].position}: ${mine[0].axes}`,
+      note: mine.length > 1 ? mine[0].axes : `${mine[0].place}: ${mine[0].axes}`,
       legend: page.legend(series, marks),
     };
   }

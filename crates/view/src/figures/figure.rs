@@ -142,6 +142,12 @@ impl FigureMeasure {
     };
     /// A joint's force, tension upward.
     pub(super) const FORCE: Self = Self::up("Joint force, tension positive", "kN", 1e-3);
+    /// A pin's force on the module left of it.
+    pub(super) const PIN_FORCE: Self = Self::up("Pin force", "kN", 1e-3);
+    /// A joint's angle, open at the deck upward.
+    pub(super) const ANGLE: Self = Self::up("Joint angle", "mrad", 1e3);
+    /// A joint's bending moment, the deck compressed upward.
+    pub(super) const BENDING: Self = Self::up("Bending moment", "kN m", 1e-3);
     pub(super) const ALONG: Self = Self::up("Distance along the bridge", "m", 1.0);
     pub(super) const TIME: Self = Self::up("Time", "s", 1.0);
     pub(super) const SPEED: Self = Self::up("Speed", "m/s", 1.0);

@@ -9,12 +9,30 @@ use super::panels::{Split, by_speed, caption};
 use super::series_group::series_groups;
 use crate::thinning::thinned;
 use pontoon_judge::quantity::{Along, moments_of};
-use pontoon_results::{Table, TableName};
+use pontoon_results::{Table, TableName, labels};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-/// What was recorded: a quantity of a position or joint.
-type Channel = (String, u32);
+/// What was recorded: a quantity of a position or joint, of a pin at its place across.
+type Channel = (String, u32, Option<u64>);
+
+/// How a quantity is drawn: the stem of the figure's name, what it is called, its measure.
+fn drawn(quantity: &str) -> Option<(&'static str, &'static str, FigureMeasure)> {
+    Some(match quantity {
+        "deflection_m" => ("deflection", "Deflection of position", FigureMeasure::DEFLECTION),
+        "force_n" => ("force", "Force of the joint at position", FigureMeasure::FORCE),
+        "pin_x_n" => (
+            "pin-x",
+            "Force along the bridge of a pin of joint",
+            FigureMeasure::PIN_FORCE,
+        ),
+        "pin_y_n" => ("pin-y", "Force across of a pin of joint", FigureMeasure::PIN_FORCE),
+        "pin_z_n" => ("pin-z", "Vertical force of a pin of joint", FigureMeasure::PIN_FORCE),
+        "angle_rad" => ("angle", "Angle of joint", FigureMeasure::ANGLE),
+        "bending_nm" => ("bending", "Bending moment of joint", FigureMeasure::BENDING),
+        _ => return None,
+    })
+}
 
 /// Rows of the table of histories by job and channel.
 type Recorded = HashMap<(u64, Channel), Range<usize>>;
@@ -30,17 +48,23 @@ pub(super) fn histories(context: &mut FigureContext<'_>) -> Vec<Figure> {
     let (channels, recorded) = recorded(context, table);
     let series_groups = series_groups(context, Some("speed_m_s"));
     let mut figures = Vec::new();
-    for (quantity, position) in channels {
-        let (stem, what, y) = match quantity.as_str() {
-            "deflection_m" => ("deflection", "Deflection of position", FigureMeasure::DEFLECTION),
-            "force_n" => ("force", "Force of the joint at position", FigureMeasure::FORCE),
-            _ => continue,
+    for channel in &channels {
+        let (quantity, position, across) = channel;
+        let Some((stem, what, y)) = drawn(quantity) else {
+            continue;
         };
+        // pins of a joint by number, as a name has no sign and no point
+        let pin = across.map(|across| {
+            let others = channels.iter().filter(|of| (&of.0, of.1) == (quantity, *position));
+            1 + others.take_while(|of| of.2 != Some(across)).count()
+        });
+        let pin_stem = pin.map(|pin| format!("-{pin}")).unwrap_or_default();
+        let at = across.map(|across| format!(" at y {} m", labels::as_written(f64::from_bits(across))));
+        let at = at.unwrap_or_default();
         for series_group in &series_groups {
-            let name = series_group.name(&format!("{stem}-{position}"));
+            let name = series_group.name(&format!("{stem}-{position}{pin_stem}"));
             let (split, left_out) = by_speed(context, series_group, &name);
-            let channel = (quantity.clone(), position);
-            let of = |split: &Split| panel(context, table, split, &channel, y, &recorded);
+            let of = |split: &Split| panel(context, table, split, channel, y, &recorded);
             let panels: Vec<FigurePanel> = split.iter().map(of).filter(|panel| !panel.lines.is_empty()).collect();
             if panels.is_empty() {
                 continue;
@@ -49,7 +73,7 @@ pub(super) fn histories(context: &mut FigureContext<'_>) -> Vec<Figure> {
                 caption: caption(
                     context,
                     series_group,
-                    &format!("{what} {position} against time"),
+                    &format!("{what} {position}{at} against time"),
                     &panels,
                 ),
                 name,
@@ -69,6 +93,8 @@ fn recorded(context: &FigureContext<'_>, table: &Table) -> (Vec<Channel>, Record
         table.word_cells("quantity"),
         table.numbers("position"),
     );
+    let across = table.numbers("y_m");
+    let y_of = |row: usize| across.and_then(|across| across[row]).map(|y_m| (y_m + 0.0).to_bits());
     let (mut channels, mut found) = (Vec::new(), Recorded::new());
     let (Some(job), Some(quantity), Some(position)) = columns else {
         return (channels, found);
@@ -77,11 +103,14 @@ fn recorded(context: &FigureContext<'_>, table: &Table) -> (Vec<Channel>, Record
     let mut start = 0;
     while start < table.rows() {
         let same = |row: &usize| {
-            job[*row] == job[start] && quantity[*row] == quantity[start] && position[*row] == position[start]
+            job[*row] == job[start]
+                && quantity[*row] == quantity[start]
+                && position[*row] == position[start]
+                && y_of(*row) == y_of(start)
         };
         let end = (start..table.rows()).take_while(same).count() + start;
         if let (Some(job), Some(quantity), Some(position)) = (job[start], &quantity[start], position[start]) {
-            let channel = (quantity.clone(), position as u32);
+            let channel = (quantity.clone(), position as u32, y_of(start));
             if jobs.contains(&(job as u64)) {
                 if !channels.contains(&channel) {
                     channels.push(channel.clone());

@@ -4,7 +4,7 @@
 
 use super::packed::Packed;
 use crate::thinning::thinned;
-use pontoon_results::{Results, ResultsError, TableName, labels};
+use pontoon_results::{Results, ResultsError, Table, TableName, labels};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -18,9 +18,11 @@ pub struct HistoryLine {
     pub job: u32,
     /// Its axes in words.
     pub axes: String,
-    /// Position or joint.
-    pub position: u32,
-    /// `deflection_m` or `force_n`.
+    /// Position or joint; none of a place inside a module.
+    pub position: Option<u32>,
+    /// Where it is, in words.
+    pub place: String,
+    /// What it is of, as `deflection_m`.
     pub quantity: String,
     /// Its unit.
     pub unit: &'static str,
@@ -35,14 +37,45 @@ pub struct HistoryLine {
 struct Gathered {
     job: u32,
     quantity: String,
-    position: u32,
+    place: Place,
     time_s: Vec<f64>,
     value: Vec<f64>,
 }
 
+/// Where a history is: at a position or joint, at a place along, of a pin across.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Place {
+    position: Option<f64>,
+    x_m: Option<f64>,
+    y_m: Option<f64>,
+}
+
+impl Place {
+    fn of(part: &Table, row: usize) -> Self {
+        let number = |column| part.number(column, row);
+        Self {
+            position: number("position"),
+            x_m: number("x_m"),
+            y_m: number("y_m"),
+        }
+    }
+
+    fn words(self, quantity: &str) -> String {
+        let along = match (self.position, self.x_m) {
+            (Some(position), _) if quantity == "deflection_m" => format!("position {position}"),
+            (Some(joint), _) => format!("joint {joint}"),
+            (None, x_m) => format!("x {} m", labels::as_written(x_m.unwrap_or_default())),
+        };
+        match self.y_m {
+            Some(y_m) => format!("{along}, y {} m", labels::as_written(y_m)),
+            None => along,
+        }
+    }
+}
+
 impl Gathered {
-    fn is(&self, job: u32, quantity: &str, position: u32) -> bool {
-        self.job == job && self.position == position && self.quantity == quantity
+    fn is(&self, job: u32, quantity: &str, place: Place) -> bool {
+        self.job == job && self.place == place && self.quantity == quantity
     }
 
     fn line(&self, axes: String) -> HistoryLine {
@@ -51,7 +84,8 @@ impl Gathered {
         HistoryLine {
             job: self.job,
             axes,
-            position: self.position,
+            position: self.place.position.map(|position| position as u32),
+            place: self.place.words(&self.quantity),
             quantity: self.quantity.clone(),
             unit: labels::unit(&self.quantity),
             time_s: of(&self.time_s),
@@ -76,22 +110,22 @@ pub(super) fn histories(
             lines.push(now.line(row.map(row_label).unwrap_or_default()));
         }
     };
-    let columns = ["job", "time_s", "quantity", "position", "value"];
+    let columns = ["job", "time_s", "quantity", "position", "x_m", "y_m", "value"];
     results.scan(TableName::Histories, &columns, |part| {
         let Some(quantities) = part.word_cells("quantity") else {
             return;
         };
         for (row, quantity) in quantities.iter().enumerate() {
             let quantity = quantity.as_deref().unwrap_or_default();
-            let place = |column| part.number(column, row).map_or(u32::MAX, |x| x as u32);
-            let (job, position) = (place("job"), place("position"));
-            if count == 0 || !now.is(job, quantity, position) {
+            let job = part.number("job", row).map_or(u32::MAX, |x| x as u32);
+            let place = Place::of(part, row);
+            if count == 0 || !now.is(job, quantity, place) {
                 flush(&now);
                 count += 1;
                 now = Gathered {
                     job,
                     quantity: quantity.to_owned(),
-                    position,
+                    place,
                     ..Gathered::default()
                 };
             }

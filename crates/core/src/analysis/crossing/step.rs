@@ -125,7 +125,7 @@ impl Stepper<'_> {
         new.elongations = contact.elongations;
         new.newton_iterations = contact.iterations;
         new.spent = self.account(matrix, old, &new, &d); // (R1)
-        new.balance = self.pins.then(|| self.balance(matrix, old, &new)); // (P1)
+        new.balance = self.pins.then(|| self.balance(matrix, old, &new)); // (J5)
         Ok(new)
     }
 
