@@ -4,6 +4,7 @@
 //! columns, or how a crossing is stepped.
 
 use super::failure::{JobFailure, too_many_steps};
+use super::joint_rows::Rounding;
 use super::quantity_words::quantity_word;
 use super::retry::RETRY_STEP_SHARE;
 use super::shared_models::SharedModels;
@@ -11,8 +12,7 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::{
-    AtPeak, CrossingResponse, ForcePeaks, JointPeaks, Peak, PinPeaks, PlacePeaks, PositionPeaks, Quantity, Record,
-    Recorded, SectionPeaks, Subject,
+    AtPeak, CrossingResponse, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record, Recorded, Subject,
 };
 use pontoon_core::vehicle::Vehicle;
 use pontoon_plan::job::{CrossingJob, Job};
@@ -222,24 +222,17 @@ fn joint_rows(joint: &JointPeaks) -> impl Iterator<Item = ConnectorRow> {
     std::iter::once(peaks_row(joint.joint, None, &joint.sum)).chain(each)
 }
 
-fn pin_row(peaks: &PinPeaks) -> PinRow {
-    let of = &peaks.extremes;
-    PinRow {
-        joint: peaks.joint,
-        y_m: peaks.y_m,
-        components: of.components.map(|axis| [axis.compression, axis.tension].map(extreme)),
-        resultant: extreme(of.resultant),
-    }
-}
-
 fn rows(job: &Job, mut response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
     let positions: Vec<PositionRow> = (0..)
         .zip(&response.positions)
         .map(|(i, peaks): (usize, _)| position_row(peaks, static_peaks_m.map(|of| of[i])))
         .collect();
     let connectors: Vec<ConnectorRow> = response.joints.iter().flat_map(joint_rows).collect();
-    let pins: Vec<PinRow> = response.pins.iter().map(pin_row).collect();
-    let sections: Vec<SectionRow> = response.recorded.sections.iter().map(section_row).collect();
+    let rounding = Rounding::of_peaks(&response.pins);
+    let pins = response.pins.iter().filter(|_| job.record.pins);
+    let pins: Vec<PinRow> = pins.map(|pin| rounding.pin_row(pin)).collect();
+    let sections = response.recorded.sections.iter();
+    let sections: Vec<SectionRow> = sections.map(|section| rounding.section_row(section)).collect();
     let named = Named {
         design: &job.bridge.design,
         places_x_m: &job.record.places_x_m,
@@ -336,14 +329,6 @@ impl Named<'_> {
             value: value + 0.0,
         };
         at.numbers.iter().map(row).collect()
-    }
-}
-
-fn section_row(peaks: &SectionPeaks) -> SectionRow {
-    SectionRow {
-        joint: peaks.joint,
-        quantity: quantity_word(Quantity::Section(peaks.of)).to_owned(),
-        sides: [peaks.peaks.compression, peaks.peaks.tension].map(extreme),
     }
 }
 

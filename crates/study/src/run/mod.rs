@@ -22,6 +22,7 @@ mod cut;
 mod error;
 mod failure;
 mod guard;
+mod joint_rows;
 mod modes;
 mod monitor;
 mod pool;

@@ -3,11 +3,11 @@
 //! Knows which number of a response fills which field of a record. Does not know columns, or how a case is solved.
 
 use super::failure::JobFailure;
-use super::quantity_words::quantity_word;
+use super::joint_rows::Rounding;
 use super::shared_models::{SharedModels, static_case};
-use pontoon_core::response::{Quantity, SECTIONS, Section, StaticResponse, resultant_n};
+use pontoon_core::response::StaticResponse;
 use pontoon_plan::job::{Job, StandingLoad};
-use pontoon_results::{ConnectorRow, Extreme, JobRecord, PinRow, PlaceRow, PositionRow, SectionRow, Summary};
+use pontoon_results::{ConnectorRow, Extreme, JobRecord, PlaceRow, PositionRow, Summary};
 
 /// Solves the static case of a job.
 pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
@@ -49,16 +49,14 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         ..Summary::default()
     };
     summary.take_peaks(&positions, &connectors);
-    let pins = if job.record.pins {
-        pin_rows(job, &response.pins_n)
-    } else {
-        Vec::new()
-    };
-    let sections = if job.record.sections {
-        section_rows(&response.sections)
-    } else {
-        Vec::new()
-    };
+    let rounding = Rounding::of_forces(&response.pins_n);
+    let (mut pins, mut sections) = (Vec::new(), Vec::new());
+    if job.record.pins {
+        pins = rounding.static_pin_rows(job, &response.pins_n);
+    }
+    if job.record.sections {
+        sections = rounding.static_section_rows(&response.sections);
+    }
     summary.take_joint_peaks(&pins, &sections);
     JobRecord {
         job: job.number,
@@ -70,44 +68,6 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         places: place_rows(job, &response.places_m),
         ..JobRecord::default()
     }
-}
-
-/// The rows of the pins, joint after joint, and of each joint's sum.
-fn pin_rows(job: &Job, forces_n: &[[f64; 3]]) -> Vec<PinRow> {
-    let design = &job.bridge.design;
-    let (mut forces, mut rows) = (forces_n.iter().copied(), Vec::new());
-    for joint in 2..=design.modules {
-        let mut sum = [0.0; 3];
-        for (&y_m, force) in design.hinges_of(joint).y_m.iter().zip(&mut forces) {
-            (0..3).for_each(|axis| sum[axis] += force[axis]);
-            rows.push(pin_row(joint, Some(y_m), force));
-        }
-        rows.push(pin_row(joint, None, sum));
-    }
-    rows
-}
-
-fn pin_row(joint: usize, y_m: Option<f64>, force_n: [f64; 3]) -> PinRow {
-    PinRow {
-        joint,
-        y_m,
-        components: force_n.map(sides),
-        resultant: Extreme::timeless(resultant_n(force_n)),
-    }
-}
-
-/// The rows of angles and section forces, joint after joint.
-fn section_rows(sections: &[[f64; SECTIONS]]) -> Vec<SectionRow> {
-    let row = |joint: usize, (of, value): (Section, f64)| SectionRow {
-        joint,
-        quantity: quantity_word(Quantity::Section(of)).to_owned(),
-        sides: sides(value),
-    };
-    let joints = (2..).zip(sections);
-    let of_joint = |(joint, values): (usize, &[f64; SECTIONS])| {
-        Section::ALL.into_iter().zip(*values).map(move |of| row(joint, of))
-    };
-    joints.flat_map(of_joint).collect()
 }
 
 fn place_rows(job: &Job, places_m: &[f64]) -> Vec<PlaceRow> {

@@ -52,7 +52,7 @@ impl<'a> Observer<'a> {
             bridge,
             positions,
             joints,
-            pins: PinWatch::new(bridge, record.pins),
+            pins: PinWatch::new(bridge, record.needs_pins()),
             edge: 0.0,
             roll: 0.0,
             min_contact_force_n: f64::INFINITY,

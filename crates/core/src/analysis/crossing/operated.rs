@@ -314,7 +314,7 @@ impl<C: StepClock> Crew<'_, C> {
         CrossingResponse {
             positions: positions.collect(),
             joints: peaks.joints(&design.connectors.y_m),
-            pins: if of.record.pins {
+            pins: if of.record.needs_pins() {
                 self.lanes.pin_peaks(lane)
             } else {
                 Vec::new()
