@@ -179,14 +179,15 @@ fn a_bridge_of_one_module_answers_at_its_places() {
     stage.study["record"] = json!({ "places_x_m": [0, 3.35], "pins": true, "sections": true });
     stage.ran("r");
     let peaks = stage.numbers("r/places.parquet", "peak_deflection_m");
-    assert!(peaks[1] > Some(0.01), "{peaks:?}");
+    // the module bends between its supports
+    assert!(peaks[1] > Some(5e-4), "{peaks:?}");
     assert_eq!(peaks[0], stage.numbers("r/positions.parquet", "peak_deflection_m")[0]);
     assert_eq!(stage.table("r/pins.parquet").height(), 0);
     // and a load that stands, deepest under itself
     stage.study["analysis"] = json!({ "kind": "static" });
     stage.study["design"] = json!([{ "grid": { "connection": "linear", "load_x_m": [3.35], "load_n": 3e5 } }]);
     stage.ran("s");
-    assert!(stage.numbers("s/places.parquet", "deflection_m")[1] > Some(0.01));
+    assert!(stage.numbers("s/places.parquet", "deflection_m")[1] > Some(5e-4));
 }
 
 #[test]
@@ -204,7 +205,7 @@ fn records_of_what_is_not_there_are_refused_at_their_key() {
     refused(json!({ "places_x_m": [-1] }), &["record.places_x_m[0]: found -1"]);
     refused(
         json!({ "places_x_m": [3.0, 3.0] }),
-        &["record.places_x_m[1]: found 3, allowed: each place once"],
+        &["record.places_x_m[1]: found 3 twice, allowed: each place once"],
     );
     refused(
         json!({ "places_x_m": [3.0], "histories": { "places_x_m": [4.0] } }),
@@ -216,7 +217,7 @@ fn records_of_what_is_not_there_are_refused_at_their_key() {
     );
     refused(
         json!({ "histories": { "sections": [2, 2] } }),
-        &["record.histories.sections[1]: found 2, allowed: each number once"],
+        &["record.histories.sections[1]: found 2 twice, allowed: each number once"],
     );
     refused(
         json!({ "at_peak_of": ["peak_pin_n"] }),
@@ -236,7 +237,7 @@ fn records_of_what_is_not_there_are_refused_at_their_key() {
     );
     refused(
         json!({ "at_peak_of": ["peak_tension_n", "peak_tension_n"] }),
-        &["record.at_peak_of[1]: found \"peak_tension_n\", allowed: each peak once"],
+        &["record.at_peak_of[1]: found \"peak_tension_n\" twice, allowed: each peak once"],
     );
     // a bridge that an axis makes shorter
     let mut stage = stage();

@@ -6,6 +6,7 @@ use super::BridgeDesign;
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::row::Row;
 use crate::fem::{SparseRow, SymmetricMatrix};
+use crate::response::JointParts;
 
 /// A hinge place of a joint, by the module left of it.
 #[derive(Debug, Clone)]
@@ -90,6 +91,25 @@ pub(super) fn pins(
                 .iter()
                 .filter_map(move |&y| place(joint, y))
                 .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// The parts of all joints.
+pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
+    let mut first_pin = 0;
+    (2..=design.modules)
+        .map(|joint| {
+            let parts = JointParts {
+                joint,
+                first_connector: (joint - 2) * design.connectors.y_m.len(),
+                connectors_y_m: design.connectors.y_m.clone(),
+                first_pin,
+                pins_y_m: design.hinges_of(joint).y_m.clone(),
+                depth_m: design.module.depth_m,
+            };
+            first_pin += parts.pins_y_m.len();
+            parts
         })
         .collect()
 }

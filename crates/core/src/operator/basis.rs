@@ -5,7 +5,7 @@
 use super::columns::{ColumnSolver, SOLVED_AT_ONCE};
 use super::cutoff::{Cutoff, CutoffJudge};
 use super::persist::{NumberReader, OperatorParts};
-use super::pins::{PinRows, pin_places, pin_rows};
+use super::pin_rows::{PinRows, pin_places, pin_rows};
 use super::residual_rows::{ResidualRows, dot, residual_of_deck};
 use crate::bridge::{Bridge, Track};
 use crate::fem::{EigenPairs, Factor, FemError, ModeSearch, ONE_SEARCH, SparseRow, SymmetricMatrix};

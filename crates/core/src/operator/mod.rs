@@ -27,6 +27,7 @@ mod modes;
 mod moving_masses;
 mod panel;
 mod persist;
+mod pin_rows;
 mod pins;
 mod residual;
 mod residual_rows;

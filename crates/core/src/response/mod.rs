@@ -14,7 +14,7 @@ pub use peaks::{
 pub(crate) use recorder::Recorder;
 pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak, resultant_n};
 pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
-pub(crate) use subject::{JointReading, Reading, joint_parts};
+pub(crate) use subject::{JointParts, JointReading, Reading};
 
 /// Counts of what the solver did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

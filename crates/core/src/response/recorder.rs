@@ -4,8 +4,7 @@
 //! Knows what was asked for. Does not know which solver steps, nor what a number means to a table.
 
 use super::peaks::{ForcePeaks, Peak, PlacePeaks, SectionPeaks};
-use super::subject::{Axis, JointParts, Reading, Section, Subject, joint_parts, read};
-use crate::bridge::BridgeDesign;
+use super::subject::{Axis, JointParts, Reading, Section, Subject, read};
 
 /// What to record of a crossing.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -64,15 +63,15 @@ impl Record {
     }
 
     /// All that is told of the instant of a peak.
-    fn told(&self, design: &BridgeDesign) -> Vec<Subject> {
-        let mut told: Vec<Subject> = (1..=design.positions()).map(Subject::Position).collect();
+    fn told(&self, positions: usize, joints: &[JointParts]) -> Vec<Subject> {
+        let mut told: Vec<Subject> = (1..=positions).map(Subject::Position).collect();
         told.extend((0..self.places_x_m.len()).map(Subject::Place));
-        for joint in 2..=design.modules {
-            let connectors = 0..design.connectors.y_m.len();
+        for parts in joints {
+            let (joint, connectors) = (parts.joint, 0..parts.connectors_y_m.len());
             told.push(Subject::Joint(joint));
             told.extend(connectors.map(|index| Subject::Connector { joint, index }));
             if self.pins {
-                let pins = 0..design.hinges_of(joint).y_m.len();
+                let pins = 0..parts.pins_y_m.len();
                 told.extend(pins.flat_map(|index| Axis::ALL.map(|axis| Subject::Pin { joint, index, axis })));
             }
             if self.sections {
@@ -134,13 +133,13 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    pub(crate) fn new(design: &BridgeDesign, record: &Record) -> Self {
+    /// Begins to record, on a bridge of so many positions and these joints.
+    pub(crate) fn new(positions: usize, joints: Vec<JointParts>, record: &Record) -> Self {
         let place = |&x_m: &f64| PlacePeaks {
             x_m,
             deflection: Peak::default(),
             uplift: Peak::default(),
         };
-        let joints = joint_parts(design);
         let of_joint = |parts: &JointParts| {
             let joint = parts.joint;
             Section::ALL.map(|of| SectionPeaks {
@@ -165,9 +164,9 @@ impl Recorder {
             told: if record.at_peaks.is_empty() {
                 Vec::new()
             } else {
-                record.told(design)
+                record.told(positions, &joints)
             },
-            positions: design.positions(),
+            positions,
             recorded: Recorded {
                 places: record.places_x_m.iter().map(place).collect(),
                 sections: sections.collect(),

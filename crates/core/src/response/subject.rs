@@ -2,8 +2,6 @@
 //!
 //! Knows which numbers a bridge has and which a joint's others come from. Does not know solvers or tables.
 
-use crate::bridge::BridgeDesign;
-
 /// What a recorded number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
@@ -149,25 +147,6 @@ pub(crate) struct JointParts {
     pub pins_y_m: Vec<f64>,
     /// Height of the connectors above the hinge line `[m]`.
     pub depth_m: f64,
-}
-
-/// The parts of all joints.
-pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
-    let mut first_pin = 0;
-    (2..=design.modules)
-        .map(|joint| {
-            let parts = JointParts {
-                joint,
-                first_connector: (joint - 2) * design.connectors.y_m.len(),
-                connectors_y_m: design.connectors.y_m.clone(),
-                first_pin,
-                pins_y_m: design.hinges_of(joint).y_m.clone(),
-                depth_m: design.module.depth_m,
-            };
-            first_pin += parts.pins_y_m.len();
-            parts
-        })
-        .collect()
 }
 
 /// What joints do, to be read.

@@ -3,7 +3,7 @@
 //! Knows the bridge's observed rows and what is kept of each. Does not know the scheme.
 
 use super::step::Motion;
-use crate::bridge::Bridge;
+use crate::bridge::{Bridge, joint_parts};
 use crate::fem::SparseRow;
 use crate::response::{
     CrossingResponse, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks, PositionPeaks,
@@ -61,7 +61,7 @@ impl<'a> Observer<'a> {
             statistics: Statistics::default(),
             energy: EnergyBalance::default(),
             places: record.places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect(),
-            recorder: Recorder::new(design, record),
+            recorder: Recorder::new(design.positions(), joint_parts(design), record),
         }
     }
 

@@ -5,7 +5,7 @@
 use super::halving::{Halving, halve};
 use super::{Crossing, CrossingSettings, StepSpan};
 use crate::analysis::AnalysisError;
-use crate::bridge::{Bridge, BridgeDesign};
+use crate::bridge::{Bridge, BridgeDesign, joint_parts};
 use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
@@ -204,7 +204,8 @@ impl<C: StepClock> Crew<'_, C> {
         let span = StepSpan::new(length_m, vehicle, h, crossing.speed_m_s, crossing.tail_s);
         let start_s = span.time_s(0, h);
         self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
-        let mut recorder = Recorder::new(&self.solver.design, &crossing.record);
+        let design = &self.solver.design;
+        let mut recorder = Recorder::new(design.positions(), joint_parts(design), &crossing.record);
         recorder.note(&Start(start_s));
         Under {
             index,

@@ -6,12 +6,12 @@ mod creeping;
 
 use super::AnalysisError;
 use super::snapshot::{Snapshot, connectors, wheels};
-use crate::bridge::{Bridge, Load, PinPlace, VehiclePlacement};
+use crate::bridge::{Bridge, Load, PinPlace, VehiclePlacement, joint_parts};
 use crate::connector::{Connection, OwnLaws, State};
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::flexibility::Flexibility;
-use crate::response::{Equilibrium, JointForces, JointReading, StaticResponse, joint_parts};
+use crate::response::{Equilibrium, JointForces, JointReading, StaticResponse};
 use crate::vehicle::Vehicle;
 pub use creeping::CreepingLoad;
 use nalgebra::{DMatrix, DVector};

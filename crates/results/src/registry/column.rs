@@ -1,0 +1,467 @@
+//! What is told of a column, and how an entry of the list is written.
+//!
+//! Knows records and tables. Does not know which columns there are.
+
+use super::COLUMNS;
+use crate::arrays::CellKind;
+use crate::record::{
+    AtPeakRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
+};
+use crate::table::TableName;
+use pontoon_plan::input::Cell;
+use serde::Serialize;
+
+/// A column of a table.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Column {
+    /// The table.
+    pub table: TableName,
+    /// Its name.
+    pub name: &'static str,
+    /// What its cells are.
+    #[serde(flatten)]
+    pub cells: CellKind,
+    /// Its unit; empty of counts, shares and words.
+    pub unit: &'static str,
+    /// What it is called in words.
+    pub label: &'static str,
+    /// What it is.
+    pub text: &'static str,
+    /// When a table has it.
+    pub when: When,
+    /// Where its cells come from.
+    #[serde(skip)]
+    pub(crate) source: ColumnSource,
+    /// How many digits people read.
+    #[serde(skip)]
+    pub digits: Digits,
+    /// Which part it has in what people look at.
+    #[serde(skip)]
+    pub role: ColumnRole,
+    /// Whether points of an experiment may be drawn in its chart.
+    #[serde(skip)]
+    pub drawn: bool,
+    /// Whether the summary has it.
+    #[serde(skip)]
+    pub in_summary: bool,
+    /// Its card on a page.
+    #[serde(skip)]
+    pub card: Option<Card>,
+    /// Its panel in a figure against speed.
+    #[serde(skip)]
+    pub curve: Option<Curve>,
+}
+
+/// Where the cells of a column come from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ColumnSource {
+    /// A job's record.
+    Job(fn(&JobRecord) -> Cell<'_>),
+    /// A row of positions.
+    Position(fn(&RowOf<'_, PositionRow>) -> Cell<'static>),
+    /// A row of connectors.
+    Connector(fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>),
+    /// A sample of a history.
+    Sample(for<'a> fn(&HistorySample<'a>) -> Cell<'a>),
+    /// A mode.
+    Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>),
+    /// A pin.
+    Pin(fn(&RowOf<'_, PinRow>) -> Cell<'static>),
+    /// A section force.
+    Section(for<'a> fn(&RowOf<'a, SectionRow>) -> Cell<'a>),
+    /// A place.
+    Place(fn(&RowOf<'_, PlaceRow>) -> Cell<'static>),
+    /// A number at a peak.
+    AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>),
+    /// A worn joint.
+    Joint(fn(&JointRow) -> Cell<'static>),
+}
+
+/// A worn joint of a job.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointRow {
+    /// The job's number.
+    pub(crate) job: usize,
+    /// The joint's number.
+    pub(crate) joint: usize,
+    /// Its gaps, tension and compression `[m]`.
+    pub(crate) gaps_m: [f64; 2],
+}
+
+/// A row of a table with its job.
+#[derive(Debug)]
+pub(crate) struct RowOf<'a, R> {
+    /// The job's number.
+    pub(crate) job: usize,
+    /// The row.
+    pub(crate) row: &'a R,
+}
+
+/// A sample of a history.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HistorySample<'a> {
+    /// The job's number.
+    pub(crate) job: usize,
+    /// Its time `[s]`.
+    pub(crate) time_s: f64,
+    /// What the history is of.
+    pub(crate) of: &'a NumberPlace,
+    /// The value, in the unit of the quantity.
+    pub(crate) value: f64,
+}
+
+/// When a table has a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum When {
+    /// In every study that leaves the table.
+    Always,
+    /// In studies of crossings and static cases.
+    Loaded,
+    /// In studies of static cases.
+    Static,
+    /// In studies of crossings.
+    Crossing,
+    /// In studies of modes.
+    Modes,
+    /// Where a job's time step was to be found.
+    AutoTimeStep,
+    /// Where jobs are solved again.
+    Verify,
+    /// Where pins are recorded.
+    Pins,
+    /// Where section forces are recorded.
+    Sections,
+    /// Where histories of places are recorded.
+    PlaceHistories,
+    /// Where histories of pins are recorded.
+    PinHistories,
+}
+
+/// How many digits of a number people read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// So many behind the point.
+    Decimals(usize),
+    /// So many from the first that is not zero, none that says nothing.
+    Significant(usize),
+}
+
+/// Which part a column has in what people look at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnRole {
+    /// It says which row it is.
+    Key,
+    /// It says what became of the job.
+    State,
+    /// A number of a job whose largest value matters.
+    Measure,
+    /// A number that a page lists with the job.
+    Listed,
+    /// A number that the table keeps.
+    Kept,
+}
+
+/// A card of the largest value of a measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Card {
+    /// In words.
+    pub label: &'static str,
+    /// What the place is one of: `position`, `joint`.
+    pub place: Option<(&'static str, &'static str)>,
+    /// The column of its time.
+    pub time: Option<&'static str>,
+}
+
+/// A panel of a figure against speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve {
+    /// The figure.
+    pub figure: SpeedFigure,
+    /// What the axis up is called.
+    pub label: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What a number of the table is multiplied by to be in that unit.
+    pub factor: f64,
+}
+
+/// A figure against speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpeedFigure {
+    /// Deflection and uplift.
+    Deflection,
+    /// Forces of joints.
+    Force,
+}
+
+impl SpeedFigure {
+    /// All figures.
+    pub const ALL: [Self; 2] = [Self::Deflection, Self::Force];
+}
+
+pub(super) const fn column(
+    table: TableName,
+    (name, cells): (&'static str, CellKind),
+    (label, text): (&'static str, &'static str),
+    source: ColumnSource,
+) -> Column {
+    Column {
+        table,
+        name,
+        cells,
+        unit: "",
+        label,
+        text,
+        when: When::Always,
+        source,
+        digits: Digits::Significant(6),
+        role: ColumnRole::Kept,
+        drawn: false,
+        in_summary: false,
+        card: None,
+        curve: None,
+    }
+}
+
+impl Column {
+    pub(super) const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    pub(super) const fn when(self, when: When) -> Self {
+        Self { when, ..self }
+    }
+
+    pub(super) const fn role(self, role: ColumnRole) -> Self {
+        Self { role, ..self }
+    }
+
+    pub(super) const fn decimals(self, decimals: usize) -> Self {
+        Self {
+            digits: Digits::Decimals(decimals),
+            ..self
+        }
+    }
+
+    pub(super) const fn drawn(self) -> Self {
+        Self { drawn: true, ..self }
+    }
+
+    pub(super) const fn in_summary(self) -> Self {
+        Self {
+            in_summary: true,
+            ..self
+        }
+    }
+
+    pub(super) const fn card(self, card: Card) -> Self {
+        Self {
+            card: Some(card),
+            ..self
+        }
+    }
+
+    pub(super) const fn curve(self, curve: Curve) -> Self {
+        Self {
+            curve: Some(curve),
+            ..self
+        }
+    }
+
+    /// A length `[m]`, read to a tenth of a millimetre.
+    pub(super) const fn metres(self) -> Self {
+        self.unit("m").decimals(4)
+    }
+
+    /// A force `[N]`, read to a newton.
+    pub(super) const fn newtons(self) -> Self {
+        self.unit("N").decimals(0)
+    }
+}
+
+type NameAndLabel = (&'static str, &'static str);
+
+/// A column of every table of jobs.
+pub(super) const fn of_record(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&JobRecord) -> Cell<'_>,
+) -> Column {
+    column(TableName::Jobs, (name, cells), names, ColumnSource::Job(of))
+}
+
+/// A column of the table of jobs of crossings and static cases.
+pub(super) const fn of_job(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&JobRecord) -> Cell<'_>,
+) -> Column {
+    of_record(name, cells, names, of).when(When::Loaded)
+}
+
+/// A number of a job whose largest value matters.
+pub(super) const fn measure(
+    name: &'static str,
+    label: &'static str,
+    text: &'static str,
+    of: fn(&JobRecord) -> Cell<'_>,
+) -> Column {
+    of_job(name, CellKind::Numbers, (label, text), of).role(ColumnRole::Measure)
+}
+
+pub(super) const fn of_position(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, PositionRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Positions, (name, cells), names, ColumnSource::Position(of))
+}
+
+pub(super) const fn of_connector(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Connectors, (name, cells), names, ColumnSource::Connector(of))
+}
+
+pub(super) const fn of_sample(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: for<'a> fn(&HistorySample<'a>) -> Cell<'a>,
+) -> Column {
+    column(TableName::Histories, (name, cells), names, ColumnSource::Sample(of))
+}
+
+pub(super) const fn of_pin(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, PinRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Pins, (name, cells), names, ColumnSource::Pin(of))
+}
+
+pub(super) const fn of_section(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: for<'a> fn(&RowOf<'a, SectionRow>) -> Cell<'a>,
+) -> Column {
+    column(TableName::Sections, (name, cells), names, ColumnSource::Section(of))
+}
+
+pub(super) const fn of_place(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, PlaceRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Places, (name, cells), names, ColumnSource::Place(of))
+}
+
+pub(super) const fn at_peak(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>,
+) -> Column {
+    column(TableName::AtPeaks, (name, cells), names, ColumnSource::AtPeak(of))
+}
+
+pub(super) const fn of_joint(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&JointRow) -> Cell<'static>,
+) -> Column {
+    column(TableName::Joints, (name, cells), names, ColumnSource::Joint(of))
+}
+
+pub(super) const fn of_mode(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>,
+) -> Column {
+    column(TableName::Modes, (name, cells), names, ColumnSource::Mode(of))
+}
+
+pub(super) const fn peak_card(
+    label: &'static str,
+    place: (&'static str, &'static str),
+    time: Option<&'static str>,
+) -> Card {
+    Card {
+        label,
+        place: Some(place),
+        time,
+    }
+}
+
+pub(super) const fn plain_card(label: &'static str) -> Card {
+    Card {
+        label,
+        place: None,
+        time: None,
+    }
+}
+
+pub(super) const fn centimetres(label: &'static str) -> Curve {
+    Curve {
+        figure: SpeedFigure::Deflection,
+        label,
+        unit: "cm",
+        factor: 100.0,
+    }
+}
+
+pub(super) const fn kilonewtons(label: &'static str) -> Curve {
+    Curve {
+        figure: SpeedFigure::Force,
+        label,
+        unit: "kN",
+        factor: 1e-3,
+    }
+}
+
+impl Column {
+    /// The columns of a table, in their order.
+    pub fn of_table(table: TableName) -> impl Iterator<Item = &'static Self> {
+        COLUMNS.iter().filter(move |column| column.table == table)
+    }
+
+    /// The column of a table by its name.
+    pub fn of(table: TableName, name: &str) -> Option<&'static Self> {
+        Self::of_table(table).find(|column| column.name == name)
+    }
+
+    /// The first column of a name, whatever its table.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    /// The cell of a mode that stands alone; nothing in a column of another table.
+    pub fn of_mode<'a>(&self, mode: &'a ModeRow) -> Cell<'a> {
+        match self.source {
+            ColumnSource::Mode(of) => of(&RowOf { job: 0, row: mode }),
+            _ => Cell::Nothing,
+        }
+    }
+
+    /// The numbers of a job whose largest values matter.
+    pub fn measures() -> impl Iterator<Item = &'static Self> {
+        Self::of_table(TableName::Jobs).filter(|column| column.role == ColumnRole::Measure)
+    }
+
+    /// The peaks that a summary of crossings or static cases has.
+    pub fn of_summary() -> impl Iterator<Item = &'static Self> {
+        Self::of_table(TableName::Jobs).filter(|column| column.in_summary)
+    }
+}
