@@ -10,9 +10,10 @@ mod subject;
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
 pub use peaks::{
     ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PlacePeaks, PositionPeaks, SectionPeaks,
+    resultant_n,
 };
 pub(crate) use recorder::Recorder;
-pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak, resultant_n};
+pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
 pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
 pub(crate) use subject::{JointParts, JointReading, Reading};
 

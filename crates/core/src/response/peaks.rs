@@ -112,7 +112,7 @@ impl PinExtremes {
         for (peaks, force) in self.components.iter_mut().zip(force_n) {
             peaks.take(force, time_s);
         }
-        self.resultant.take(super::resultant_n(force_n), time_s);
+        self.resultant.take(resultant_n(force_n), time_s);
     }
 }
 
@@ -125,4 +125,9 @@ pub struct PinPeaks {
     pub y_m: Option<f64>,
     /// Its extremes.
     pub extremes: PinExtremes,
+}
+
+/// The length of a force `[N]`.
+pub fn resultant_n([x, y, z]: [f64; 3]) -> f64 {
+    (x * x + y * y + z * z).sqrt()
 }

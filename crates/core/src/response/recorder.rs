@@ -3,7 +3,7 @@
 //!
 //! Knows what was asked for. Does not know which solver steps, nor what a number means to a table.
 
-use super::peaks::{ForcePeaks, Peak, PlacePeaks, SectionPeaks};
+use super::peaks::{ForcePeaks, Peak, PlacePeaks, SectionPeaks, resultant_n};
 use super::subject::{Axis, JointParts, Reading, Section, Subject, read};
 
 /// What to record of a crossing.
@@ -253,9 +253,4 @@ fn watched(peak: WatchedPeak, positions: usize, joints: &[JointParts], reading: 
             largest(&mut pins.map(|pin| resultant_n(reading.pin_n(pin))))
         }
     }
-}
-
-/// The length of a force `[N]`.
-pub fn resultant_n([x, y, z]: [f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
 }

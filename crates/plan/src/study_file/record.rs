@@ -7,7 +7,10 @@ use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::operator::Followed;
 use pontoon_core::response::{Axis, PeakOf, Record, Section, Subject, WatchedPeak};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 use std::path::Path;
 
 /// What to keep of each job beyond its peaks.
@@ -59,7 +62,7 @@ pub struct HistoriesSpec {
 }
 
 /// A peak at whose instant everything else is wanted: its column, or its column at a position or joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PeakSpec {
     /// The largest of the whole bridge.
@@ -96,6 +99,31 @@ pub enum PeakColumn {
     PeakTensionN,
     /// Resultant of a pin.
     PeakPinN,
+}
+
+impl<'de> Deserialize<'de> for PeakSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(PeakVisitor)
+    }
+}
+
+/// Reads a peak, so that what is wrong is told as of a column or of a document.
+struct PeakVisitor;
+
+impl<'de> Visitor<'de> for PeakVisitor {
+    type Value = PeakSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a column of peaks, or a document with column and position or joint")
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<PeakSpec, E> {
+        PeakColumn::deserialize(StrDeserializer::new(word)).map(PeakSpec::Column)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PeakSpec, A::Error> {
+        PeakAt::deserialize(MapAccessDeserializer::new(map)).map(PeakSpec::At)
+    }
 }
 
 impl PeakColumn {
