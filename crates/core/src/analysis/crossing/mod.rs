@@ -13,7 +13,7 @@ use super::AnalysisError;
 use super::modes::Rayleigh;
 use crate::bridge::{Bridge, Track};
 use crate::connector::{Connection, OwnLaws};
-use crate::contact::LinkLaw;
+use crate::contact::{Dashpot, LinkLaw};
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
 use crate::response::{CrossingResponse, Record};
@@ -68,6 +68,11 @@ impl Crossing {
             self.connection,
             &self.own_laws,
         )
+    }
+
+    /// The connectors that have dashpots.
+    fn dashpots(&self) -> Vec<Dashpot> {
+        Dashpot::of_connectors(&self.own_laws)
     }
 }
 
@@ -131,6 +136,7 @@ impl CrossingSolver {
             speed_m_s: crossing.speed_m_s,
             rayleigh: self.settings.rayleigh,
             laws: crossing.laws(self.bridge.connectors.len()),
+            dashpots: crossing.dashpots(),
             pins: crossing.record.pins,
         };
         let observer = Observer::new(&self.bridge, &crossing.record);

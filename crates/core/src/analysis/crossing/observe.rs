@@ -90,7 +90,7 @@ impl<'a> Observer<'a> {
             peaks.uplift.take(z, t);
         }
         let per_joint = self.bridge.design().connectors.y_m.len();
-        for (joint, forces) in self.joints.iter_mut().zip(now.forces.chunks(per_joint)) {
+        for (joint, forces) in self.joints.iter_mut().zip(now.connector_forces().chunks(per_joint)) {
             joint.sum.take(forces.iter().sum(), t);
             for ((_, peaks), &force) in joint.connectors.iter_mut().zip(forces) {
                 peaks.take(force, t);
@@ -131,7 +131,7 @@ impl<'a> Observer<'a> {
             history.values.push(match history.quantity {
                 // nothing is 0, not -0
                 Quantity::Deflection => 0.0 - self.bridge.positions[history.position - 1].dot(&now.u),
-                Quantity::Force => now.forces[(history.position - 2) * per_joint..][..per_joint]
+                Quantity::Force => now.connector_forces()[(history.position - 2) * per_joint..][..per_joint]
                     .iter()
                     .sum(),
             });
