@@ -109,7 +109,7 @@ fn damping_is_an_axis_of_the_bridge_and_of_its_joints() {
         cells.filter(|(_, c)| **c == is).map(|(x, _)| x).collect()
     };
     // a coefficient of 0 is a study without dashpots
-    let mut plain = stage(Value::Null);
+    let plain = stage(Value::Null);
     plain.ran("r");
     for column in [
         "peak_deflection_m",
