@@ -148,6 +148,15 @@ fn damping_is_nothing_to_static_cases() {
     stage.study.as_object_mut().unwrap().remove("record");
     stage.ran("r");
     assert_eq!(of_jobs(&stage, "load_x_m"), [5.0, 9.0], "equal jobs are one");
+    // nor is a coefficient of 0 to crossings: eight jobs, four of them with dashpots
+    let mut stage = self::stage(Value::Null);
+    let plain = stage.study["design"][0].clone();
+    let mut damped = plain.clone();
+    damped["grid"]["bridge.connectors.damping_n_s_m"] = json!([0, 2e5]);
+    stage.study["design"] = json!([plain, damped]);
+    stage.ran("r");
+    let damping = stage.numbers("r/jobs.parquet", "bridge.connectors.damping_n_s_m");
+    assert_eq!(damping, [[None; 4], [Some(2e5); 4]].concat());
 }
 
 #[test]
