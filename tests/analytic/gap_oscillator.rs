@@ -4,8 +4,9 @@
 //! w/L towards each other at the deck, the connector, d above the hinge, shortens by `g w`, `g = 2 d/L`. With mu the mass and
 //! k the water's stiffness a metre: `m = 2 mu L/3`, `k_w = 2 k L/3`, `c = a k_w + b m`; N the connector's force beyond its
 //! gaps: `m w'' + c w' + k_w w + g N(g w) = P phi(V t)`, phi the hat of the two modules. Between the instants at which the
-//! connector meets or leaves a gap, at which the load passes the joint and at which it leaves, the equation is linear under a
-//! linear force and solved in closed form; the instants are found to 1e-12 s.
+//! connector meets or leaves a gap, at which the force of a truss with its dashpot changes its sign (J5), at which the load passes
+//! the joint and at which it leaves, the equation is linear under a linear force and solved in closed form; the instants are found
+//! to 1e-12 s.
 //!
 //! L = 6.7 m, d = 1.07 m, mu = 12,148 kg/m, k = 60.5 kN/m^2, connectors 47.4 MN/m in all, gaps 20 / 5.5 mm, a = 0.02 s, b = 0.12
 //! 1/s, P = 100 kN, V = 5 m/s.
@@ -29,6 +30,7 @@ struct Pair {
     added_mass_kg_m: f64,
     water_n_m2: f64,
     connectors_n_m: f64,
+    dashpots_n_s_m: f64,
     gap_tension_m: f64,
     gap_compression_m: f64,
     rayleigh: Rayleigh,
@@ -47,6 +49,7 @@ const PAIR: Pair = Pair {
     added_mass_kg_m: 11_135.0,
     water_n_m2: 60_500.0,
     connectors_n_m: 4.74e7,
+    dashpots_n_s_m: 0.0,
     gap_tension_m: 0.02,
     gap_compression_m: 0.0055,
     rayleigh: Rayleigh { a: 0.02, b: 0.12 },
@@ -55,10 +58,27 @@ const PAIR: Pair = Pair {
     tail_s: 3.0,
 };
 
-/// Deflections of the joint `[m]` and forces of its connectors, tension positive `[N]`.
+/// Deflections of the joint `[m]`, forces of its connectors, tension positive `[N]`, and for how long the exact ones have been on
+/// one line of the law `[s]`.
+#[derive(Debug, Default)]
 struct Histories {
     deflection_m: Vec<f64>,
     force_n: Vec<f64>,
+    on_line_s: Vec<f64>,
+}
+
+/// A line of the connector's law against deflection and velocity.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Line {
+    on_u: f64,
+    on_v: f64,
+    offset: f64,
+}
+
+impl Line {
+    fn force_n(&self, u: f64, v: f64) -> f64 {
+        self.on_u * u + self.on_v * v + self.offset
+    }
 }
 
 impl Pair {
@@ -67,20 +87,21 @@ impl Pair {
         2.0 * self.depth_m / self.length_m
     }
 
-    /// The line of the connector's law at a deflection: slope and offset of its force (tension positive) against deflection.
-    fn line(&self, u: f64) -> (f64, f64) {
-        let e = -self.lever() * u;
-        let k = self.connectors_n_m;
+    /// The line of the connector's law at a motion: its force (tension positive) is `on_u u + on_v v + offset`.
+    fn line(&self, Motion { u, v }: Motion) -> Line {
+        let (lever, k, c) = (self.lever(), self.connectors_n_m, self.dashpots_n_s_m);
+        let e = -lever * u;
+        let beyond = |gap: f64| Line {
+            on_u: -k * lever,
+            on_v: -c * lever,
+            offset: -k * gap,
+        };
+        let (pulls, pushes) = (beyond(self.gap_tension_m), beyond(-self.gap_compression_m));
         match e {
-            e if e > self.gap_tension_m => (-k * self.lever(), -k * self.gap_tension_m),
-            e if e < -self.gap_compression_m => (-k * self.lever(), k * self.gap_compression_m),
-            _ => (0.0, 0.0),
+            e if e > self.gap_tension_m && pulls.force_n(u, v) > 0.0 => pulls,
+            e if e < -self.gap_compression_m && pushes.force_n(u, v) < 0.0 => pushes,
+            _ => Line::default(),
         }
-    }
-
-    fn force_n(&self, u: f64) -> f64 {
-        let (slope, offset) = self.line(u);
-        slope * u + offset
     }
 
     /// Load on the joint at the beginning of a piece, and its rate.
@@ -103,70 +124,45 @@ impl Pair {
         let damping = self.rayleigh.a * water + self.rayleigh.b * mass;
         let lever = self.lever();
         let breaks = [1.0, 2.0].map(|n| n * self.length_m / self.speed_m_s);
-        let meets = [self.gap_compression_m / lever, -self.gap_tension_m / lever];
-        // within a piece: from t0, with the line of the law in its middle
-        let piece = |t0: f64, from: Motion, (slope, offset): (f64, f64), t: f64| {
+        // within a piece: from t0, on one line of the law
+        let piece = |t0: f64, from: Motion, line: Line, t: f64| {
             let (p, r) = self.load(t0);
             let oscillator = Oscillator {
                 mass,
-                damping,
-                stiffness: water - lever * slope,
+                damping: damping - lever * line.on_v,
+                stiffness: water - lever * line.on_u,
             };
-            oscillator.after(t - t0, from, p + lever * offset, r)
+            oscillator.after(t - t0, from, p + lever * line.offset, r)
         };
-        let (mut now, mut at) = (Motion { u: 0.0, v: 0.0 }, 0.0);
-        let mut line = self.line(0.0);
-        let mut found = Histories {
-            deflection_m: vec![0.0],
-            force_n: vec![0.0],
-        };
-        for n in 1..=steps {
+        let (mut now, mut at, mut changed) = (Motion { u: 0.0, v: 0.0 }, 0.0, 0.0);
+        let mut line = self.line(now);
+        let mut found = Histories::default();
+        for n in 0..=steps {
             let to = n as f64 * h;
             while at < to {
                 let end = breaks.iter().copied().filter(|b| *b > at + 1e-12).fold(to, f64::min);
-                // the first crossing of a gap in a hundredth of the way to the end
-                let mut next = (end, piece(at, now, line, end));
-                'search: for part in 1..=100 {
-                    let t = at + (end - at) * part as f64 / 100.0;
-                    let there = piece(at, now, line, t).u;
-                    for meet in meets {
-                        let before = at + (end - at) * (part - 1) as f64 / 100.0;
-                        let start = if part == 1 {
-                            now.u
-                        } else {
-                            piece(at, now, line, before).u
-                        };
-                        // a piece that begins on the gap has just crossed it
-                        if part == 1 && (now.u - meet).abs() < 1e-13 {
-                            continue;
+                // the first change of line in a hundredth of the way to the end
+                let other = |t: f64| self.line(piece(at, now, line, t)) != line;
+                let part = |part: usize| at + (end - at) * part as f64 / 100.0;
+                let next = (1..=100).find(|&i| other(part(i))).map_or(end, |i| {
+                    let (mut low, mut high) = (part(i - 1), part(i));
+                    while high - low > 1e-13 {
+                        let middle = 0.5 * (low + high);
+                        if middle <= low || middle >= high {
+                            break;
                         }
-                        if (start - meet) * (there - meet) < 0.0 {
-                            let (mut low, mut high) = (before, t);
-                            while high - low > 1e-13 {
-                                let middle = 0.5 * (low + high);
-                                if middle <= low || middle >= high {
-                                    break;
-                                }
-                                let side = piece(at, now, line, middle).u - meet;
-                                if side * (start - meet) > 0.0 {
-                                    low = middle
-                                } else {
-                                    high = middle
-                                }
-                            }
-                            let v = piece(at, now, line, high).v;
-                            next = (high, Motion { u: meet, v });
-                            break 'search;
-                        }
+                        if other(middle) { high = middle } else { low = middle }
                     }
-                }
-                (at, now) = next;
-                // the line of the side to which the motion goes
-                line = self.line(now.u + 1e-9 * now.v.signum());
+                    changed = high;
+                    high
+                });
+                (at, now) = (next, piece(at, now, line, next));
+                line = self.line(now);
             }
             at = to;
             found.deflection_m.push(now.u);
-            found.force_n.push(self.force_n(now.u));
+            found.force_n.push(line.force_n(now.u, now.v));
+            found.on_line_s.push(at - changed);
         }
         found
     }
@@ -176,12 +172,11 @@ impl Pair {
         let mut module = BeamModule::slender(self.length_m, 2, EI, self.mass_kg_m, 1.0);
         module.depth_m = self.depth_m;
         let d = module.design(2, self.water_n_m2, self.added_mass_kg_m, 0.5 * self.connectors_n_m);
+        let d = with(&d, |d| d.connectors.damping_n_s_m = Some(0.5 * self.dashpots_n_s_m));
         let ready = module.ready(&d, Model::Full);
-        let mut crossing = ready.crossing(
-            gaps(self.gap_tension_m, self.gap_compression_m),
-            self.load_n,
-            self.speed_m_s,
-        );
+        let connection = gaps(self.gap_tension_m, self.gap_compression_m);
+        let mut crossing = ready.crossing(connection, self.load_n, self.speed_m_s);
+        crossing.own_laws = d.own_laws(connection, None).expect("laws");
         (crossing.tail_s, crossing.record) = (
             self.tail_s,
             Record {
@@ -200,16 +195,25 @@ impl Pair {
         Histories {
             deflection_m: history(&r, Quantity::Deflection, 2)[1..].to_vec(),
             force_n: history(&r, Quantity::Force, 2)[1..].to_vec(),
+            on_line_s: Vec::new(),
         }
     }
 }
 
-/// How far the engine is from exact histories of a pair: deflection, force, each over its largest.
+/// How far the engine is from exact histories of a pair: deflection, force, each over its largest. With dashpots the force jumps
+/// where a gap is met, and is compared from four steps behind a change of line on.
 fn away(engine: &Histories, pair: &Pair, h: f64) -> [f64; 2] {
     let exact = pair.exact(h, engine.deflection_m.len() - 1);
+    let settled = |force_n: &[f64]| -> Vec<f64> {
+        let steps = if pair.dashpots_n_s_m > 0.0 { 4.0 } else { 0.0 };
+        let all = force_n.iter().zip(&exact.on_line_s);
+        all.filter(|(_, on_line_s)| **on_line_s >= steps * h)
+            .map(|(force, _)| *force)
+            .collect()
+    };
     [
         apart(&engine.deflection_m, &exact.deflection_m),
-        apart(&engine.force_n, &exact.force_n),
+        apart(&settled(&engine.force_n), &settled(&exact.force_n)),
     ]
 }
 
@@ -246,19 +250,24 @@ fn contact_history_is_the_exact_one() {
     }
 }
 
+/// By how much the order misses 2 with which the engine's errors against an exact solution fall from 4 to 1 ms.
+fn off_order_two(engine: &Pair) -> impl Fn(&Pair) -> f64 {
+    let steps = [0.004, 0.002, 0.001];
+    let engines = steps.map(|h| engine.engine(h));
+    move |exact| {
+        let errors: Vec<[f64; 2]> = engines.iter().zip(steps).map(|(e, h)| away(e, exact, h)).collect();
+        println!("errors {errors:?}");
+        let order = |w: &[[f64; 2]], i: usize| ((w[0][i] / w[1][i]).log2() - 2.0).abs();
+        largest(errors.windows(2).flat_map(|w| [order(w, 0), order(w, 1)]))
+    }
+}
+
 /// Both errors fall with the step through all contacts: orders 1.8 to 2.2 from 4 to 1 ms (a contact is met up to a step late,
 /// but its force starts from nothing, so that what it misses is of second order). Twin: an exact solution with another
 /// compression gap, towards which no error falls.
 #[test]
 fn errors_fall_with_the_step_through_contacts() {
-    let steps = [0.004, 0.002, 0.001];
-    let engines = steps.map(|h| PAIR.engine(h));
-    let off = |pair: &Pair| {
-        let errors: Vec<[f64; 2]> = engines.iter().zip(steps).map(|(e, h)| away(e, pair, h)).collect();
-        println!("errors {errors:?}");
-        let order = |w: &[[f64; 2]], i: usize| ((w[0][i] / w[1][i]).log2() - 2.0).abs();
-        largest(errors.windows(2).flat_map(|w| [order(w, 0), order(w, 1)]))
-    };
+    let off = off_order_two(&PAIR);
     let wrong = Pair {
         gap_compression_m: 1.05 * PAIR.gap_compression_m,
         ..PAIR
@@ -284,4 +293,42 @@ fn both_trusses_work_in_turn() {
     let wrong = away(&engine, &wide, h);
     held("deflection, tension gap", 5e-4, right[0], wrong[0]);
     held("force, tension gap", 5e-4, right[1], wrong[1]);
+}
+
+/// The pair with dashpots that damp it in contact by a fifth of what is critical: each contact begins with a jump of the force.
+const DAMPED: Pair = Pair {
+    dashpots_n_s_m: 2e6,
+    gap_tension_m: 0.002,
+    ..PAIR
+};
+
+/// A coefficient of the dashpots, changed.
+const DASHPOTS: Change = ("dashpots", |p| p.dashpots_n_s_m *= 1.05);
+
+/// With dashpots, both trusses at work in turn: deflection and force, which is compared apart from its jumps. 2e-5: the scheme's
+/// order 2 over four contacts, of which each is damped (measured 4e-6 and 8e-6). Twins: ten coefficients.
+#[test]
+fn contact_history_with_dashpots_is_the_exact_one() {
+    let h = 0.001;
+    let engine = DAMPED.engine(h);
+    let right = away(&engine, &DAMPED, h);
+    let most = |of: fn(&f64) -> f64| largest(engine.force_n.iter().map(of));
+    assert!(most(|n| *n) > 1e3 && most(|n| -n) > 1e3, "both trusses work");
+    for (name, change) in CHANGES.into_iter().chain([DASHPOTS]) {
+        let mut pair = DAMPED;
+        change(&mut pair);
+        let wrong = away(&engine, &pair, h);
+        held(&format!("damped deflection, {name}"), 2e-5, right[0], wrong[0]);
+        held(&format!("damped force, {name}"), 2e-5, right[1], wrong[1]);
+    }
+}
+
+/// Both errors fall with the step by order 1.8 to 2.2 from 4 to 1 ms although the force jumps within steps: what a dashpot gives
+/// to the balance is the impulse from where the gap is met. Twin: exact dashpots 5 % off, towards which no error falls.
+#[test]
+fn errors_fall_with_the_step_through_jumps_of_dashpots() {
+    let mut wrong = DAMPED;
+    DASHPOTS.1(&mut wrong);
+    let off = off_order_two(&DAMPED);
+    held("order through jumps", 0.2, off(&DAMPED), off(&wrong));
 }

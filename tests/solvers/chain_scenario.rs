@@ -4,6 +4,7 @@
 
 #![allow(clippy::expect_used)]
 
+use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::Model;
 use pontoon_core::connector::Connection;
@@ -114,6 +115,40 @@ fn joints_and_axles_are_those_of_the_core() {
     assert!(-forces[2] > at_stop, "joint 4 is not at its stop: {forces:?}");
     let most = forces.iter().copied().fold(0.0, f64::min);
     assert_eq!(found["largest"]["compression_n"], json!(-most));
+}
+
+/// Dashpots of a scenario's joints, against the core's own call with two trusses of half the joint's damping. Exact. Twin: without
+/// them.
+#[test]
+fn damping_of_joints_is_that_of_the_core() {
+    let joints = |damping: f64| json!({ "2..5": { "connectors": { "damping_n_s_m": damping } } });
+    let found = |joints: Value| {
+        let found = answer(&json!({
+            "modules": 5, "joints": joints, "gap_compression_m": 0.003, "speed_m_s": 12,
+            "analysis": { "tail_s": 1, "time_step_s": 0.004 }
+        }));
+        column(&found, "joints", "peak_compression_n")
+    };
+    let chain = Chain {
+        modules: 5,
+        gap_compression_m: 0.003,
+        ..Chain::read()
+    };
+    let design = with(&chain.design(), |d| {
+        d.joints = serde_json::from_value(joints(2e5)).expect("joints");
+    });
+    let ready = chain.module.ready(&design, Model::Full);
+    let connection = chain.connection(false);
+    let crossing = Crossing {
+        own_laws: design.own_laws(connection, None).expect("laws"),
+        tail_s: 1.0,
+        ..ready.crossing(connection, chain.weight_n, 12.0)
+    };
+    let solver = ready.crossings(&chain.vehicle(), &settings(chain.rayleigh, 0.004, 0.9));
+    let direct = solver.solve(&crossing).expect("solved");
+    let expected: Vec<f64> = direct.joints.iter().map(|j| j.sum.compression.value).collect();
+    assert_eq!(found(joints(4e5)), expected);
+    assert_ne!(found(json!({})), expected);
 }
 
 /// Numbers of two independent codes through the reader: joint 7 of half the stiffness, deflection of positions 7 and 8 `[m]` and

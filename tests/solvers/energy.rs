@@ -93,15 +93,16 @@ fn wrong_sum_shows_in_the_summary() {
         let mut balance = EnergyBalance::default();
         balance.take(&StepEnergies {
             kinetic: 1.0,
-            strain: 2.0,
+            strain: 1.0,
             connectors: 0.5,
             rayleigh: factor * 4.0,
+            dashpots: 1.0,
             numerical: 0.5,
             work: 8.0,
         });
         balance.take(&StepEnergies {
             rayleigh: 3.5 - factor * 4.0,
-            work: -4.0,
+            work: -3.0,
             ..StepEnergies::default()
         });
         balance.summary()

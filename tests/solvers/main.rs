@@ -2,6 +2,7 @@
 
 mod chain;
 mod chain_scenario;
+mod dashpots;
 mod energy;
 mod joints;
 mod lanes;

@@ -218,8 +218,8 @@ fn filled(mut document: Value, chain: &Chain) -> Value {
     document
 }
 
-/// The chain's bridge with what its joints have of their own, checked as it is written, a joint's stiffness then given to two
-/// trusses.
+/// The chain's bridge with what its joints have of their own, checked as it is written, a joint's stiffness and damping then
+/// given to two trusses.
 fn with_joints(mut design: BridgeDesign, joints: &Joints) -> Result<BridgeDesign, InvalidInput> {
     let misplaced = |key: String, found: &str, allowed: &str| {
         Err(InvalidInput::new(key, found, allowed).because(Problem::Misplaced))
@@ -245,8 +245,9 @@ fn with_joints(mut design: BridgeDesign, joints: &Joints) -> Result<BridgeDesign
         .filter_map(|(_, spec)| spec.connectors.as_mut())
     {
         let stops = [&mut own.stop_tension, &mut own.stop_compression].into_iter().flatten();
-        let stiffnesses = stops.map(|stop| &mut stop.stiffness_n_m).chain(&mut own.stiffness_n_m);
-        stiffnesses.for_each(|stiffness| *stiffness *= 0.5);
+        let of_stops = stops.map(|stop| &mut stop.stiffness_n_m);
+        let of_joint = of_stops.chain(&mut own.stiffness_n_m).chain(&mut own.damping_n_s_m);
+        of_joint.for_each(|number| *number *= 0.5);
     }
     Ok(design)
 }

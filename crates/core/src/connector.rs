@@ -20,14 +20,16 @@ pub enum Connection {
     },
 }
 
-/// The law of one connector, piecewise linear in its elongation and nowhere falling.
-/// Equation (J4).
+/// The law of one connector, piecewise linear in its elongation and nowhere falling, with dashpots beside the trusses at work.
+/// Equations (J4), (J5).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ConnectorLaw {
     /// Both trusses at work at once, without gaps: `N = 2 k e`.
     Linear {
         /// Stiffness k of one truss `[N/m]`; 0 of a lost connector.
         stiffness_n_m: f64,
+        /// Coefficient c of the dashpot of one truss `[N s/m]`; 0 of a lost connector.
+        damping_n_s_m: f64,
     },
     /// A truss in tension and one in compression, which work beyond their gaps.
     Gaps {
@@ -45,6 +47,8 @@ pub struct Truss {
     pub stiffness_n_m: f64,
     /// Gap `[m]`, at least 0.
     pub gap_m: f64,
+    /// Coefficient c of its dashpot `[N s/m]`; 0 without one, and of a truss that is not there.
+    pub damping_n_s_m: f64,
     /// Its stop, where it has one: the truss is then the buffer before it.
     pub stop: Option<EndStop>,
 }
@@ -67,10 +71,14 @@ impl ConnectorLaw {
         let truss = |gap_m| Truss {
             stiffness_n_m,
             gap_m,
+            damping_n_s_m: 0.0,
             stop: None,
         };
         match connection {
-            Connection::Linear => Self::Linear { stiffness_n_m },
+            Connection::Linear => Self::Linear {
+                stiffness_n_m,
+                damping_n_s_m: 0.0,
+            },
             Connection::Nonlinear {
                 gap_tension_m,
                 gap_compression_m,
@@ -79,6 +87,27 @@ impl ConnectorLaw {
                 compression: truss(gap_compression_m),
             },
         }
+    }
+
+    /// Coefficients of the dashpots that act in tension and in compression `[N s/m]`; of the linear connection both trusses'
+    /// in either sense.
+    pub fn dampings_n_s_m(&self) -> [f64; 2] {
+        match self {
+            Self::Linear { damping_n_s_m, .. } => [2.0 * damping_n_s_m; 2],
+            Self::Gaps { tension, compression } => [tension, compression].map(|truss| truss.damping_n_s_m),
+        }
+    }
+
+    /// The law of the connector at rest, which dashpots do not change.
+    #[must_use]
+    pub fn at_rest(mut self) -> Self {
+        match &mut self {
+            Self::Linear { damping_n_s_m, .. } => *damping_n_s_m = 0.0,
+            Self::Gaps { tension, compression } => {
+                (tension.damping_n_s_m, compression.damping_n_s_m) = (0.0, 0.0);
+            }
+        }
+        self
     }
 }
 

@@ -9,7 +9,8 @@ use pontoon_plan::input::Cell;
 use std::collections::{HashMap, HashSet};
 
 /// Suffixes of names with the units that they tell, the longer before the shorter.
-const UNITS: [(&str, &str); 17] = [
+const UNITS: [(&str, &str); 18] = [
+    ("_n_s_m", "N s/m"),
     ("_kg_m3", "kg/m³"),
     ("_kg_m2", "kg/m²"),
     ("_pa_m", "Pa/m"),

@@ -76,6 +76,89 @@ fn every_number_of_a_joint_is_an_axis_under_its_path() {
     assert!(same_tables(&by_file, "r", "s"));
 }
 
+/// The numbers of a column of the jobs, none missing.
+fn of_jobs(stage: &Stage, column: &str) -> Vec<f64> {
+    let column = stage.numbers("r/jobs.parquet", column);
+    column.into_iter().map(|x| x.expect("a number")).collect()
+}
+
+/// How many unlike numbers a list has.
+fn unlike(mut list: Vec<f64>) -> usize {
+    list.sort_by(f64::total_cmp);
+    list.dedup();
+    list.len()
+}
+
+#[test]
+fn damping_is_an_axis_of_the_bridge_and_of_its_joints() {
+    let path = "bridge.connectors.damping_n_s_m";
+    let by_axis = |path: &str| {
+        let mut stage = stage(Value::Null);
+        stage.study["design"][0]["grid"][path] = json!([0, 2e5, 6e5]);
+        stage.ran("r");
+        stage
+    };
+    let (all, by_joint) = (by_axis(path), by_axis("bridge.joints[2..3].connectors.damping_n_s_m"));
+    for name in &TABLES[1..] {
+        let table = |stage: &Stage| stage.table(&format!("r/{name}.parquet"));
+        assert!(table(&all).same_cells(&table(&by_joint)), "{name}");
+    }
+    let damping = of_jobs(&all, path);
+    let where_it_is = |is: f64, column: &str| -> Vec<f64> {
+        let cells = of_jobs(&all, column).into_iter().zip(&damping);
+        cells.filter(|(_, c)| **c == is).map(|(x, _)| x).collect()
+    };
+    // a coefficient of 0 is a study without dashpots
+    let plain = stage(Value::Null);
+    plain.ran("r");
+    for column in [
+        "peak_deflection_m",
+        "peak_compression_n",
+        "static_peak_deflection_m",
+        "energy_residual",
+    ] {
+        assert_eq!(where_it_is(0.0, column), of_jobs(&plain, column), "{column}");
+    }
+    // each other one is another crossing with the static peak of its connection
+    assert_eq!(unlike(of_jobs(&all, "peak_compression_n")), 12);
+    assert_eq!(unlike(of_jobs(&all, "static_peak_deflection_m")), 2);
+    assert!(of_jobs(&all, "energy_residual").iter().all(|of| *of < 1e-12));
+    // by the file, and by the reference solver: 0.1 %, as far as the operator may be off
+    let mut by_file = stage(json!({ "2": { "connectors": { "damping_n_s_m": 6e5 } } }));
+    by_file.bridge["connectors"]["damping_n_s_m"] = json!(6e5);
+    by_file.ran("r");
+    let operated = where_it_is(6e5, "peak_deflection_m");
+    assert_eq!(of_jobs(&by_file, "peak_deflection_m"), operated);
+    by_file.study["analysis"]["solver"] = json!("reference");
+    by_file.ran("s");
+    let reference = by_file.numbers("s/jobs.parquet", "peak_deflection_m");
+    assert_eq!(reference.len(), operated.len());
+    for (reference, operated) in reference.into_iter().flatten().zip(operated) {
+        assert!((reference / operated - 1.0).abs() < 1e-3, "{reference} {operated}");
+    }
+}
+
+#[test]
+fn damping_is_nothing_to_static_cases() {
+    let mut stage = stage(Value::Null);
+    stage.study["analysis"] = json!({ "kind": "static" });
+    stage.study["design"] = json!([{ "grid": {
+        "load_x_m": [5, 9], "load_n": 3e5, "bridge.connectors.damping_n_s_m": [0, 2e5]
+    } }]);
+    stage.study.as_object_mut().unwrap().remove("record");
+    stage.ran("r");
+    assert_eq!(of_jobs(&stage, "load_x_m"), [5.0, 9.0], "equal jobs are one");
+    // nor is a coefficient of 0 to crossings: eight jobs, four of them with dashpots
+    let mut stage = self::stage(Value::Null);
+    let plain = stage.study["design"][0].clone();
+    let mut damped = plain.clone();
+    damped["grid"]["bridge.connectors.damping_n_s_m"] = json!([0, 2e5]);
+    stage.study["design"] = json!([plain, damped]);
+    stage.ran("r");
+    let damping = stage.numbers("r/jobs.parquet", "bridge.connectors.damping_n_s_m");
+    assert_eq!(damping, [[None; 4], [Some(2e5); 4]].concat());
+}
+
 #[test]
 fn a_lost_pin_is_another_bridge() {
     let mut stage = stage(json!({ "2": { "hinges": { "y_m": [-1.125, 1.125] } } }));
@@ -190,6 +273,14 @@ fn joints_that_are_none_are_refused_at_their_key() {
         &["joints[2..3].connectors.gap_tension_m: found -0.001"],
     );
     refused(
+        of("damping_n_s_m", json!(-1e5)),
+        &["bridge.json: joints[2..3].connectors.damping_n_s_m: found -100000, allowed: a finite number of at least 0"],
+    );
+    refused(
+        of("damping_n_s_m", json!("NaN")),
+        &["joints[2..3].connectors.damping_n_s_m: found \"NaN\""],
+    );
+    refused(
         of("at_y_m", json!([1.0])),
         &["joints[2..3].connectors.at_y_m[0]: found 1, allowed: a place of connectors.y_m: -2.02, 2.02"],
     );
@@ -211,6 +302,20 @@ fn joints_that_are_none_are_refused_at_their_key() {
     refused(
         json!({ "2": { "hinges": { "y_m": [9] } } }),
         &["joints[2].hinges.y_m[0]: found 9"],
+    );
+    let mut damped = stage(Value::Null);
+    damped.bridge["connectors"]["damping_n_s_m"] = json!(-1);
+    let output = damped.write().pontoon(&["plan", "study.json"]);
+    is_refused(
+        &output,
+        &["bridge.json: connectors.damping_n_s_m: found -1, allowed: a finite number of at least 0"],
+    );
+    damped.bridge["connectors"]["damping_n_s_m"] = json!(1);
+    damped.study["design"][0]["grid"]["bridge.connectors.damping_n_s_m"] = json!([0, -2]);
+    let output = damped.write().pontoon(&["plan", "study.json"]);
+    is_refused(
+        &output,
+        &["study.json: design[0].grid.bridge.connectors.damping_n_s_m: found -2"],
     );
     // as an axis, at the axis
     let mut stage = stage(Value::Null);

@@ -344,11 +344,12 @@ impl BridgeDesign {
     }
 
     /// The connectors whose laws differ from that of the connection; `worn` is what a job does to the gaps of a joint.
-    /// In the linear connection a truss that is not there leaves half the stiffness, and gaps and stops have no meaning.
+    /// In the linear connection a truss that is not there leaves half the stiffness and half the damping, and gaps and stops
+    /// have no meaning.
     ///
     /// # Errors
     /// [`InvalidInput`] on a stop that begins within the gap before it.
-    /// Equation (J4).
+    /// Equations (J4), (J5).
     pub fn own_laws(&self, connection: Connection, worn: Option<&JointGaps<'_>>) -> Result<OwnLaws, InvalidInput> {
         self.joints.own_laws(self.modules, &self.connectors, connection, worn)
     }

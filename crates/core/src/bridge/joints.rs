@@ -30,6 +30,9 @@ pub struct Connectors {
     pub gap_tension_m: f64,
     /// Shortening at which the compression truss begins to push `[m]`, unless the study says otherwise.
     pub gap_compression_m: f64,
+    /// Coefficient of the dashpot of one truss, which acts while the truss does `[N s/m]`; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_n_s_m: Option<f64>,
 }
 
 /// Entries of single joints in the order of the file; where two name one joint and one key, the later one counts.
@@ -82,6 +85,9 @@ pub struct JointConnectors {
     /// Shortening at which the compression truss begins to push `[m]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gap_compression_m: Option<f64>,
+    /// Coefficient of the dashpot of one truss `[N s/m]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_n_s_m: Option<f64>,
     /// A stiffer branch behind the tension truss, which is the buffer before it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop_tension: Option<StopSpec>,
@@ -195,14 +201,14 @@ impl Joints {
         connection: Connection,
         worn: Option<&JointGaps<'_>>,
     ) -> Result<OwnLaws, InvalidInput> {
-        if self.is_empty() && worn.is_none() {
+        if self.is_empty() && worn.is_none() && connectors.damping_n_s_m.is_none() {
             return Ok(OwnLaws::default());
         }
         let common = ConnectorLaw::new(connectors.stiffness_n_m, connection);
         let places = (2..=modules).flat_map(|joint| connectors.y_m.iter().map(move |&y_m| (joint, y_m)));
         let mut laws = Vec::new();
         for (place, (joint, y_m)) in places.enumerate() {
-            let law = Own::of(self, joint, y_m).law(joint, connectors.stiffness_n_m, connection, worn)?;
+            let law = Own::of(self, joint, y_m).law(joint, connectors, connection, worn)?;
             if law != common {
                 laws.push((place, law));
             }
@@ -264,6 +270,7 @@ impl Connectors {
         positive("stiffness_n_m", self.stiffness_n_m)?;
         not_negative("gap_tension_m", self.gap_tension_m)?;
         not_negative("gap_compression_m", self.gap_compression_m)?;
+        not_negative("damping_n_s_m", self.damping_n_s_m.unwrap_or(0.0))?;
         Ok(())
     }
 }
@@ -280,11 +287,12 @@ impl JointConnectors {
         if let Some(stiffness) = self.stiffness_n_m {
             positive("stiffness_n_m", stiffness)?;
         }
-        for (key, gap) in [
+        for (key, value) in [
             ("gap_tension_m", self.gap_tension_m),
             ("gap_compression_m", self.gap_compression_m),
+            ("damping_n_s_m", self.damping_n_s_m),
         ] {
-            gap.map_or(Ok(0.0), |gap| not_negative(key, gap))?;
+            not_negative(key, value.unwrap_or(0.0))?;
         }
         for (key, stop) in [
             ("stop_tension", self.stop_tension),
@@ -330,6 +338,7 @@ impl Own {
         own.stiffness_n_m = of.stiffness_n_m.or(own.stiffness_n_m);
         own.gap_tension_m = of.gap_tension_m.or(own.gap_tension_m);
         own.gap_compression_m = of.gap_compression_m.or(own.gap_compression_m);
+        own.damping_n_s_m = of.damping_n_s_m.or(own.damping_n_s_m);
         for (own, of, at, key) in [
             (&mut own.stop_tension, of.stop_tension, 0, "stop_tension"),
             (&mut own.stop_compression, of.stop_compression, 1, "stop_compression"),
@@ -354,20 +363,24 @@ impl Own {
         ]
     }
 
-    /// The law of the connector, whose stiffness is `common` where it has none of its own.
+    /// The law of the connector, whose stiffness and damping are the `common` ones where it has none of its own.
     fn law(
         &self,
         joint: usize,
-        common: f64,
+        common: &Connectors,
         connection: Connection,
         worn: Option<&JointGaps<'_>>,
     ) -> Result<ConnectorLaw, InvalidInput> {
-        let stiffness_n_m = self.connectors.stiffness_n_m.unwrap_or(common);
+        let stiffness_n_m = self.connectors.stiffness_n_m.unwrap_or(common.stiffness_n_m);
+        let damping_n_s_m = self.connectors.damping_n_s_m.or(common.damping_n_s_m).unwrap_or(0.0);
         let of_job = match connection {
             Connection::Linear => {
                 let there = self.senses().iter().filter(|there| **there).count();
-                let stiffness_n_m = 0.5 * there as f64 * stiffness_n_m;
-                return Ok(ConnectorLaw::Linear { stiffness_n_m });
+                let share = 0.5 * there as f64;
+                return Ok(ConnectorLaw::Linear {
+                    stiffness_n_m: share * stiffness_n_m,
+                    damping_n_s_m: share * damping_n_s_m,
+                });
             }
             Connection::Nonlinear {
                 gap_tension_m,
@@ -377,22 +390,24 @@ impl Own {
         let nominal = self.gaps_m(of_job);
         let [tension_m, compression_m] = worn.map_or(nominal, |worn| worn(joint, nominal));
         Ok(ConnectorLaw::Gaps {
-            tension: self.truss(0, stiffness_n_m, tension_m)?,
-            compression: self.truss(1, stiffness_n_m, compression_m)?,
+            tension: self.truss(0, [stiffness_n_m, damping_n_s_m], tension_m)?,
+            compression: self.truss(1, [stiffness_n_m, damping_n_s_m], compression_m)?,
         })
     }
 
-    /// One truss of a connector with gaps.
-    fn truss(&self, sense: usize, stiffness_n_m: f64, gap_m: f64) -> Result<Truss, InvalidInput> {
+    /// One truss of a connector with gaps, of a stiffness and a damping.
+    fn truss(&self, sense: usize, of_truss: [f64; 2], gap_m: f64) -> Result<Truss, InvalidInput> {
         let stop = [self.connectors.stop_tension, self.connectors.stop_compression][sense];
         if let Some(stop) = stop.filter(|stop| stop.gap_m <= gap_m) {
             let allowed = format!("above {gap_m}, the gap of the truss before it");
             let key = format!("{}.gap_m", self.stops[sense]);
             return Err(InvalidInput::new(key, stop.gap_m, allowed).because(Problem::Conflict));
         }
+        let [stiffness_n_m, damping_n_s_m] = if self.senses()[sense] { of_truss } else { [0.0; 2] };
         Ok(Truss {
-            stiffness_n_m: if self.senses()[sense] { stiffness_n_m } else { 0.0 },
+            stiffness_n_m,
             gap_m,
+            damping_n_s_m,
             stop: stop.map(|stop| EndStop {
                 stiffness_n_m: stop.stiffness_n_m,
                 gap_m: stop.gap_m,

@@ -32,7 +32,7 @@ pub(crate) struct PinRow {
 impl PinRow {
     /// Force of the pin on the module `[N]`: what moves it, less what acts on it from elsewhere. `elastic` is `u + a u'`,
     /// `inertial` is `u'' + b u'` or nothing at rest, `down` what presses on each column of the track `[N]`.
-    /// Equation (J5).
+    /// Equation (J6).
     pub(crate) fn force_n(&self, elastic: &[f64], inertial: Option<&[f64]>, down: &[SparseRow]) -> f64 {
         let pressed = |row: &SparseRow| -> f64 {
             let here = row.0.iter().filter(|(column, _)| self.columns.contains(column));

@@ -13,18 +13,26 @@ pub(crate) struct Branch {
     pub offset: f64,
 }
 
+impl Branch {
+    /// The force at elongation `e` `[N]`.
+    #[inline]
+    pub(crate) fn force(&self, e: f64) -> f64 {
+        self.stiffness * e - self.offset
+    }
+}
+
 /// The law of one link: up to two branches in tension, as many in compression, and what holds between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LinkLaw {
     /// Elongation beyond which the first and the second branch of each sense work `[m]`; infinite where there is none.
-    tension_above_m: f64,
-    tension_stop_above_m: f64,
-    compression_below_m: f64,
-    compression_stop_below_m: f64,
+    pub(super) tension_above_m: f64,
+    pub(super) tension_stop_above_m: f64,
+    pub(super) compression_below_m: f64,
+    pub(super) compression_stop_below_m: f64,
     /// The state between them.
     between: State,
     /// The branch of each state.
-    branches: [Branch; State::COUNT],
+    pub(super) branches: [Branch; State::COUNT],
 }
 
 /// How a link takes up energy in one sense: `N^2 / 2 k` of its last branch, and of a buffer before that
@@ -72,7 +80,7 @@ impl LinkLaw {
     pub(crate) fn new(law: &ConnectorLaw) -> Self {
         let mut of = Self::LOST;
         match law {
-            ConnectorLaw::Linear { stiffness_n_m } if *stiffness_n_m > 0.0 => {
+            ConnectorLaw::Linear { stiffness_n_m, .. } if *stiffness_n_m > 0.0 => {
                 of.between = State::Both;
                 of.branches[State::Both as usize].stiffness = 2.0 * stiffness_n_m;
             }
@@ -94,6 +102,7 @@ impl LinkLaw {
             stiffness_n_m: k,
             gap_m,
             stop,
+            damping_n_s_m: _,
         } = *truss;
         if k == 0.0 {
             return [never; 2];
@@ -144,6 +153,12 @@ impl LinkLaw {
         self.branches[state as usize]
     }
 
+    /// The force at elongation `e` `[N]`.
+    #[inline]
+    pub(crate) fn force(&self, e: f64) -> f64 {
+        self.branch(self.state(e)).force(e)
+    }
+
     /// How it takes up energy in tension and in compression.
     pub(crate) fn uptakes(&self) -> [Uptake; 2] {
         let both = self.branch(State::Both).stiffness;
@@ -178,7 +193,7 @@ impl LinkLaw {
         if branch.stiffness == 0.0 {
             return 0.0;
         }
-        let force = branch.stiffness * e - branch.offset;
+        let force = branch.force(e);
         let energy = 0.5 * force.powi(2) / branch.stiffness;
         match state {
             State::TensionStop | State::CompressionStop => {
@@ -205,11 +220,6 @@ mod tests {
 
     const K: f64 = 2.0e7;
 
-    fn force(law: &LinkLaw, e: f64) -> f64 {
-        let branch = law.branch(law.state(e));
-        branch.stiffness * e - branch.offset
-    }
-
     /// Force and energy at elongations on both sides of each gap, by hand: `N = k (e - 0.03)`, `N = k (e + 0.01)`.
     #[test]
     fn force_and_energy_follow_the_gaps() {
@@ -227,7 +237,7 @@ mod tests {
             (-0.012, State::Compression, -40_000.0),
         ] {
             assert_eq!(law.state(e), state, "at {e} m");
-            assert!((force(&law, e) - n).abs() < 1e-6, "{} N at {e} m", force(&law, e));
+            assert!((law.force(e) - n).abs() < 1e-6, "{} N at {e} m", law.force(e));
             assert!((law.energy(e) - 0.5 * n * n / K).abs() < 1e-9, "at {e} m");
         }
         assert_eq!(law.at_rest(), State::Open);
@@ -240,7 +250,7 @@ mod tests {
         let law = LinkLaw::connector(K, Connection::Linear);
         for e in [-0.1, 0.0, 1e-9, 0.2] {
             assert_eq!(law.state(e), State::Both);
-            assert!((force(&law, e) - 2.0 * K * e).abs() < 1e-6);
+            assert!((law.force(e) - 2.0 * K * e).abs() < 1e-6);
         }
         assert_eq!(law.uptakes().map(|of| of.stiffness), [2.0 * K; 2]);
     }
@@ -252,6 +262,7 @@ mod tests {
         let buffer = |stiffness_n_m, stop| Truss {
             stiffness_n_m,
             gap_m: 0.005,
+            damping_n_s_m: 0.0,
             stop,
         };
         let stop = EndStop {
@@ -270,11 +281,11 @@ mod tests {
             (-0.016, State::CompressionStop, -70_000.0),
         ] {
             assert_eq!(law.state(e), state, "at {e} m");
-            assert!((force(&law, e) - n).abs() < 1e-6, "{} N at {e} m", force(&law, e));
+            assert!((law.force(e) - n).abs() < 1e-6, "{} N at {e} m", law.force(e));
             let parts = 100_000;
             let width = e / f64::from(parts);
             let area: f64 = (0..parts)
-                .map(|i| force(&law, (f64::from(i) + 0.5) * width) * width)
+                .map(|i| law.force((f64::from(i) + 0.5) * width) * width)
                 .sum();
             assert!(
                 (law.energy(e) - area).abs() < 1e-6 * area.max(1.0),
@@ -292,10 +303,14 @@ mod tests {
         let none = Truss {
             stiffness_n_m: 0.0,
             gap_m: 0.0,
+            damping_n_s_m: 0.0,
             stop: None,
         };
         for law in [
-            ConnectorLaw::Linear { stiffness_n_m: 0.0 },
+            ConnectorLaw::Linear {
+                stiffness_n_m: 0.0,
+                damping_n_s_m: 0.0,
+            },
             ConnectorLaw::Gaps {
                 tension: none,
                 compression: none,

@@ -3,10 +3,12 @@
 //! Knows a small piecewise-linear system. The active set decides the tangent; a state changes only between Newton
 //! solutions, never inside one. Does not know time.
 
+mod dashpot;
 mod link;
 mod warm;
 
 use crate::connector::State;
+pub(crate) use dashpot::{BackwardRate, Dashpot, DashpotTrail};
 pub(crate) use link::{LinkLaw, Uptake, ask};
 use nalgebra::{DMatrix, DVector};
 pub(crate) use warm::WarmContact;

@@ -3,6 +3,7 @@
 //! Knows the forces of the last step and of the one under way. Does not know how contact is settled.
 
 use super::basis::Sizes;
+use super::dashpots::DashpotForces;
 use super::energy::Terms;
 use super::lane_array::LaneArray;
 use super::step_constants::StepConstants;
@@ -23,6 +24,8 @@ pub(super) struct Connectors {
     /// Elongation `[m]`, and in the step under way first without, then with its forces.
     pub(super) e: LaneArray,
     pub(super) e_now: LaneArray,
+    /// What dashpots give.
+    pub(super) dashpots: DashpotForces,
     /// `1 / (2 k)` of the first connector that works at all.
     half_compliance: LaneArray,
     /// How each one takes up energy in tension and in compression, over that of the first.
@@ -88,6 +91,7 @@ impl Connectors {
             rn_now: zeros(),
             e: zeros(),
             e_now: zeros(),
+            dashpots: DashpotForces::new(sizes, lanes),
             half_compliance: LaneArray::new(1, lanes),
             tension: UptakeLanes::new(sizes.connectors, lanes),
             compression: UptakeLanes::new(sizes.connectors, lanes),
@@ -102,19 +106,34 @@ impl Connectors {
         self.n.rows()
     }
 
-    /// Forces at the end of the step and before it, once the step has ended.
+    /// Forces by the laws at the end of a step, once it has ended: those of the balance but for dashpots in the steps that meet
+    /// a gap.
+    #[inline(always)]
+    pub(super) fn by_law(&self) -> &LaneArray {
+        if self.dashpots.any {
+            &self.dashpots.by_law
+        } else {
+            &self.n
+        }
+    }
+
+    /// Forces in the balance at the end of the step and before it, once the step has ended.
     pub(super) fn forces(&self) -> [&LaneArray; 2] {
         [&self.n, &self.n_now]
     }
 
     /// What a lane carries from step to step.
-    pub(super) fn carried(&mut self) -> [&mut LaneArray; 3] {
-        [&mut self.n, &mut self.rn, &mut self.e]
+    pub(super) fn carried(&mut self) -> [&mut LaneArray; 5] {
+        let DashpotForces { before, part, .. } = &mut self.dashpots;
+        [&mut self.n, &mut self.rn, &mut self.e, before, part]
     }
 
     /// What a step leaves in a lane that no crossing writes any more.
-    pub(super) fn left(&mut self) -> [&mut LaneArray; 2] {
-        [&mut self.n_now, &mut self.e_now]
+    pub(super) fn left(&mut self) -> [&mut LaneArray; 4] {
+        let DashpotForces {
+            part_now, above_law, ..
+        } = &mut self.dashpots;
+        [&mut self.n_now, &mut self.e_now, part_now, above_law]
     }
 
     /// Takes the laws of a lane's connectors.
@@ -178,21 +197,48 @@ impl Connectors {
     #[inline(always)]
     pub(super) fn correct<S: Simd>(&mut self, o: Ops<S>, constants: &StepConstants, terms: &mut Terms<S>) {
         let f = Mean::<S>::of(o, constants.scheme.alpha_f);
-        let (n_now, n) = (self.n_now.vectors::<S>(), self.n.vectors::<S>());
-        let (e_now, e) = (self.e_now.vectors::<S>(), self.e.vectors_mut::<S>());
-        for i in 0..n.len() {
-            terms.take_connector(o, o.sub(e_now[i], e[i]), f.at(o, n_now[i], n[i]));
-            e[i] = e_now[i];
+        if self.dashpots.any {
+            self.account_with_dashpots(o, f, terms);
+        } else {
+            let (n_now, n) = (self.n_now.vectors::<S>(), self.n.vectors::<S>());
+            let (e_now, e) = (self.e_now.vectors::<S>(), self.e.vectors_mut::<S>());
+            for i in 0..n.len() {
+                terms.take_connector(o, o.sub(e_now[i], e[i]), f.at(o, n_now[i], n[i]));
+                e[i] = e_now[i];
+            }
         }
         std::mem::swap(&mut self.n, &mut self.n_now);
         std::mem::swap(&mut self.rn, &mut self.rn_now);
+    }
+
+    /// What the connectors and their dashpots took up, in lanes of which some have dashpots; where there is none, the same bits
+    /// as without looking.
+    #[inline(always)]
+    fn account_with_dashpots<S: Simd>(&mut self, o: Ops<S>, f: Mean<S>, terms: &mut Terms<S>) {
+        let (n_now, n) = (self.n_now.vectors::<S>(), self.n.vectors::<S>());
+        let (e_now, e) = (self.e_now.vectors::<S>(), self.e.vectors_mut::<S>());
+        let dashpots = &mut self.dashpots;
+        let (part_now, part) = (dashpots.part_now.vectors::<S>(), dashpots.part.vectors::<S>());
+        let above_law = dashpots.above_law.vectors::<S>();
+        let (by_law, springs) = (dashpots.by_law.vectors_mut::<S>(), dashpots.springs.vectors_mut::<S>());
+        let before = dashpots.before.vectors_mut::<S>();
+        for i in 0..n.len() {
+            springs[i] = o.sub(n_now[i], part_now[i]);
+            by_law[i] = o.sub(n_now[i], above_law[i]);
+            let (lengthening, spring) = (o.sub(e_now[i], e[i]), o.sub(n[i], part[i]));
+            terms.take_connector(o, lengthening, f.at(o, springs[i], spring));
+            terms.take_dashpot(o, lengthening, f.at(o, part_now[i], part[i]));
+            (before[i], e[i]) = (e[i], e_now[i]);
+        }
+        std::mem::swap(&mut dashpots.part, &mut dashpots.part_now);
     }
 
     /// Strain energy, the sum of `1/2 N^2 / k` of the branches at work, and what buffers before their stops have beside.
     #[inline(always)]
     pub(super) fn energy<S: Simd>(&self, o: Ops<S>) -> S::f64s {
         let mut squares = o.splat(0.0);
-        let n = self.n.vectors::<S>();
+        let dashpots = &self.dashpots;
+        let n = if dashpots.any { &dashpots.springs } else { &self.n }.vectors::<S>();
         if self.uneven.contains(&true) {
             for (i, n) in n.iter().enumerate() {
                 squares = self.uneven_square(o, i, *n, squares);

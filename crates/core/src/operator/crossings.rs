@@ -47,6 +47,8 @@ pub(crate) struct Saved {
     local: LocalResidual,
     mass_forces: Vec<StationForce>,
     statistics: Statistics,
+    /// Length of the last step, where dashpots ask for it `[s]`.
+    before_s: f64,
 }
 
 /// Lanes that did not settle, as they stood before the step.
@@ -88,7 +90,7 @@ impl Crossings {
     pub(crate) fn begin(&mut self, operator: &BridgeOperator, lane: usize, crossing: CrossingInput, time_s: f64) {
         self.rest(lane);
         self.envelope.begin(lane);
-        self.connectors.take_laws(lane, &crossing.laws);
+        self.take_connectors(lane, &crossing);
         let of = &mut self.lanes[lane];
         of.contact.forget();
         for (state, law) in of.contact.states.iter_mut().zip(crossing.laws.iter()) {
@@ -104,6 +106,12 @@ impl Crossings {
         self.loads.weights.copy_lane(lane, &self.loads.weights_now);
     }
 
+    /// Takes the laws and dashpots of a lane's connectors.
+    fn take_connectors(&mut self, lane: usize, crossing: &CrossingInput) {
+        self.connectors.take_laws(lane, &crossing.laws);
+        self.connectors.dashpots.take(lane, !crossing.dashpots.is_empty());
+    }
+
     /// Says where a lane's vehicle is at the end of the coming step.
     pub(crate) fn place(&mut self, lane: usize, time_s: f64) {
         self.lanes[lane].place(time_s);
@@ -112,8 +120,10 @@ impl Crossings {
     /// Frees a lane, which then rests.
     pub(crate) fn end(&mut self, lane: usize) {
         self.rest(lane);
+        self.connectors.dashpots.take(lane, false);
         let of = &mut self.lanes[lane];
         of.crossing = None;
+        of.dashpots = None;
         of.weights.clear();
         of.mass_forces.clear();
     }
@@ -151,6 +161,7 @@ impl Crossings {
             local: of.masses.local_residual().clone(),
             mass_forces: of.mass_forces.clone(),
             statistics: of.statistics,
+            before_s: of.dashpots.as_ref().map_or(f64::INFINITY, |of| of.before_s),
         }
     }
 
@@ -162,6 +173,9 @@ impl Crossings {
         of.contact.forget();
         of.contact.states.copy_from_slice(&saved.states);
         of.statistics = saved.statistics;
+        if let Some(dashpots) = &mut of.dashpots {
+            dashpots.before_s = saved.before_s;
+        }
         of.masses.put_local_residual(&saved.local);
         of.mass_forces.clone_from(&saved.mass_forces);
         // the load's traces in the step under way are written anew
@@ -172,7 +186,7 @@ impl Crossings {
     pub(crate) fn resume(&mut self, lane: usize, crossing: CrossingInput, saved: &Saved) {
         // a crossing without riding masses writes no inertia forces, so that none may be left of the one before
         self.rest(lane);
-        self.connectors.take_laws(lane, &crossing.laws);
+        self.take_connectors(lane, &crossing);
         self.lanes[lane].take(crossing);
         self.restore(lane, saved);
     }
@@ -337,7 +351,7 @@ pub(crate) struct LaneReading<'a> {
 
 impl JointReading for LaneReading<'_> {
     fn connector_n(&self, connector: usize) -> [f64; 2] {
-        let now = self.of.connectors.n.at(connector, self.lane);
+        let now = self.of.connectors.by_law().at(connector, self.lane);
         [now, self.of.pins.connector_n(connector, self.lane)]
     }
 

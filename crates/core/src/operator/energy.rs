@@ -19,6 +19,7 @@ pub(super) struct Terms<S: Simd> {
     damping_k: S::f64s,
     work: S::f64s,
     springs: S::f64s,
+    dashpots: S::f64s,
     /// Twice the energies at the step's end.
     kinetic: S::f64s,
     strain: S::f64s,
@@ -39,6 +40,7 @@ impl<S: Simd> Terms<S> {
             damping_k: zero,
             work: zero,
             springs: zero,
+            dashpots: zero,
             kinetic: zero,
             strain: zero,
             modal_strain: zero,
@@ -100,6 +102,12 @@ impl<S: Simd> Terms<S> {
         self.work = o.fma(ds, down, self.work);
     }
 
+    /// A dashpot that lengthens by `de` under the force `n` at alpha.
+    #[inline(always)]
+    pub(super) fn take_dashpot(&mut self, o: Ops<S>, de: S::f64s, n: S::f64s) {
+        self.dashpots = o.fma(de, n, self.dashpots);
+    }
+
     /// A connector that lengthens by `de` under the force `n` at alpha.
     #[inline(always)]
     pub(super) fn take_connector(&mut self, o: Ops<S>, de: S::f64s, n: S::f64s) {
@@ -114,7 +122,7 @@ pub(super) struct Energy {
     kinetic: LaneArray,
     strain: LaneArray,
     springs: LaneArray,
-    /// Rayleigh damping, numerical dissipation, work; largest work, largest gap of the balance, largest numerical dissipation.
+    /// Rayleigh damping and dashpots, numerical dissipation, work; largest work, largest gap of the balance, largest numerical dissipation.
     sums: LaneArray,
     /// `sum of omega^2 q^2`, `s^T R s`.
     pub(super) modal_strain: LaneArray,
@@ -173,7 +181,7 @@ impl Energy {
         self.modal_strain.vectors_mut::<S>()[0] = terms.modal_strain;
         self.residual_strain.vectors_mut::<S>()[0] = terms.residual_strain;
         let sums = self.sums.vectors_mut::<S>();
-        sums[0] = o.add(sums[0], rayleigh);
+        sums[0] = o.add(sums[0], o.add(rayleigh, terms.dashpots));
         sums[1] = o.add(sums[1], numerical);
         sums[2] = o.add(sums[2], terms.work);
         let gap = o.sub(o.add(stored, o.add(sums[0], sums[1])), sums[2]);

@@ -153,7 +153,7 @@ impl Envelope {
         for &z in &self.observed.vectors::<S>()[..self.rows.positions] {
             peaks.update_both(z);
         }
-        for joint in connectors.n.vectors::<S>().chunks_exact(self.per_joint.max(1)) {
+        for joint in connectors.by_law().vectors::<S>().chunks_exact(self.per_joint.max(1)) {
             let mut sum = o.splat(0.0);
             for &force in joint {
                 sum = o.add(sum, force);

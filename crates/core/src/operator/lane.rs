@@ -6,6 +6,7 @@ use super::basis::BridgeOperator;
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
 use super::contact_system::{ContactInput, ContactSystem};
+use super::dashpots::LaneDashpots;
 use super::lane_array::LaneArray;
 use super::loads::{Loads, StationForce};
 use super::local_residual::StepForces;
@@ -14,7 +15,7 @@ use super::moving_masses::{FreeMotion, MovingMasses};
 use super::step_constants::StepConstants;
 use super::wheel_lines::{WheelCompliance, WheelLine, WheelLines};
 use crate::bridge::VehiclePlacement;
-use crate::contact::{LinkLaw, NotSettled};
+use crate::contact::{Dashpot, LinkLaw, NotSettled};
 use crate::response::Statistics;
 use std::sync::Arc;
 
@@ -27,6 +28,8 @@ pub(crate) struct CrossingInput {
     pub compliance: Arc<WheelCompliance>,
     /// The law of each connector.
     pub laws: Arc<[LinkLaw]>,
+    /// The connectors that have dashpots.
+    pub dashpots: Arc<[Dashpot]>,
     /// Weight of the vehicle `[N]`.
     pub load_n: f64,
     /// Speed `[m/s]`.
@@ -41,6 +44,7 @@ pub(super) struct Lane {
     pub(super) time_s: f64,
     placement: VehiclePlacement,
     pub(super) contact: ContactSystem,
+    pub(super) dashpots: Option<LaneDashpots>,
     pub(super) masses: MovingMasses,
     /// Weight on each axle that is on the bridge `[N]`, and whether the contact force of all its points has settled.
     pub(super) axles: Vec<(f64, bool)>,
@@ -65,6 +69,7 @@ impl Lane {
             time_s: 0.0,
             placement: VehiclePlacement::default(),
             contact: ContactSystem::new(connectors, most_nodes, newton_limit),
+            dashpots: None,
             masses: MovingMasses::new(connectors, most_nodes),
             axles: Vec::new(),
             inertia: Vec::new(),
@@ -83,6 +88,7 @@ impl Lane {
         let axles = crossing.wheels.vehicle.axles;
         self.axles = vec![(0.0, true); axles];
         self.inertia = vec![0.0; axles];
+        self.dashpots = LaneDashpots::new(&crossing.dashpots, &crossing.laws);
         self.crossing = Some(crossing);
     }
 
@@ -156,9 +162,14 @@ impl Lane {
         masses.follow(wheels, constants, m, forces);
         masses.couple(wheels, compliance, constants, m, crossing.speed_m_s, &self.free);
         clock.lap(StepPart::RidingMasses, || masses.flop_of_coupling(m));
-        let weight = 1.0 - constants.scheme.alpha_f;
+        let (h, weight) = (constants.scheme.h, 1.0 - constants.scheme.alpha_f);
+        if let Some(dashpots) = &mut self.dashpots
+            && dashpots.begin_step(lane, h, &connectors.e, &connectors.dashpots)
+        {
+            self.contact.forget();
+        }
         let input = ContactInput {
-            laws: &crossing.laws,
+            laws: self.dashpots.as_ref().map_or(&*crossing.laws, LaneDashpots::laws),
             compliance: &constants.connector_compliance,
             weight,
             riders: &masses.block,
@@ -181,6 +192,16 @@ impl Lane {
         connectors.e_now.scatter(lane, &self.contact.linear.e);
         for (to, scaled) in connectors.n_now.rows_from_mut(0).zip(&self.contact.linear.forces) {
             to[lane] = scaled / weight;
+        }
+        if let Some(dashpots) = &mut self.dashpots {
+            let Connectors {
+                e,
+                e_now,
+                n_now,
+                dashpots: given,
+                ..
+            } = &mut *connectors;
+            dashpots.end_step(lane, h, [e, e_now, n_now], given);
         }
         clock.lap(StepPart::GatherAndScatter, || 0.0);
         self.apply_masses(lane, constants, &connectors.n_now, loads);

@@ -16,6 +16,7 @@ mod connectors;
 mod contact_system;
 mod crossings;
 mod cutoff;
+mod dashpots;
 mod energy;
 mod envelope;
 mod lane;

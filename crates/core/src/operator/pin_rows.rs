@@ -11,7 +11,7 @@ use crate::stop::Stop;
 use faer::Mat;
 use nalgebra::DMatrix;
 
-/// The rows of all pins, three a pin (J5), (O9).
+/// The rows of all pins, three a pin (J6), (O9).
 #[derive(Debug, Clone, Default)]
 pub(super) struct PinRows {
     /// Joint and place across of each pin.

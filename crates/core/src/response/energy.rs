@@ -13,17 +13,20 @@ pub struct StepEnergies {
     pub connectors: f64,
     /// Dissipated by Rayleigh damping over it.
     pub rayleigh: f64,
+    /// Dissipated by dashpots of connectors over it.
+    pub dashpots: f64,
     /// Dissipated by the scheme over it.
     pub numerical: f64,
     /// Work of the contact forces on the deck over it.
     pub work: f64,
 }
 
-/// `kinetic + strain + connectors + rayleigh + numerical = work`, kept step by step: the dissipations and the work
+/// `kinetic + strain + connectors + rayleigh + dashpots + numerical = work`, kept step by step: the dissipations and the work
 /// `integral of p du` are sums since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBalance {
     rayleigh: f64,
+    dashpots: f64,
     numerical: f64,
     work: f64,
     largest_work: f64,
@@ -34,7 +37,7 @@ pub struct EnergyBalance {
 /// What a crossing reports of its balance.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergySummary {
-    /// Largest `|kinetic + strain + connectors + rayleigh + numerical - work|` over the largest `|work|`.
+    /// Largest `|kinetic + strain + connectors + rayleigh + dashpots + numerical - work|` over the largest `|work|`.
     pub energy_residual: f64,
     /// Largest numerical dissipation over the largest `|work|`.
     pub numerical_dissipation: f64,
@@ -45,10 +48,11 @@ impl EnergyBalance {
     /// Equation (R1).
     pub fn take(&mut self, step: &StepEnergies) {
         self.rayleigh += step.rayleigh;
+        self.dashpots += step.dashpots;
         self.numerical += step.numerical;
         self.work += step.work;
         let stored = step.kinetic + step.strain + step.connectors;
-        let gap = stored + self.rayleigh + self.numerical - self.work;
+        let gap = stored + self.rayleigh + self.dashpots + self.numerical - self.work;
         self.largest_gap = self.largest_gap.max(gap.abs());
         self.largest_work = self.largest_work.max(self.work.abs());
         self.largest_numerical = self.largest_numerical.max(self.numerical.abs());

@@ -27,7 +27,7 @@ pub enum Axis {
 }
 
 /// What holds at a joint as a whole. Forces are those of the right part on the left one, moments about the hinge line's
-/// centre. Equation (J6).
+/// centre. Equation (J7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Section {
     /// Rotation of the right module against the left one, positive where the joint opens at the deck `[rad]`.
@@ -171,7 +171,7 @@ pub(crate) trait Reading: JointReading {
 
 impl JointParts {
     /// Angle and section forces, in the order of [`Section::ALL`].
-    /// Equation (J6).
+    /// Equation (J7).
     pub(crate) fn sections(&self, reading: &impl JointReading) -> [f64; SECTIONS] {
         let mut of = [0.0; SECTIONS];
         let [angle, axial, shear_y, shear_z, torsion, bending, lateral] = &mut of;

@@ -26,7 +26,8 @@ pub struct BridgeEntry {
     pub document: Value,
     /// Hash of the document.
     pub hash: String,
-    /// Equal for bridges that differ in nothing but gaps, what joints have of their own connectors (data of a job) and words.
+    /// Equal for bridges that differ in nothing but gaps, dashpots, what joints have of their own connectors (data of a job) and
+    /// words.
     pub structure_key: Arc<str>,
     /// Equal for bridges that have one operator: the connectors' stiffness is no part of it either.
     pub operator_key: Arc<str>,
@@ -230,6 +231,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     let mut neutral = design.without_words();
     neutral.connectors.gap_tension_m = 0.0;
     neutral.connectors.gap_compression_m = 0.0;
+    neutral.connectors.damping_n_s_m = None;
     neutral.joints = design.joints.structure(design.modules, &design.hinges);
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;

@@ -35,8 +35,14 @@ pub(super) fn laws_key(laws: &[(usize, ConnectorLaw)]) -> Option<[u8; 32]> {
     };
     for (place, law) in laws {
         number(*place as f64);
+        // a law without dashpots is known as it was before there were any
+        let dampings_n_s_m = law.dampings_n_s_m();
+        if dampings_n_s_m != [0.0; 2] {
+            number(-1.0);
+            dampings_n_s_m.into_iter().for_each(&mut number);
+        }
         match law {
-            ConnectorLaw::Linear { stiffness_n_m } => number(*stiffness_n_m),
+            ConnectorLaw::Linear { stiffness_n_m, .. } => number(*stiffness_n_m),
             ConnectorLaw::Gaps { tension, compression } => {
                 for truss in [tension, compression] {
                     let (stop_gap_m, stop_n_m) = truss.stop.map_or((-1.0, 0.0), |s| (s.gap_m, s.stiffness_n_m));

@@ -33,7 +33,7 @@ use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, Re
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::JointGaps;
-use pontoon_core::connector::{Connection, OwnLaws};
+use pontoon_core::connector::{Connection, ConnectorLaw, OwnLaws};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::response::Record;
 use pontoon_core::vehicle::Inertia;
@@ -283,11 +283,32 @@ impl Job {
         key::laws_key(&self.own_laws())
     }
 
-    /// The connectors that have laws of their own.
+    /// The connectors that have laws of their own. Only in a crossing do dashpots count among these.
     fn checked_laws(&self) -> Result<OwnLaws, InvalidInput> {
         let worn = |joint: usize, nominal_m: [f64; 2]| self.worn_m(joint, nominal_m);
         let worn = self.worn.is_some().then_some(&worn as &JointGaps<'_>);
-        self.bridge.design.own_laws(self.connection, worn)
+        let laws = self.bridge.design.own_laws(self.connection, worn)?;
+        Ok(match self.task {
+            Task::Crossing { .. } => laws,
+            Task::Static(_) | Task::Modes => self.at_rest(&laws),
+        })
+    }
+
+    /// Laws of single connectors as a static case has them.
+    fn at_rest(&self, laws: &OwnLaws) -> OwnLaws {
+        let common = ConnectorLaw::new(self.bridge.design.connectors.stiffness_n_m, self.connection);
+        let at_rest = laws.iter().map(|(place, law)| (*place, law.at_rest()));
+        at_rest.filter(|(_, law)| *law != common).collect()
+    }
+
+    /// The connectors that have laws of their own in a static case of this job.
+    pub fn laws_at_rest(&self) -> OwnLaws {
+        self.at_rest(&self.own_laws())
+    }
+
+    /// As [`Self::laws_key`], of static cases.
+    pub fn laws_at_rest_key(&self) -> Option<[u8; 32]> {
+        key::laws_key(&self.laws_at_rest())
     }
 
     /// The value of an axis as its type has it, whole where that is a count; nothing where the axis has no meaning for the

@@ -411,7 +411,7 @@ pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
     StaticCase {
         connection: job.connection,
         connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
-        own_laws: job.own_laws(),
+        own_laws: job.laws_at_rest(),
         load_n: job.load_n,
         load_x_m,
         places_x_m: job.record.places_x_m.clone(),
@@ -540,7 +540,7 @@ fn creeping_key(job: &Job) -> CreepingKey {
         bridge_key(job),
         job.vehicle.key.clone(),
         gaps,
-        job.laws_key(),
+        job.laws_at_rest_key(),
         job.load_n.to_bits(),
     )
 }

@@ -169,7 +169,7 @@ fn joints_whose(job: &Job, holds: impl Fn([bool; 2]) -> bool) -> Vec<usize> {
     let places = design.connectors.y_m.len();
     let works = |place: usize| match own.iter().find(|(of, _)| *of == place) {
         None => [true; 2],
-        Some((_, ConnectorLaw::Linear { stiffness_n_m })) => [*stiffness_n_m > 0.0; 2],
+        Some((_, ConnectorLaw::Linear { stiffness_n_m, .. })) => [*stiffness_n_m > 0.0; 2],
         Some((_, ConnectorLaw::Gaps { tension, compression })) => [tension, compression].map(|t| t.stiffness_n_m > 0.0),
     };
     let of_joint = |joint: usize| {

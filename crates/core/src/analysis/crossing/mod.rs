@@ -15,7 +15,7 @@ use super::AnalysisError;
 use super::modes::Rayleigh;
 use crate::bridge::{Bridge, Track};
 use crate::connector::{Connection, OwnLaws};
-use crate::contact::LinkLaw;
+use crate::contact::{Dashpot, LinkLaw};
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
 use crate::response::{CrossingResponse, Record};
@@ -70,6 +70,11 @@ impl Crossing {
             self.connection,
             &self.own_laws,
         )
+    }
+
+    /// The connectors that have dashpots.
+    fn dashpots(&self) -> Vec<Dashpot> {
+        Dashpot::of_connectors(&self.own_laws)
     }
 }
 
@@ -134,6 +139,7 @@ impl CrossingSolver {
             rayleigh: self.settings.rayleigh,
             laws: crossing.laws(self.bridge.connectors.len()),
             pins: crossing.record.needs_pins(),
+            dashpots: crossing.dashpots(),
         };
         let observer = Observer::new(&self.bridge, &crossing.record);
         CrossingRun::new(self, stepper, observer, crossing.tail_s)

@@ -96,7 +96,7 @@ impl<'a> Observer<'a> {
             peaks.uplift.take(z, t);
         }
         let per_joint = self.bridge.design().connectors.y_m.len();
-        for (joint, forces) in self.joints.iter_mut().zip(now.forces.chunks(per_joint)) {
+        for (joint, forces) in self.joints.iter_mut().zip(now.connector_forces().chunks(per_joint)) {
             joint.sum.take(forces.iter().sum(), t);
             for ((_, peaks), &force) in joint.connectors.iter_mut().zip(forces) {
                 peaks.take(force, t);
@@ -178,7 +178,10 @@ impl Reading for MotionReading<'_> {
 impl JointReading for MotionReading<'_> {
     fn connector_n(&self, connector: usize) -> [f64; 2] {
         let at_balance = self.now.balance.as_ref().and_then(|of| of.connectors_n.get(connector));
-        [self.now.forces[connector], at_balance.copied().unwrap_or(0.0)]
+        [
+            self.now.connector_forces()[connector],
+            at_balance.copied().unwrap_or(0.0),
+        ]
     }
 
     fn elongation_m(&self, connector: usize) -> f64 {

@@ -196,6 +196,7 @@ impl<C: StepClock> Crew<'_, C> {
             wheels: Arc::clone(&self.mounts[mount].wheels),
             compliance: self.compliance(mount, self.refinement),
             laws: crossing.laws(self.solver.operator.connectors()).into(),
+            dashpots: crossing.dashpots().into(),
             load_n: crossing.load_n,
             speed_m_s: crossing.speed_m_s,
         };

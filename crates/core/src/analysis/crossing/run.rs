@@ -76,7 +76,7 @@ impl<'a> CrossingRun<'a> {
             u: now.u.clone(),
             elastic: sum(&now.u, a, &now.v),
             inertial: Some(sum(&now.a, b, &now.v)),
-            connectors: connectors(&now.states, &now.forces, &now.elongations),
+            connectors: connectors(&now.states, now.connector_forces(), &now.elongations),
             wheels: wheels(stepper.track, stepper.vehicle, stepper.load_n, &now.load, &now.inertia),
         }
     }

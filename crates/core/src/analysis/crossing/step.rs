@@ -6,7 +6,7 @@ use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
 use crate::bridge::{Bridge, Load, PinPlace, Rider, Track};
 use crate::connector::State;
-use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled};
+use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
 use crate::response::StepEnergies;
 use crate::scheme::{Newmark, Scalar};
@@ -24,10 +24,11 @@ pub(super) struct Motion {
     pub ku: Vec<f64>,
     pub mv: Vec<f64>,
     pub ma: Vec<f64>,
-    /// State, force and elongation of each connector.
+    /// State, force in the balance and elongation of each connector, and what dashpots carry on.
     pub states: Vec<State>,
     pub forces: Vec<f64>,
     pub elongations: Vec<f64>,
+    pub dashpots: DashpotTrail,
     pub load: Load,
     /// Inertia force of each rider, `m (r u'' + ...)` `[N]`.
     pub inertia: Vec<f64>,
@@ -63,6 +64,11 @@ impl Motion {
         }
     }
 
+    /// Force of each connector by its law, tension positive `[N]`.
+    pub(super) fn connector_forces(&self) -> &[f64] {
+        self.dashpots.by_law(&self.forces)
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         self.spent.kinetic.is_finite() && self.spent.strain.is_finite()
     }
@@ -79,6 +85,8 @@ pub(super) struct Stepper<'a> {
     pub rayleigh: Rayleigh,
     /// Law of each connector.
     pub laws: Vec<LinkLaw>,
+    /// Connectors that have dashpots.
+    pub dashpots: Vec<Dashpot>,
     /// Whether forces of pins are wanted.
     pub pins: bool,
 }
@@ -110,7 +118,9 @@ impl Stepper<'_> {
         let load = self.load(time_s); // (V1)
         let mut d = self.predict(matrix, old, &load); // (T3), (T4)
         let problem = self.contact_problem(matrix, old, &load, &d); // (C1), (T5)
-        let contact = problem.solve(&self.laws, &old.states, newton_limit)?; // (C2)
+        let h = matrix.scheme.h;
+        let laws = old.dashpots.laws(&self.dashpots, &self.laws, &old.elongations, h); // (C4)
+        let contact = problem.solve(&laws, &old.states, newton_limit)?; // (C2)
         self.correct(matrix, &load, &contact, &mut d);
         let mut new = self.advance(matrix, old, &d); // (T2)
         new.time_s = time_s;
@@ -123,9 +133,11 @@ impl Stepper<'_> {
         new.states = contact.states;
         new.forces = contact.forces;
         new.elongations = contact.elongations;
+        let way = [&*old.elongations, &*new.elongations];
+        new.dashpots = old.dashpots.follow(&self.dashpots, way, &new.forces, h);
         new.newton_iterations = contact.iterations;
         new.spent = self.account(matrix, old, &new, &d); // (R1)
-        new.balance = self.pins.then(|| self.balance(matrix, old, &new)); // (J5)
+        new.balance = self.pins.then(|| self.balance(matrix, old, &new)); // (J6)
         Ok(new)
     }
 
@@ -303,9 +315,13 @@ impl Stepper<'_> {
             damping_m += d * s.at_f(new.mv[i], old.mv[i]);
             damping_k += s.at_f(new.v[i], old.v[i]) * (new.ku[i] - old.ku[i]);
         }
-        let springs: f64 = (0..new.forces.len())
-            .map(|i| (new.elongations[i] - old.elongations[i]) * s.at_f(new.forces[i], old.forces[i]))
-            .sum();
+        let (mut springs, mut dashpots) = (0.0, 0.0);
+        for i in 0..new.forces.len() {
+            let lengthening = new.elongations[i] - old.elongations[i];
+            let [damped, damped_old] = [new, old].map(|m| m.dashpots.in_balance.get(i).copied().unwrap_or(0.0));
+            springs += lengthening * s.at_f(new.forces[i] - damped, old.forces[i] - damped_old);
+            dashpots += lengthening * s.at_f(damped, damped_old);
+        }
         let riders = |instant: &Motion| -> f64 {
             instant
                 .load
@@ -324,6 +340,7 @@ impl Stepper<'_> {
             strain,
             connectors,
             rayleigh: self.rayleigh.a * damping_k + self.rayleigh.b * damping_m,
+            dashpots,
             numerical: (inertia + old.spent.kinetic - kinetic)
                 + (stiffness + old.spent.strain - strain)
                 + (springs + old.spent.connectors - connectors),
