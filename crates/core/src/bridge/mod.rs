@@ -14,6 +14,7 @@ mod prepared;
 mod product;
 mod provenance;
 mod row;
+mod stresses;
 mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
@@ -25,6 +26,7 @@ pub(crate) use pins::PinPlace;
 pub(crate) use placement::VehiclePlacement;
 pub use prepared::PreparedModule;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
+pub use stresses::{BridgeStresses, StressRecovery};
 use thiserror::Error;
 pub use track::Track;
 
