@@ -102,18 +102,10 @@ impl Beam {
         &self.axes
     }
 
-    /// What resists axial force, torque and bending about axes 2 and 3, over the length: the first dof of the motion that
-    /// it resists, the axis and the stiffness `[N/m, N m]`.
-    pub(super) fn stiffness_per_length(&self) -> [(usize, usize, f64); 4] {
-        let (s, l) = (&self.section, self.length);
-        let e = s.youngs_modulus_pa;
-        let g = 0.5 * e / (1.0 + s.poissons_ratio);
-        [
-            (0, 0, e * s.area_m2 / l),
-            (3, 0, g * s.torsion_m4 / l),
-            (3, 1, e * s.i_y_m4 / l),
-            (3, 2, e * s.i_z_m4 / l),
-        ]
+    /// `E I_y` and `E I_z` over the length `[N m]`.
+    pub(super) fn bending_per_length(&self) -> [f64; 2] {
+        let s = &self.section;
+        [s.i_y_m4, s.i_z_m4].map(|i| s.youngs_modulus_pa * i / self.length)
     }
 
     /// `Phi = 12 E I / (G A_s L^2)`, 0 without shear deformation.
@@ -131,9 +123,9 @@ impl Beam {
     pub fn stiffness(&self) -> BeamMatrix {
         let (s, l) = (&self.section, self.length);
         let e = s.youngs_modulus_pa;
+        let g = 0.5 * e / (1.0 + s.poissons_ratio);
         let mut k = BeamMatrix::zeros();
-        let [axial, torsion, ..] = self.stiffness_per_length();
-        for (dof, _, value) in [axial, torsion] {
+        for (dof, value) in [(0, e * s.area_m2 / l), (3, g * s.torsion_m4 / l)] {
             k[(dof, dof)] = value;
             k[(dof + 6, dof + 6)] = value;
             k[(dof, dof + 6)] = -value;

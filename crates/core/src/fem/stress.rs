@@ -11,7 +11,7 @@ use nalgebra::SMatrix;
 pub type ShellStressMatrix = SMatrix<f64, 6, 24>;
 
 /// Forces of a beam in the motion of its 12 degrees of freedom, see [`BeamForces`] `[N or N m per m or rad]`.
-pub type BeamForceMatrix = SMatrix<f64, 4, 12>;
+pub type BeamForceMatrix = SMatrix<f64, 6, 12>;
 
 /// Plane stress at a point of a shell, in the element's own axes 1 and 2.
 ///
@@ -53,6 +53,8 @@ pub fn von_mises_pa([s_11, s_22, s_12]: [f64; 3]) -> f64 {
 pub struct BeamForces {
     /// Axial force, tension positive `[N]`.
     pub axial_n: f64,
+    /// Shear forces along axes 2 and 3, on the side of the second end `[N]`; the same everywhere along the beam.
+    pub shear_n: [f64; 2],
     /// Torque about axis 1 `[N m]`.
     pub torque_newton_m: f64,
     /// Bending moments about axes 2 and 3 `[N m]`: the first stretches the side of axis 3, the second compresses the side of
@@ -98,21 +100,23 @@ impl Shell {
 }
 
 impl Beam {
-    /// Forces at the middle for each of its 12 degrees of freedom: `E A`, `G J`, `E I_y` and `E I_z` times the difference of
-    /// the ends over the length. A beam without loads between its ends has there the mean of its moments. Verified by
-    /// `tests/analytic/fem_stress.rs`.
+    /// Forces at the middle for each of its 12 degrees of freedom: force and torque are those at the second end, for nothing
+    /// acts between the ends; the moments `E I_y` and `E I_z` times the difference of the ends' rotations over the length are
+    /// the mean of those at the ends, and so those at the middle. Verified by `tests/analytic/fem_stress.rs`.
     /// Equation (G5).
     pub fn force_matrix(&self) -> BeamForceMatrix {
-        let mut global = BeamForceMatrix::zeros();
-        let axes = self.axes();
-        for (row, (first, axis, stiffness)) in self.stiffness_per_length().into_iter().enumerate() {
-            for direction in 0..3 {
-                let share = stiffness * axes[(axis, direction)];
-                global[(row, first + direction)] = -share;
-                global[(row, 6 + first + direction)] = share;
-            }
+        let (k, axes) = (self.stiffness(), self.axes());
+        let mut forces = BeamForceMatrix::zeros();
+        let second_end = |first: usize| axes * k.fixed_rows::<3>(first);
+        forces.fixed_rows_mut::<3>(0).copy_from(&second_end(6));
+        forces.fixed_rows_mut::<1>(3).copy_from(&second_end(9).row(0));
+        for (axis, stiffness) in [1, 2].into_iter().zip(self.bending_per_length()) {
+            let row = 3 + axis;
+            let share = axes.row(axis) * stiffness;
+            forces.fixed_view_mut::<1, 3>(row, 3).copy_from(&-share);
+            forces.fixed_view_mut::<1, 3>(row, 9).copy_from(&share);
         }
-        global
+        forces
     }
 
     /// Forces where the nodes move by `u` `[m or rad]`.
@@ -120,8 +124,9 @@ impl Beam {
         let f = matrix * nalgebra::SVector::from(*u);
         BeamForces {
             axial_n: f[0],
-            torque_newton_m: f[1],
-            bending_newton_m: [f[2], f[3]],
+            shear_n: [f[1], f[2]],
+            torque_newton_m: f[3],
+            bending_newton_m: [f[4], f[5]],
         }
     }
 }

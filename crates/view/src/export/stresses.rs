@@ -27,8 +27,10 @@ const OF_SHELLS: [OfShell; 9] = [
 ];
 
 /// The arrays of beams.
-const OF_BEAMS: [OfBeam; 4] = [
+const OF_BEAMS: [OfBeam; 6] = [
     ("axial_force_n", |f| f.axial_n),
+    ("shear_2_n", |f| f.shear_n[0]),
+    ("shear_3_n", |f| f.shear_n[1]),
     ("torque_newton_m", |f| f.torque_newton_m),
     ("moment_2_newton_m", |f| f.bending_newton_m[0]),
     ("moment_3_newton_m", |f| f.bending_newton_m[1]),
@@ -111,6 +113,7 @@ pub(super) fn words() -> Value {
         VON_MISES: "the larger of the two; in an envelope the largest over all time steps [Pa]",
         VON_MISES_TIME: "when it was largest [s]",
         "axial_force_n": "at the middle of a beam, tension positive [N]",
+        "shear_2_n, shear_3_n": "forces at the middle of a beam along its axes 2 and 3, on the side of its second end [N]",
         "torque_newton_m, moment_2_newton_m, moment_3_newton_m": "moments at the middle of a beam about its axes 1, 2 and 3 [N m]",
     })
 }
