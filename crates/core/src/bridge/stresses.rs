@@ -71,7 +71,7 @@ impl StressRecovery {
     /// The stress is that of the strain, without a damping's share. In a condensed module the inner dofs move by
     /// `T u + R (u'' + b v)`: exact in statics, where nothing acts on them, and in motion but for the acceleration that the
     /// fixed-master modes leave out. Verified by `tests/solvers/stresses.rs`.
-    /// Equation (G3).
+    /// Equation (G4).
     pub fn stresses(&self, meshed: &MeshedBridge, u: &[f64], inertial: Option<&[f64]>) -> BridgeStresses {
         let [moved, turned] = [0, 3].map(|first| {
             let mut own = meshed.triples(u, first);

@@ -43,7 +43,7 @@ impl ShellStress {
 }
 
 /// Von Mises stress of plane stress `(s_11, s_22, s_12)`: `sqrt(s_11^2 - s_11 s_22 + s_22^2 + 3 s_12^2)` `[Pa]`.
-/// Equation (G4).
+/// Equation (G3).
 pub fn von_mises_pa([s_11, s_22, s_12]: [f64; 3]) -> f64 {
     (s_11 * s_11 - s_11 * s_22 + s_22 * s_22 + 3.0 * s_12 * s_12).sqrt()
 }
