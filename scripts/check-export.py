@@ -156,6 +156,63 @@ def check_mesh(grid, bridge):
     hold("modules", set(grid.cell["module"]) == set(range(1, modules + 1)))
 
 
+def check_stresses(grid, bridge):
+    """Membrane stress and axial force are those of the motion, von Mises stress that of membrane and bending."""
+    design = bridge["module"]
+    e, nu = design["material"]["youngs_modulus_pa"], design["material"]["poissons_ratio"]
+    quads, lines = (np.concatenate([d for kind, d in grid.cells if kind == of]) for of in ("quad", "line"))
+    moved, cell = grid.point["displacement"].astype(float), grid.cell
+    corners, u = grid.points[quads], moved[quads]
+
+    def gradient(ends, begins):
+        """Of the motion between the middles of two sides, and its axis."""
+        apart, change = (0.5 * (x[:, ends].sum(axis=1) - x[:, begins].sum(axis=1)) for x in (corners, u))
+        length = np.linalg.norm(apart, axis=1, keepdims=True)
+        return change / length, apart / length
+
+    (along, one), (across, two) = gradient([1, 2], [0, 3]), gradient([2, 3], [0, 1])
+    e_1, e_2 = (along * one).sum(axis=1), (across * two).sum(axis=1)
+    g = (along * two).sum(axis=1) + (across * one).sum(axis=1)
+    c = e / (1 - nu**2)
+    membrane = np.stack([c * (e_1 + nu * e_2), c * (e_2 + nu * e_1), e / 2 / (1 + nu) * g])
+    shells = slice(0, len(quads))
+    found, bending = (
+        np.stack([cell[f"{of}_{ij}_pa"][shells] for ij in (11, 22, 12)]) for of in ("membrane", "bending")
+    )
+    # single precision of displacements on elements half a metre long
+    near("membrane stress", found, membrane, 1e-4 * np.abs(membrane).max())
+
+    def von_mises(s):
+        tensor = np.zeros((s.shape[1], 3, 3))
+        tensor[:, 0, 0], tensor[:, 1, 1] = s[0], s[1]
+        tensor[:, 0, 1] = tensor[:, 1, 0] = s[2]
+        deviator = tensor - np.trace(tensor, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+        return np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2)))
+
+    sides = von_mises(found.astype(float) + bending), von_mises(found.astype(float) - bending)
+    size = np.max(sides)
+    for name, expected in [("top_", sides[0]), ("bottom_", sides[1]), ("", np.maximum(*sides))]:
+        near(f"von Mises stress {name}", cell[f"von_mises_{name}pa"][shells], expected, 4 * SINGLE * size)
+    axis = np.diff(grid.points[lines], axis=1)[:, 0]
+    length = np.linalg.norm(axis, axis=1)
+    longer = (np.diff(moved[lines], axis=1)[:, 0] * axis).sum(axis=1) / length
+    force = e * design["stiffeners"]["area_m2"] * longer / length
+    near("axial force of stiffeners", cell["axial_force_n"][len(quads) :], force, 1e-4 * np.abs(force).max())
+
+
+def check_envelope(export):
+    """The largest von Mises stress of all steps, all of which are shown, at a time at which it is reached."""
+    [(_, envelope)], mesh = export.series["crossing-envelope"], export.series["crossing"]
+    times = np.array([time for time, _ in mesh])
+    shown = np.stack([grid.cell["von_mises_pa"] for _, grid in mesh])
+    most, time = envelope.cell["von_mises_pa"], envelope.cell["von_mises_time_s"]
+    near("envelope of von Mises stress", most, shown.max(axis=0), 0.0)
+    shells = np.flatnonzero(most)
+    step = np.searchsorted(times, time[shells])
+    near("times of the envelope", times[step], time[shells], 0.0)
+    near("stress at the times of the envelope", shown[step, shells], most[shells], 0.0)
+
+
 def deflection_m(grid, x_m):
     """Of the bottom's centre line; of the two sides of a joint, which are hinged there, either."""
     place = np.array([x_m, 0.0, 0.0])
@@ -301,6 +358,7 @@ def check_static(export, results):
     axes = pl.read_parquet(results / "jobs.parquet").filter(pl.col("job") == job).to_dicts()[0]
     mesh, joints, vehicle = (export.series[name][0][1] for name in ("static", "static-joints", "static-vehicle"))
     check_mesh(mesh, bridge)
+    check_stresses(mesh, bridge)
     for row in pl.read_parquet(results / "positions.parquet").filter(pl.col("job") == job).to_dicts():
         found = deflection_m(mesh, row["x_m"])
         near(
@@ -351,7 +409,9 @@ def check(out):
     hold("the job with the largest deflection", operator.contents["source"]["job"] == worst)
     for name in ("reference-0", "reference-1"):
         check_crossing(Export(out / "vtk" / name), out / "results/reference", exact=True)
-    check_crossing(Export(out / "vtk/inertia"), out / "results/inertia", exact=True)
+    inertia = Export(out / "vtk/inertia")
+    check_crossing(inertia, out / "results/inertia", exact=True)
+    check_envelope(inertia)
     for name in ("static-0", "static-1"):
         check_static(Export(out / "vtk" / name), out / "results/static")
     # the bridge file's own static case is the study's first

@@ -5,6 +5,7 @@ mod critical_speed;
 mod fem_eigen;
 mod fem_macneal_harder;
 mod fem_patch;
+mod fem_stress;
 mod fem_vibration;
 mod foundation;
 mod gap_oscillator;

@@ -13,4 +13,5 @@ mod operator_lanes;
 mod pins;
 mod probe;
 mod shapes;
+mod stresses;
 mod superelement;

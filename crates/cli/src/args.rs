@@ -165,7 +165,7 @@ pub(crate) enum Command {
     /// Of a bridge file its mode shapes and, where a load is given, a static case; of results a job's mode shapes and its static
     /// case or crossing, which is solved again. Open the .pvd files. The folder is there whole afterwards, or as it was before.
     #[command(
-        after_help = "Examples:\n  pontoon export studies/bridges/fu2005.json --to vtk --load-n 230300 --load-position 7\n  pontoon export results/fu2005 --to vtk --job 20 --count 0"
+        after_help = "Examples:\n  pontoon export studies/bridges/fu2005.json --to vtk --load-n 230300 --load-position 7\n  pontoon export results/fu2005 --to vtk --job 20 --count 0 --stresses"
     )]
     Export(ExportArguments),
     /// The JSON Schema of a file, for an editor or a checker; the columns of tables.
@@ -419,6 +419,10 @@ pub(crate) struct ExportArguments {
     /// Time steps from one instant of a crossing to the next; as many as give about 20 instants a second where absent.
     #[arg(long, value_name = "K", value_parser = whole)]
     pub every: Option<usize>,
+    /// Writes stresses of plates and forces of stiffeners too: of the static case, of each instant of a crossing, and the
+    /// largest von Mises stress of each shell over all time steps of the crossing. Mode shapes have none.
+    #[arg(long)]
+    pub stresses: bool,
 }
 
 /// How connectors work.

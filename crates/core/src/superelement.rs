@@ -6,6 +6,7 @@ use crate::fem::{
     EigenPairs, Factor, FemError, SymmetricMatrix, allowed, diagonal, hold, lowest_modes, pattern, residual, sizes,
 };
 use faer::{Accum, ColRef, Mat, MatRef, Par, linalg::matmul::matmul};
+use std::ops::Range;
 
 /// `k' = T^T k T`, `m' = T^T m T` with `T = [I 0; -k22^-1 k21  Phi]` (masters 1, slaves 2) [36-44].
 ///
@@ -105,6 +106,40 @@ impl SuperElement {
         let error = residual(&self.m, &own, &z, &felt);
         let mass = hold("condensed mass", n, error, allowed(n))?;
         Ok(stiffness.max(mass))
+    }
+
+    /// What the inertia of the slaves adds to their motion beyond T, at rest among themselves: for the acceleration z of the
+    /// condensed dofs they move by `R z`, `R = -(k22^-1 - Phi Lambda^-1 Phi^T) (m T)_2`; masters by nothing. `k` and `m` are
+    /// those that were condensed. Verified by `tests/solvers/stresses.rs`.
+    ///
+    /// # Errors
+    /// [`FemError`] as [`Self::condense`].
+    /// Equation (P2).
+    pub fn inertial_correction(&self, k: &SymmetricMatrix, m: &SymmetricMatrix) -> Result<Mat<f64>, FemError> {
+        let parts = Parts::new(k.order(), &self.masters);
+        let (n1, reduced) = (self.masters.len(), self.k.order());
+        let mut inertia = Mat::<f64>::zeros(k.order(), reduced);
+        m.multiply_columns(self.transformation.as_ref(), inertia.as_mut());
+        let of_slaves = |of: &Mat<f64>, columns: Range<usize>| {
+            Mat::from_fn(parts.slaves.len(), columns.len(), |i, j| {
+                of[(parts.slaves[i], columns.start + j)]
+            })
+        };
+        let inertia = of_slaves(&inertia, 0..reduced);
+        let mut moved = inertia.clone();
+        Factor::new("stiffness of a module's slaves", &parts.among_slaves(k)?)?.solve_columns(moved.as_mut());
+        // the modes' own part of it moves already
+        let phi = of_slaves(&self.transformation, n1..reduced);
+        let mut amplitudes = phi.transpose() * &inertia;
+        for (j, lambda) in diagonal(&self.k).skip(n1).enumerate() {
+            amplitudes
+                .row_mut(j)
+                .iter_mut()
+                .for_each(|amplitude| *amplitude /= lambda);
+        }
+        moved -= &phi * &amplitudes;
+        let row = |i: usize, j: usize| parts.slave[i].map_or(0.0, |slave| -moved[(slave, j)]);
+        Ok(Mat::from_fn(k.order(), reduced, row))
     }
 }
 

@@ -14,6 +14,7 @@ mod designs;
 mod export;
 mod export_input;
 mod export_stage;
+mod export_stresses;
 mod figures;
 mod joints;
 mod old_results;

@@ -25,6 +25,7 @@ pub(crate) fn export(arguments: &ExportArguments, common: Common) -> Result<Exit
         }),
         job: arguments.job,
         every: arguments.every,
+        stresses: arguments.stresses,
     };
     let note = |what: &str| {
         if !common.quiet {

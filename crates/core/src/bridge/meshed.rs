@@ -9,7 +9,7 @@ use super::row::Row;
 use super::{BridgeDesign, BridgeError, Ends};
 use crate::fem::{DOFS_PER_NODE, SparseRow};
 use crate::module::Plate;
-use faer::{Accum, Mat, Par, linalg::matmul::matmul};
+use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
 
 /// A shell of the whole bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,10 +119,7 @@ impl MeshedBridge {
             let stations = modules.clone().flat_map(|j| (0..grid.x.len()).map(move |ix| (j, ix)));
             stations.map(move |(j, ix)| j * own + grid.deck(ix, iy).0)
         });
-        let condensed = module.transformation().map(|t| {
-            let dof = |i: usize| (i / 3 % own) * DOFS_PER_NODE + i / 3 / own * 3 + i % 3;
-            Mat::from_fn(DOFS_PER_NODE * own, t.ncols(), |i, j| t[(dof(i), j)])
-        });
+        let condensed = module.transformation().map(translations_first);
         let lines: Vec<usize> = design
             .hinge_lines_y_m()
             .iter()
@@ -165,7 +162,7 @@ impl MeshedBridge {
     }
 
     /// Three dofs of each node, from the first of them on: 0 or 3.
-    fn triples(&self, u: &[f64], first: usize) -> Vec<[f64; 3]> {
+    pub(super) fn triples(&self, u: &[f64], first: usize) -> Vec<[f64; 3]> {
         let of = |dof: Option<usize>| dof.map_or(0.0, |dof| u[dof]);
         let Some(condensed) = &self.condensed else {
             let nodes = self.map.iter().flat_map(|map| map.chunks_exact(DOFS_PER_NODE));
@@ -173,8 +170,14 @@ impl MeshedBridge {
                 .map(|node| [0, 1, 2].map(|direction| of(node[first + direction])))
                 .collect();
         };
-        let rows = condensed.nrows() / 2;
-        let t = condensed.subrows(if first == 0 { 0 } else { rows }, rows);
+        self.triples_by(condensed, u, first)
+    }
+
+    /// [`Self::triples`] by a matrix whose rows [`translations_first`] has put in order.
+    pub(super) fn triples_by(&self, matrix: &Mat<f64>, u: &[f64], first: usize) -> Vec<[f64; 3]> {
+        let rows = matrix.nrows() / 2;
+        let t = matrix.subrows(if first == 0 { 0 } else { rows }, rows);
+        let of = |dof: Option<usize>| dof.map_or(0.0, |dof| u[dof]);
         let own = Mat::from_fn(t.ncols(), self.map.len(), |i, j| of(self.map[j][i]));
         let mut moved = Mat::<f64>::zeros(rows, self.map.len());
         matmul(moved.as_mut(), Accum::Replace, t, own.as_ref(), 1.0, Par::Seq);
@@ -210,6 +213,13 @@ impl MeshedBridge {
         let right_of_joints = self.map.iter().skip(1);
         right_of_joints.zip(&self.hinge_places).flat_map(of_module).collect()
     }
+}
+
+/// The rows of a matrix with one for each dof of a module: the translations of node after node, then their rotations.
+pub(super) fn translations_first(matrix: MatRef<'_, f64>) -> Mat<f64> {
+    let nodes = matrix.nrows() / DOFS_PER_NODE;
+    let dof = |i: usize| (i / 3 % nodes) * DOFS_PER_NODE + i / 3 / nodes * 3 + i % 3;
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(dof(i), j)])
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod prepared;
 mod product;
 mod provenance;
 mod row;
+mod stresses;
 mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
@@ -29,6 +30,7 @@ pub use prepared::PreparedModule;
 #[cfg(test)]
 pub(crate) use prepared::Side;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
+pub use stresses::{BridgeStresses, StressRecovery};
 use thiserror::Error;
 pub use track::Track;
 

@@ -8,7 +8,7 @@ use crate::fem::{FemError, MassKind, Mesh, NodeId, SparseRow, SymmetricMatrix, a
 use crate::module::{Grid, ModuleMesh, mesh_module};
 use crate::superelement::SuperElement;
 use crate::water::spread;
-use faer::MatRef;
+use faer::{Mat, MatRef};
 use std::collections::BTreeSet;
 
 /// Translation along the bridge, across it, and up, as directions of a node's dofs.
@@ -75,12 +75,9 @@ impl PreparedModule {
         meshed.check(design.module.depth_m)?;
         check_fit(design, &meshed.grid)?;
         let (grid, mesh) = (meshed.grid, meshed.mesh);
-        let (structure, mass) = assemble(&mesh, MassKind::Consistent)?;
+        let Afloat { k, m, mass, water } = Afloat::new(design, &grid, &mesh)?;
         let heave = heave(&mesh);
         let structural_mass_kg = mass.form(&heave, &heave);
-        let water = Water::under(design, &grid, mesh.dofs())?;
-        let k = SymmetricMatrix::combine(&[(1.0, &structure), (1.0, &water.k)])?;
-        let m = SymmetricMatrix::combine(&[(1.0, &mass), (1.0, &water.m)])?;
         let roll = roll(&mesh, design.module.depth_m);
         let roll_inertia_kg_m2 = m.form(&roll, &roll);
         let reduced = match model {
@@ -142,6 +139,19 @@ impl PreparedModule {
         self.condensed.as_ref().map(|c| c.transformation.as_ref())
     }
 
+    /// What the inertia of a condensed module's inner dofs adds to their motion, see [`SuperElement::inertial_correction`];
+    /// none where nothing is condensed. `design` is the one that it was prepared from.
+    ///
+    /// # Errors
+    /// [`FemError`] as [`PreparedModule::from_mesh`].
+    pub(super) fn inertial_correction(&self, design: &BridgeDesign) -> Result<Option<Mat<f64>>, FemError> {
+        let Some(condensed) = &self.condensed else {
+            return Ok(None);
+        };
+        let Afloat { k, m, .. } = Afloat::new(design, &self.grid, &self.mesh)?;
+        condensed.inertial_correction(&k, &m).map(Some)
+    }
+
     /// A node's translation in terms of the dofs: itself, or a row of the transformation.
     pub(super) fn row(&self, node: NodeId, direction: usize) -> SparseRow {
         match (self.dof(node, direction), &self.condensed) {
@@ -164,6 +174,27 @@ impl PreparedModule {
             Side::Left => 0,
             Side::Right => self.grid.x.len() - 1,
         }
+    }
+}
+
+/// The matrices of a module before anything is condensed.
+struct Afloat {
+    /// Structure and water.
+    k: SymmetricMatrix,
+    /// Structure and water.
+    m: SymmetricMatrix,
+    /// Structure alone.
+    mass: SymmetricMatrix,
+    water: Water,
+}
+
+impl Afloat {
+    fn new(design: &BridgeDesign, grid: &Grid, mesh: &Mesh) -> Result<Self, FemError> {
+        let (structure, mass) = assemble(mesh, MassKind::Consistent)?;
+        let water = Water::under(design, grid, mesh.dofs())?;
+        let k = SymmetricMatrix::combine(&[(1.0, &structure), (1.0, &water.k)])?;
+        let m = SymmetricMatrix::combine(&[(1.0, &mass), (1.0, &water.m)])?;
+        Ok(Self { k, m, mass, water })
     }
 }
 

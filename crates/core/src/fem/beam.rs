@@ -97,6 +97,17 @@ impl Beam {
         })
     }
 
+    /// The beam's own axes, as rows.
+    pub(super) fn axes(&self) -> &Matrix3<f64> {
+        &self.axes
+    }
+
+    /// `E I_y` and `E I_z` over the length `[N m]`.
+    pub(super) fn bending_per_length(&self) -> [f64; 2] {
+        let s = &self.section;
+        [s.i_y_m4, s.i_z_m4].map(|i| s.youngs_modulus_pa * i / self.length)
+    }
+
     /// `Phi = 12 E I / (G A_s L^2)`, 0 without shear deformation.
     /// Equation (E5).
     fn phi(&self, i: f64) -> f64 {

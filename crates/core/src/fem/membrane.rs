@@ -22,24 +22,52 @@ const DRILLING_HOURGLASS: f64 = 1e-5;
 /// Drilling: `G t (theta_z - (v,x - u,y)/2)^2 / 2` (Hughes, Brezzi: Comput. Meth. Appl. Mech. Engng 72, 1989) at the
 /// centre, where neither constant strain nor in-plane bending of a rectangle leaves anything.
 pub(super) fn stiffness(frame: &QuadFrame, section: &ShellSection) -> MembraneMatrix {
-    let t = section.thickness_m;
-    let d = section.plane_stress() * t;
-    let centre = frame.shape(0.0, 0.0);
-    let mut k = MembraneMatrix::zeros();
-    let mut k_ua = SMatrix::<f64, 12, 4>::zeros();
-    let mut k_aa = SMatrix::<f64, 4, 4>::zeros();
-    for (xi, eta) in GAUSS_2X2 {
-        let at = frame.shape(xi, eta);
-        let b = strain(&at);
-        let b_a = incompatible_strain(&centre, &at, xi, eta);
-        k += b.transpose() * d * b * at.det;
-        k_ua += b.transpose() * d * b_a * at.det;
-        k_aa += b_a.transpose() * d * b_a * at.det;
-    }
+    let Enriched { mut k, k_ua, k_aa } = Enriched::new(frame, section);
     if let Some(inverse) = k_aa.try_inverse() {
         k -= k_ua * inverse * k_ua.transpose();
     }
-    k + drilling(frame, section, &centre)
+    k + drilling(frame, section, &frame.shape(0.0, 0.0))
+}
+
+/// `(eps_x, eps_y, gamma_xy)` at a point, of the nodal displacements and of the incompatible modes that follow them,
+/// `B - B_a k_aa^-1 k_ua^T`.
+/// Equation (G1).
+pub(super) fn strain_at(frame: &QuadFrame, section: &ShellSection, xi: f64, eta: f64) -> SMatrix<f64, 3, 12> {
+    let Enriched { k_ua, k_aa, .. } = Enriched::new(frame, section);
+    let at = frame.shape(xi, eta);
+    let mut b = strain(&at);
+    if let Some(inverse) = k_aa.try_inverse() {
+        b -= incompatible_strain(&frame.shape(0.0, 0.0), &at, xi, eta) * inverse * k_ua.transpose();
+    }
+    b
+}
+
+/// The membrane's stiffness before its incompatible modes are condensed, without drilling.
+struct Enriched {
+    k: MembraneMatrix,
+    k_ua: SMatrix<f64, 12, 4>,
+    k_aa: SMatrix<f64, 4, 4>,
+}
+
+impl Enriched {
+    fn new(frame: &QuadFrame, section: &ShellSection) -> Self {
+        let d = section.plane_stress() * section.thickness_m;
+        let centre = frame.shape(0.0, 0.0);
+        let mut own = Self {
+            k: MembraneMatrix::zeros(),
+            k_ua: SMatrix::zeros(),
+            k_aa: SMatrix::zeros(),
+        };
+        for (xi, eta) in GAUSS_2X2 {
+            let at = frame.shape(xi, eta);
+            let b = strain(&at);
+            let b_a = incompatible_strain(&centre, &at, xi, eta);
+            own.k += b.transpose() * d * b * at.det;
+            own.k_ua += b.transpose() * d * b_a * at.det;
+            own.k_aa += b_a.transpose() * d * b_a * at.det;
+        }
+        own
+    }
 }
 
 /// `(eps_x, eps_y, gamma_xy)` of the nodal displacements.

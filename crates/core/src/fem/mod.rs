@@ -17,6 +17,7 @@ mod probe;
 mod section;
 mod shell;
 mod sparse;
+mod stress;
 mod windows;
 
 pub use assembly::{MassKind, assemble};
@@ -28,10 +29,12 @@ pub(crate) use factor::SolveMemory;
 pub use frame::QuadFrame;
 pub use inertia::count_below;
 pub use mesh::{DOFS_PER_NODE, Mesh, NodeId};
+pub(crate) use mesh::{MeshBeam, MeshShell};
 pub(crate) use probe::{allowed, diagonal, hold, pattern, residual, sizes};
 pub use section::ShellSection;
 pub use shell::Shell;
 pub use sparse::{SparseRow, SymmetricMatrix};
+pub use stress::{BeamForceMatrix, BeamForces, ShellStress, ShellStressMatrix, von_mises_pa};
 pub use windows::{ModeSearch, ONE_SEARCH};
 
 use crate::stop::Stop;

@@ -36,7 +36,7 @@ pub(super) fn stiffness(frame: &QuadFrame, section: &ShellSection) -> PlateMatri
 
 /// `(kappa_x, kappa_y, kappa_xy) = (beta_x,x, beta_y,y, beta_x,y + beta_y,x)`.
 /// Equation (E4).
-fn curvature(at: &ShapeAt) -> SMatrix<f64, 3, 12> {
+pub(super) fn curvature(at: &ShapeAt) -> SMatrix<f64, 3, 12> {
     let mut b = SMatrix::<f64, 3, 12>::zeros();
     for i in 0..4 {
         b[(0, 3 * i + 2)] = at.dx[i];

@@ -20,8 +20,8 @@ pub struct Shell {
 }
 
 /// Local dofs (u, v, theta_z) of the membrane and (w, theta_x, theta_y) of the plate within a node's six.
-const MEMBRANE_DOFS: [usize; 3] = [0, 1, 5];
-const PLATE_DOFS: [usize; 3] = [2, 3, 4];
+pub(super) const MEMBRANE_DOFS: [usize; 3] = [0, 1, 5];
+pub(super) const PLATE_DOFS: [usize; 3] = [2, 3, 4];
 
 impl Shell {
     /// Shell number `element` with the given corners.
@@ -55,12 +55,18 @@ impl Shell {
                 }
             }
         }
+        let links = self.links();
+        turn(&(links.transpose() * local * links), &self.frame.axes)
+    }
+
+    /// The rigid links from the corners to the mean plane, in local directions.
+    pub(super) fn links(&self) -> ShellMatrix {
         let mut links = ShellMatrix::identity();
         for (i, h) in self.frame.warp.iter().enumerate() {
             links[(6 * i, 6 * i + 4)] = -h;
             links[(6 * i + 1, 6 * i + 3)] = *h;
         }
-        turn(&(links.transpose() * local * links), &self.frame.axes)
+        links
     }
 
     /// Consistent mass `integral of N^T diag(rho t, rho t^3/12) N dA` `[kg, kg m^2]`; drilling carries none. Verified by

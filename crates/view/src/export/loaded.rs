@@ -3,8 +3,9 @@
 //! Knows which instants of a crossing are shown. Does not know the format.
 
 use super::pictures::Pictures;
-use super::ready::Ready;
+use super::ready::{Ready, Stresses};
 use super::series::Series;
+use super::stresses::StressEnvelope;
 use super::subject::{CrossingWanted, StaticWanted, Subject};
 use super::vtk::{Array, Counter, VtkGrid, VtkValues};
 use super::whole::WholeFolder;
@@ -12,7 +13,7 @@ use super::{ExportError, Part, check_size};
 use pontoon_core::analysis::crossing::CrossingSettings;
 use pontoon_core::analysis::snapshot::Snapshot;
 use pontoon_core::analysis::statics::StaticSolver;
-use pontoon_core::bridge::Ends;
+use pontoon_core::bridge::{BridgeStresses, Ends};
 use pontoon_core::response::Record;
 use pontoon_plan::input::Refusal;
 use pontoon_study::run::{RETRY_STEP_SHARE, half_step_may_help};
@@ -20,7 +21,7 @@ use pontoon_study::run::{RETRY_STEP_SHARE, half_step_may_help};
 /// Instants of a crossing in a second, where nothing else is asked for.
 const INSTANTS_A_SECOND: f64 = 20.0;
 
-/// The three series of a loaded bridge.
+/// The series of a loaded bridge.
 struct LoadedSeries {
     mesh: Series,
     joints: Series,
@@ -65,12 +66,12 @@ impl LoadedSeries {
     }
 }
 
-/// The three grids of a state.
-fn grids(pictures: &Pictures, ready: &Ready, state: &Snapshot) -> [VtkGrid; 3] {
+/// The three grids of a state, whose stresses are those of the mesh.
+fn grids(pictures: &Pictures, ready: &Ready, state: &Snapshot, stresses: Option<&BridgeStresses>) -> [VtkGrid; 3] {
     let displacement_m = ready.meshed.displacement_m(&state.u);
     let time = || vec![Array::new("time_s", VtkValues::F64(vec![state.time_s]))];
     [
-        pictures.mesh(&displacement_m, time()),
+        pictures.mesh(&displacement_m, stresses, time()),
         pictures.joints(ready, state, &displacement_m, time()),
         pictures.vehicle(ready, state, &displacement_m, time()),
     ]
@@ -85,7 +86,7 @@ pub(super) fn statics(
     wanted: &StaticWanted,
     folder: &mut WholeFolder,
 ) -> Result<[Part; 3], ExportError> {
-    let ready = Ready::new(&subject.design, wanted.model, Ends::Supported)?;
+    let ready = Ready::new(&subject.design, wanted.model, Ends::Supported, subject.stresses)?;
     let solver = StaticSolver::new(&ready.bridge)?;
     let state = solver.state(&wanted.vehicle, &wanted.case)?;
     let peak = solver
@@ -94,7 +95,12 @@ pub(super) fn statics(
         .into_iter()
         .fold(0.0, f64::max);
     let mut shown = LoadedSeries::of_statics();
-    shown.write(folder, 0.0, grids(&Pictures::of(&ready), &ready, &state))?;
+    let stresses = ready.stresses(&state);
+    shown.write(
+        folder,
+        0.0,
+        grids(&Pictures::of(&ready), &ready, &state, stresses.as_ref()),
+    )?;
     shown.finish(folder, peak)
 }
 
@@ -108,8 +114,8 @@ pub(super) fn crossing(
     wanted: &CrossingWanted,
     folder: &mut WholeFolder,
     note: &dyn Fn(&str),
-) -> Result<[Part; 3], ExportError> {
-    let (ready, settings) = Ready::of_crossing(wanted)?;
+) -> Result<Vec<Part>, ExportError> {
+    let (ready, settings) = Ready::of_crossing(wanted, subject.stresses)?;
     let default = (1.0 / (INSTANTS_A_SECOND * settings.time_step_s)).round().max(1.0);
     let every = wanted.every.unwrap_or(default as usize);
     if every == 0 {
@@ -145,13 +151,14 @@ struct Passage<'a> {
 }
 
 impl Passage<'_> {
-    /// Writes the state before the first step, after each `every` steps, and after the last.
+    /// Writes the state before the first step, after each `every` steps, and after the last; of stresses, where they are
+    /// wanted, also the envelope over all steps.
     fn write(
         &self,
         settings: &CrossingSettings,
         every: usize,
         folder: &mut WholeFolder,
-    ) -> Result<[Part; 3], ExportError> {
+    ) -> Result<Vec<Part>, ExportError> {
         let pictures = Pictures::of(self.ready);
         let solver = self.ready.solver(settings)?;
         let crossing = self.wanted.crossing()?;
@@ -159,7 +166,14 @@ impl Passage<'_> {
         let mut under = solver.begin(crossing.vehicle(), &input);
         let steps = under.steps();
         let instants = 1 + steps.div_ceil(every);
-        let at_rest = grids(&pictures, self.ready, &under.snapshot());
+        let mut envelope = StressEnvelope::default();
+        let state = under.snapshot();
+        let at_rest = grids(
+            &pictures,
+            self.ready,
+            &state,
+            self.looked_at(&state, &mut envelope).as_ref(),
+        );
         let mut size = Counter::default();
         for grid in &at_rest {
             // counting cannot fail
@@ -172,15 +186,47 @@ impl Passage<'_> {
         let whole = [3 * instants as u64, instants as u64 * size.0];
         check_size(self.subject, ("--every", found), whole, self.note)?;
         let mut shown = LoadedSeries::of_crossing(instants);
-        shown.write(folder, under.snapshot().time_s, at_rest)?;
+        shown.write(folder, state.time_s, at_rest)?;
         let mut taken = 0;
         while under.step()? {
             taken += 1;
-            if taken % every == 0 || taken == steps {
-                let state = under.snapshot();
-                shown.write(folder, state.time_s, grids(&pictures, self.ready, &state))?;
+            let is_shown = taken % every == 0 || taken == steps;
+            if !is_shown && self.subject.stresses == Stresses::Unwanted {
+                continue;
+            }
+            let state = under.snapshot();
+            let stresses = self.looked_at(&state, &mut envelope);
+            if is_shown {
+                let grids = grids(&pictures, self.ready, &state, stresses.as_ref());
+                shown.write(folder, state.time_s, grids)?;
             }
         }
-        shown.finish(folder, under.finish().peak_deflection().deflection.value)
+        let mut parts = Vec::from(shown.finish(folder, under.finish().peak_deflection().deflection.value)?);
+        if self.subject.stresses == Stresses::Wanted {
+            parts.push(self.envelope(&pictures, &envelope, folder)?);
+        }
+        Ok(parts)
+    }
+
+    /// The stresses of a state, where they are wanted, also to the envelope.
+    fn looked_at(&self, state: &Snapshot, envelope: &mut StressEnvelope) -> Option<BridgeStresses> {
+        let stresses = self.ready.stresses(state)?;
+        envelope.look_at(state.time_s, &stresses);
+        Some(stresses)
+    }
+
+    fn envelope(
+        &self,
+        pictures: &Pictures,
+        envelope: &StressEnvelope,
+        folder: &mut WholeFolder,
+    ) -> Result<Part, ExportError> {
+        let shows = format!(
+            "crossing: largest von Mises stress of each shell at {} time steps",
+            envelope.states()
+        );
+        let mut series = Series::new("crossing-envelope", shows, 1);
+        series.write(folder, 0.0, "all time steps", &pictures.envelope(envelope))?;
+        series.finish(folder, None)
     }
 }

@@ -5,6 +5,7 @@
 //! | `subject` | what is exported: a bridge file or a job of results, and what is asked of it |
 //! | `ready` | the bridge and its mesh made ready, a job's solver |
 //! | `pictures` | a state of the bridge as grids: mesh, joints, vehicle |
+//! | `stresses` | stresses as arrays of the mesh, and their envelope |
 //! | `series` | grids over time as numbered files and their collection |
 //! | `modes`, `loaded` | the parts: mode shapes; static case and crossing |
 //! | `vtk` | the words of the format; here, beside the other files of results, for the program itself writes words to people alone |
@@ -15,13 +16,15 @@
 //! A crossing is solved again by the reference solver on the job's own model, whatever solver its study ran: it has all dofs
 //! of that model at every step, and the super-element's own recovery leads from them to every node without a further
 //! approximation. The operator's modes and residuals would give the same within what the operator promises (0.5 % in
-//! deflection), and not the whole field. Lengths of mesh and displacement are in single precision, forces in double.
+//! deflection), and not the whole field. Lengths of mesh and displacement and stresses are in single
+//! precision, forces in double.
 
 mod loaded;
 mod modes;
 mod pictures;
 mod ready;
 mod series;
+mod stresses;
 mod subject;
 mod vtk;
 mod whole;
@@ -31,6 +34,7 @@ use pontoon_core::bridge::BridgeError;
 use pontoon_journal::place::FolderError;
 use pontoon_plan::input::Refusal;
 use pontoon_results::ResultsError;
+use ready::Stresses;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -51,6 +55,8 @@ pub struct Request {
     pub job: Option<usize>,
     /// Time steps from one instant of a crossing to the next; absent: as many as give about 20 instants a second.
     pub every: Option<usize>,
+    /// Whether stresses of the static case and the crossing are written too.
+    pub stresses: bool,
 }
 
 /// A static case that is asked for.
@@ -146,7 +152,7 @@ fn contents(subject: &Subject, parts: &[Part]) -> Value {
         let entry = |(number, word): (usize, &&str)| (number.to_string(), Value::from(*word));
         Value::Object(words.iter().enumerate().map(entry).collect())
     };
-    json!({
+    let mut contents = json!({
         "program_version": pontoon_results::VERSION,
         "source": subject.words,
         "parts": parts,
@@ -163,7 +169,11 @@ fn contents(subject: &Subject, parts: &[Part]) -> Value {
             "contact_force_n": "of a point of the vehicle on the deck, weight and inertia, downward [N]",
             "on_bridge": numbered(&["off the bridge", "on the bridge"]),
         },
-    })
+    });
+    if subject.stresses == Stresses::Wanted {
+        contents["stresses"] = stresses::words();
+    }
+    contents
 }
 
 /// Most files and bytes of a series; ParaView reads every file's head before it shows anything.

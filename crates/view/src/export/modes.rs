@@ -3,7 +3,7 @@
 //! Knows how a shape is scaled. Does not know how it is found.
 
 use super::pictures::Pictures;
-use super::ready::Ready;
+use super::ready::{Ready, Stresses};
 use super::series::Series;
 use super::subject::{ModesWanted, Subject};
 use super::vtk::{Array, Counter, VtkValues};
@@ -27,14 +27,14 @@ pub(super) fn write(
     note: &dyn Fn(&str),
 ) -> Result<Part, ExportError> {
     let ends = if wanted.supports { Ends::Supported } else { Ends::Free };
-    let ready = Ready::new(&subject.design, wanted.model, ends)?;
+    let ready = Ready::new(&subject.design, wanted.model, ends, Stresses::Unwanted)?;
     let pictures = Pictures::of(&ready);
     let count = wanted.count.min(ready.bridge.dofs());
     let mut size = Counter::default();
     let at_rest = vec![[0.0; 3]; ready.meshed.nodes_m.len()];
     // counting cannot fail
     let _ = pictures
-        .mesh(&at_rest, fields(1, 1.0, "vertical bending 1"))
+        .mesh(&at_rest, None, fields(1, 1.0, "vertical bending 1"))
         .write(&mut size);
     let files = count as u64;
     check_size(
@@ -60,7 +60,7 @@ pub(super) fn write(
     for (j, mode) in found.iter().enumerate() {
         let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
         let displacement = largest_made_one(ready.meshed.displacement_m(&shape));
-        let grid = pictures.mesh(&displacement, fields(j + 1, mode.frequency_hz, &mode.name));
+        let grid = pictures.mesh(&displacement, None, fields(j + 1, mode.frequency_hz, &mode.name));
         let name = format!("{}, {:.4} Hz", mode.name, mode.frequency_hz);
         series.write(folder, (j + 1) as f64, &name, &grid)?;
     }

@@ -3,9 +3,10 @@
 //! Knows which array says what. Does not know files or how the state was found.
 
 use super::ready::Ready;
+use super::stresses::{self, StressEnvelope};
 use super::vtk::{Array, CellType, VtkGrid, VtkValues};
 use pontoon_core::analysis::snapshot::Snapshot;
-use pontoon_core::bridge::Link;
+use pontoon_core::bridge::{BridgeStresses, Link};
 use pontoon_core::connector::State;
 use pontoon_core::module::Plate;
 
@@ -46,11 +47,25 @@ impl Pictures {
         }
     }
 
-    /// The mesh with its nodes moved.
-    pub(super) fn mesh(&self, displacement_m: &[[f64; 3]], fields: Vec<Array>) -> VtkGrid {
+    /// The mesh with its nodes moved, and its cells' stresses where they are wanted.
+    pub(super) fn mesh(
+        &self,
+        displacement_m: &[[f64; 3]],
+        stresses: Option<&BridgeStresses>,
+        fields: Vec<Array>,
+    ) -> VtkGrid {
         let mut grid = self.mesh.clone();
         grid.point_data.push(Array::vectors(MOTION, displacement_m));
+        grid.cell_data
+            .extend(stresses.map(stresses::arrays).into_iter().flatten());
         grid.field_data.extend(fields);
+        grid
+    }
+
+    /// The mesh at rest with the envelope of its cells' stresses.
+    pub(super) fn envelope(&self, envelope: &StressEnvelope) -> VtkGrid {
+        let mut grid = self.mesh.clone();
+        grid.cell_data.extend(envelope.arrays());
         grid
     }
 

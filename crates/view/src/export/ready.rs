@@ -6,7 +6,10 @@ use super::ExportError;
 use super::subject::CrossingWanted;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::{bending_frequencies_hz, rayleigh};
-use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
+use pontoon_core::analysis::snapshot::Snapshot;
+use pontoon_core::bridge::{
+    Bridge, BridgeDesign, BridgeStresses, Ends, MeshedBridge, Model, PreparedModule, StressRecovery,
+};
 use pontoon_core::stop::Stop;
 use std::sync::Arc;
 
@@ -15,6 +18,14 @@ use std::sync::Arc;
 pub(super) struct Ready {
     pub bridge: Arc<Bridge>,
     pub meshed: MeshedBridge,
+    recovery: Option<StressRecovery>,
+}
+
+/// Whether stresses are wanted beside the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stresses {
+    Wanted,
+    Unwanted,
 }
 
 impl Ready {
@@ -22,22 +33,40 @@ impl Ready {
     ///
     /// # Errors
     /// [`ExportError::Bridge`].
-    pub(super) fn new(design: &BridgeDesign, model: Model, ends: Ends) -> Result<Self, ExportError> {
-        Self::of(design, &PreparedModule::new(design, model)?, ends)
+    pub(super) fn new(
+        design: &BridgeDesign,
+        model: Model,
+        ends: Ends,
+        stresses: Stresses,
+    ) -> Result<Self, ExportError> {
+        Self::of(design, &PreparedModule::new(design, model)?, ends, stresses)
     }
 
-    fn of(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Result<Self, ExportError> {
+    fn of(design: &BridgeDesign, module: &PreparedModule, ends: Ends, stresses: Stresses) -> Result<Self, ExportError> {
         Ok(Self {
             bridge: Arc::new(Bridge::new(design, module, ends)?),
             meshed: MeshedBridge::new(design, module, ends)?,
+            recovery: match stresses {
+                Stresses::Wanted => Some(StressRecovery::new(design, module)?),
+                Stresses::Unwanted => None,
+            },
         })
+    }
+
+    /// The stresses of a state, where they are wanted.
+    pub(super) fn stresses(&self, state: &Snapshot) -> Option<BridgeStresses> {
+        let recovery = self.recovery.as_ref()?;
+        Some(recovery.stresses(&self.meshed, &state.u, state.inertial.as_deref()))
     }
 
     /// The bridge of a crossing with its settings: those of its study, at the time step of its answer.
     ///
     /// # Errors
     /// [`ExportError`].
-    pub(super) fn of_crossing(wanted: &CrossingWanted) -> Result<(Self, CrossingSettings), ExportError> {
+    pub(super) fn of_crossing(
+        wanted: &CrossingWanted,
+        stresses: Stresses,
+    ) -> Result<(Self, CrossingSettings), ExportError> {
         let (design, crossing) = (&wanted.job.bridge.design, wanted.crossing()?);
         let module = PreparedModule::new(design, wanted.job.model().into())?;
         let damping = crossing.analysis.damping;
@@ -49,7 +78,7 @@ impl Ready {
             time_step_s: wanted.time_step_s,
             ..crossing.settings(rayleigh(damping.ratio, frequencies_hz))
         };
-        Ok((Self::of(design, &module, Ends::Supported)?, settings))
+        Ok((Self::of(design, &module, Ends::Supported, stresses)?, settings))
     }
 
     /// The solver of a crossing on this bridge.

@@ -2,6 +2,7 @@
 //!
 //! Knows what can be asked of which, and refuses the rest. Does not know how anything is solved.
 
+use super::ready::Stresses;
 use super::{ExportError, LoadRequest, Request};
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::{BridgeDesign, Model};
@@ -31,6 +32,8 @@ pub(super) struct Subject {
     pub modes: Option<ModesWanted>,
     pub statics: Option<StaticWanted>,
     pub crossing: Option<CrossingWanted>,
+    /// Whether stresses of the static case and the crossing are wanted.
+    pub stresses: Stresses,
 }
 
 /// Modes that are wanted.
@@ -84,6 +87,11 @@ impl Subject {
             let allowed = "at least one mode, or a load";
             return Err(Refusal::new(source, "--count", "0 modes and no load", allowed).into());
         }
+        if request.stresses && subject.statics.is_none() && subject.crossing.is_none() {
+            let allowed =
+                "a static case or a crossing with it (--load-n makes one): a mode shape has no size, and so no stress";
+            return Err(Refusal::new(source, "--stresses", "modes alone", allowed).into());
+        }
         Ok(subject)
     }
 
@@ -125,6 +133,7 @@ impl Subject {
             modes,
             statics,
             crossing: None,
+            stresses: stresses_of(request),
         })
     }
 
@@ -159,7 +168,16 @@ impl Subject {
             modes,
             statics,
             crossing,
+            stresses: stresses_of(request),
         })
+    }
+}
+
+fn stresses_of(request: &Request) -> Stresses {
+    if request.stresses {
+        Stresses::Wanted
+    } else {
+        Stresses::Unwanted
     }
 }
 

@@ -96,6 +96,18 @@ impl Array {
         }
     }
 
+    /// Its name.
+    #[cfg(test)]
+    pub(super) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Number of its tuples.
+    #[cfg(test)]
+    pub(super) fn len(&self) -> usize {
+        self.values.len() / self.components
+    }
+
     /// A text as its UTF-8 bytes.
     pub(super) fn text(name: &'static str, text: &str) -> Self {
         Self::new(name, VtkValues::U8(text.as_bytes().to_vec()))
