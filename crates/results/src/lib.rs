@@ -5,6 +5,7 @@
 //! | `record` | all rows of one job |
 //! | `failure` | why a job failed |
 //! | `preparation`, `verification`, `outcome` | what a run leaves behind beside its records |
+//! | `quantities` | the words of recorded numbers |
 //! | `registry` | the columns of all tables, one entry each |
 //! | [`labels`] | what columns are called, and the digits of a number |
 //! | `varying` | which axes vary |
@@ -31,6 +32,7 @@ mod moment;
 mod outcome;
 mod parquet;
 mod preparation;
+mod quantities;
 mod record;
 mod registry;
 mod results;
@@ -51,13 +53,12 @@ pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::TableProvenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
+pub use quantities::{QUANTITIES, SECTION_QUANTITIES};
 pub use record::{
     AtPeakRow, ConnectorRow, Extreme, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow,
     PositionRow, SectionRow, Summary,
 };
-pub use registry::{
-    COLUMNS, Card, Column, ColumnRole, Curve, Digits, QUANTITIES, SECTION_QUANTITIES, SpeedFigure, When, registered,
-};
+pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, SpeedFigure, When, registered};
 pub use results::Results;
 pub use results_error::ResultsError;
 pub use summary::SummaryTable;

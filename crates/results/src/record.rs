@@ -4,7 +4,7 @@
 //! written and read back without loss, so that a journal can stand between the jobs and the tables.
 
 use super::failure::Failure;
-use super::registry::SECTION_QUANTITIES;
+use super::quantities::SECTION_QUANTITIES;
 use pontoon_plan::job::Job;
 use serde::{Deserialize, Serialize};
 

@@ -14,6 +14,7 @@ pub(crate) use column::{ColumnSource, HistorySample, JointRow, RowOf};
 
 use crate::FailureKind;
 use crate::arrays::CellKind;
+use crate::quantities::{QUANTITIES, SECTION_QUANTITIES};
 use crate::record::JobRecord;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use column::{
@@ -43,34 +44,7 @@ fn reason(record: &JobRecord) -> Cell<'_> {
     }
 }
 
-/// The words of `quantity`: what a history is of, with its unit and its sense.
-pub const QUANTITIES: [&str; 12] = [
-    "deflection_m",
-    "force_n",
-    "pin_x_n",
-    "pin_y_n",
-    "pin_z_n",
-    "angle_rad",
-    "axial_n",
-    "shear_y_n",
-    "shear_z_n",
-    "torsion_nm",
-    "bending_nm",
-    "lateral_bending_nm",
-];
-
-/// The words of [`QUANTITIES`] that are a joint's angle and section forces.
-pub const SECTION_QUANTITIES: [&str; 7] = [
-    "angle_rad",
-    "axial_n",
-    "shear_y_n",
-    "shear_z_n",
-    "torsion_nm",
-    "bending_nm",
-    "lateral_bending_nm",
-];
-
-/// The peaks that [`AtPeakRow`] may name.
+/// The peaks that the table of what is at peaks may name.
 const PEAKS: [&str; 5] = [
     "peak_deflection_m",
     "peak_uplift_m",

@@ -3,6 +3,7 @@
 //! Knows its section and axis. Does not know assembly.
 
 use super::shell::turn;
+use super::stress::{BeamForceMatrix, BeamForces};
 use super::{FemError, require};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
@@ -217,4 +218,36 @@ fn bending_shape(xi: f64, l: f64, phi: f64) -> ([f64; 4], [f64; 4]) {
         c * (3.0 * x2 - (2.0 - phi) * xi),
     ];
     (n, r)
+}
+
+impl Beam {
+    /// Forces at the middle for each of its 12 degrees of freedom: force and torque are those at the second end, for nothing
+    /// acts between the ends; the moments `E I_y` and `E I_z` times the difference of the ends' rotations over the length are
+    /// the mean of those at the ends, and so those at the middle. Verified by `tests/analytic/fem_stress.rs`.
+    /// Equation (G5).
+    pub fn force_matrix(&self) -> BeamForceMatrix {
+        let (k, axes) = (self.stiffness(), self.axes());
+        let mut forces = BeamForceMatrix::zeros();
+        let second_end = |first: usize| axes * k.fixed_rows::<3>(first);
+        forces.fixed_rows_mut::<3>(0).copy_from(&second_end(6));
+        forces.fixed_rows_mut::<1>(3).copy_from(&second_end(9).row(0));
+        for (axis, stiffness) in [1, 2].into_iter().zip(self.bending_per_length()) {
+            let row = 3 + axis;
+            let share = axes.row(axis) * stiffness;
+            forces.fixed_view_mut::<1, 3>(row, 3).copy_from(&-share);
+            forces.fixed_view_mut::<1, 3>(row, 9).copy_from(&share);
+        }
+        forces
+    }
+
+    /// Forces where the nodes move by `u` `[m or rad]`.
+    pub fn forces(matrix: &BeamForceMatrix, u: &[f64; 12]) -> BeamForces {
+        let f = matrix * nalgebra::SVector::from(*u);
+        BeamForces {
+            axial_n: f[0],
+            shear_n: [f[1], f[2]],
+            torque_newton_m: f[3],
+            bending_newton_m: [f[4], f[5]],
+        }
+    }
 }

@@ -4,6 +4,7 @@
 
 use super::frame::{GAUSS_2X2, QuadFrame};
 use super::section::ShellSection;
+use super::stress::{ShellStress, ShellStressMatrix};
 use super::{FemError, membrane, plate};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
@@ -122,4 +123,41 @@ pub(super) fn turn<const N: usize>(local: &SMatrix<f64, N, N>, axes: &Matrix3<f6
         }
     }
     global
+}
+
+impl Shell {
+    /// Stress at a point of the element, `xi` and `eta` from -1 to 1, for each of its 24 degrees of freedom.
+    ///
+    /// `membrane = D (B + B_a alpha)`, `bending = (t / 2) D B_b`, with alpha the amplitudes of the incompatible modes; these
+    /// add nothing at the centre. Constant stress is met on any quadrilateral. Verified by `tests/analytic/fem_stress.rs`.
+    /// Equations (G1), (G2).
+    pub fn stress_matrix(&self, xi: f64, eta: f64) -> ShellStressMatrix {
+        let d = self.section.plane_stress();
+        let membrane = d * membrane::strain_at(&self.frame, &self.section, xi, eta);
+        let bending = d * plate::curvature(&self.frame.shape(xi, eta)) * (0.5 * self.section.thickness_m);
+        let mut local = ShellStressMatrix::zeros();
+        for node in 0..4 {
+            for dof in 0..3 {
+                for i in 0..3 {
+                    local[(i, 6 * node + MEMBRANE_DOFS[dof])] = membrane[(i, 3 * node + dof)];
+                    local[(3 + i, 6 * node + PLATE_DOFS[dof])] = bending[(i, 3 * node + dof)];
+                }
+            }
+        }
+        let mut global = local * self.links();
+        for first in (0..24).step_by(3) {
+            let turned = global.fixed_columns::<3>(first) * self.frame.axes;
+            global.fixed_columns_mut::<3>(first).copy_from(&turned);
+        }
+        global
+    }
+
+    /// Stress at the point of a matrix of [`Self::stress_matrix`] where the nodes move by `u` `[m or rad]`.
+    pub fn stress(matrix: &ShellStressMatrix, u: &[f64; 24]) -> ShellStress {
+        let s = matrix * nalgebra::SVector::from(*u);
+        ShellStress {
+            membrane_pa: [s[0], s[1], s[2]],
+            bending_pa: [s[3], s[4], s[5]],
+        }
+    }
 }

@@ -2,8 +2,6 @@
 //!
 //! Knows strain times stiffness at a point of an element, and what yields first. Does not know how the motion was found.
 
-use super::shell::{MEMBRANE_DOFS, PLATE_DOFS};
-use super::{Beam, Shell, membrane, plate};
 use nalgebra::SMatrix;
 
 /// Stress of a shell in the motion of its 24 degrees of freedom: membrane, then bending, see [`ShellStress`] `[Pa per m or
@@ -60,75 +58,6 @@ pub struct BeamForces {
     /// Bending moments about axes 2 and 3 `[N m]`: the first stretches the side of axis 3, the second compresses the side of
     /// axis 2.
     pub bending_newton_m: [f64; 2],
-}
-
-impl Shell {
-    /// Stress at a point of the element, `xi` and `eta` from -1 to 1, for each of its 24 degrees of freedom.
-    ///
-    /// `membrane = D (B + B_a alpha)`, `bending = (t / 2) D B_b`, with alpha the amplitudes of the incompatible modes; these
-    /// add nothing at the centre. Constant stress is met on any quadrilateral. Verified by `tests/analytic/fem_stress.rs`.
-    /// Equations (G1), (G2).
-    pub fn stress_matrix(&self, xi: f64, eta: f64) -> ShellStressMatrix {
-        let d = self.section.plane_stress();
-        let membrane = d * membrane::strain_at(&self.frame, &self.section, xi, eta);
-        let bending = d * plate::curvature(&self.frame.shape(xi, eta)) * (0.5 * self.section.thickness_m);
-        let mut local = ShellStressMatrix::zeros();
-        for node in 0..4 {
-            for dof in 0..3 {
-                for i in 0..3 {
-                    local[(i, 6 * node + MEMBRANE_DOFS[dof])] = membrane[(i, 3 * node + dof)];
-                    local[(3 + i, 6 * node + PLATE_DOFS[dof])] = bending[(i, 3 * node + dof)];
-                }
-            }
-        }
-        let mut global = local * self.links();
-        for first in (0..24).step_by(3) {
-            let turned = global.fixed_columns::<3>(first) * self.frame.axes;
-            global.fixed_columns_mut::<3>(first).copy_from(&turned);
-        }
-        global
-    }
-
-    /// Stress at the point of a matrix of [`Self::stress_matrix`] where the nodes move by `u` `[m or rad]`.
-    pub fn stress(matrix: &ShellStressMatrix, u: &[f64; 24]) -> ShellStress {
-        let s = matrix * nalgebra::SVector::from(*u);
-        ShellStress {
-            membrane_pa: [s[0], s[1], s[2]],
-            bending_pa: [s[3], s[4], s[5]],
-        }
-    }
-}
-
-impl Beam {
-    /// Forces at the middle for each of its 12 degrees of freedom: force and torque are those at the second end, for nothing
-    /// acts between the ends; the moments `E I_y` and `E I_z` times the difference of the ends' rotations over the length are
-    /// the mean of those at the ends, and so those at the middle. Verified by `tests/analytic/fem_stress.rs`.
-    /// Equation (G5).
-    pub fn force_matrix(&self) -> BeamForceMatrix {
-        let (k, axes) = (self.stiffness(), self.axes());
-        let mut forces = BeamForceMatrix::zeros();
-        let second_end = |first: usize| axes * k.fixed_rows::<3>(first);
-        forces.fixed_rows_mut::<3>(0).copy_from(&second_end(6));
-        forces.fixed_rows_mut::<1>(3).copy_from(&second_end(9).row(0));
-        for (axis, stiffness) in [1, 2].into_iter().zip(self.bending_per_length()) {
-            let row = 3 + axis;
-            let share = axes.row(axis) * stiffness;
-            forces.fixed_view_mut::<1, 3>(row, 3).copy_from(&-share);
-            forces.fixed_view_mut::<1, 3>(row, 9).copy_from(&share);
-        }
-        forces
-    }
-
-    /// Forces where the nodes move by `u` `[m or rad]`.
-    pub fn forces(matrix: &BeamForceMatrix, u: &[f64; 12]) -> BeamForces {
-        let f = matrix * nalgebra::SVector::from(*u);
-        BeamForces {
-            axial_n: f[0],
-            shear_n: [f[1], f[2]],
-            torque_newton_m: f[3],
-            bending_newton_m: [f[4], f[5]],
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,30 @@
+//! The words of recorded numbers: what each is, with its unit.
+//!
+//! Knows words. Does not know tables.
+
+/// The words of `quantity`: what a history is of, with its unit and its sense.
+pub const QUANTITIES: [&str; 12] = [
+    "deflection_m",
+    "force_n",
+    "pin_x_n",
+    "pin_y_n",
+    "pin_z_n",
+    "angle_rad",
+    "axial_n",
+    "shear_y_n",
+    "shear_z_n",
+    "torsion_nm",
+    "bending_nm",
+    "lateral_bending_nm",
+];
+
+/// The words of [`QUANTITIES`] that are a joint's angle and section forces.
+pub const SECTION_QUANTITIES: [&str; 7] = [
+    "angle_rad",
+    "axial_n",
+    "shear_y_n",
+    "shear_z_n",
+    "torsion_nm",
+    "bending_nm",
+    "lateral_bending_nm",
+];
