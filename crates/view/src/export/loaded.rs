@@ -3,10 +3,10 @@
 //! Knows which instants of a crossing are shown. Does not know the format.
 
 use super::pictures::Pictures;
-use super::ready::{Ready, Stresses};
+use super::ready::Ready;
 use super::series::Series;
 use super::stresses::StressEnvelope;
-use super::subject::{CrossingWanted, StaticWanted, Subject};
+use super::subject::{CrossingWanted, StaticWanted, Stresses, Subject};
 use super::vtk::{Array, Counter, VtkGrid, VtkValues};
 use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};

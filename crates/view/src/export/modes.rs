@@ -3,9 +3,9 @@
 //! Knows how a shape is scaled. Does not know how it is found.
 
 use super::pictures::Pictures;
-use super::ready::{Ready, Stresses};
+use super::ready::Ready;
 use super::series::Series;
-use super::subject::{ModesWanted, Subject};
+use super::subject::{ModesWanted, Stresses, Subject};
 use super::vtk::{Array, Counter, VtkValues};
 use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};

@@ -3,7 +3,7 @@
 //! Knows what is built of a design. Does not know what is exported of it.
 
 use super::ExportError;
-use super::subject::CrossingWanted;
+use super::subject::{CrossingWanted, Stresses};
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::{bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::snapshot::Snapshot;
@@ -19,13 +19,6 @@ pub(super) struct Ready {
     pub bridge: Arc<Bridge>,
     pub meshed: MeshedBridge,
     recovery: Option<StressRecovery>,
-}
-
-/// Whether stresses are wanted beside the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stresses {
-    Wanted,
-    Unwanted,
 }
 
 impl Ready {

@@ -2,7 +2,6 @@
 //!
 //! Knows what can be asked of which, and refuses the rest. Does not know how anything is solved.
 
-use super::ready::Stresses;
 use super::{ExportError, LoadRequest, Request};
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::{BridgeDesign, Model};
@@ -16,6 +15,13 @@ use pontoon_results::{Results, Table};
 use pontoon_study::run::RETRY_STEP_SHARE;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+
+/// Whether stresses are wanted beside the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stresses {
+    Wanted,
+    Unwanted,
+}
 
 /// Modes where nothing else is asked for.
 const MODES: usize = 20;
