@@ -770,7 +770,9 @@ def compare_pins(table):
             ("peak_plus_z_n", up),
             ("peak_minus_z_n", -up),
         ):
-            table.row(f"{key} of pin {joint}, of the largest", "N", pin[key], max(values[:, joint - 2].max(), 0.0), 3.0, of=of)
+            table.row(
+                f"{key} of pin {joint}, of the largest", "N", pin[key], max(values[:, joint - 2].max(), 0.0), 3.0, of=of
+            )
 
 
 def main():
