@@ -22,6 +22,16 @@ fn stage(analysis: &Value) -> Stage {
     stage
 }
 
+/// Leaves the linear connection alone and writes the stage.
+fn without_gaps(stage: &mut Stage) {
+    let grid = stage.study["design"][0]["grid"].as_object_mut().unwrap();
+    grid.insert("connection".to_owned(), json!("linear"));
+    for gap in ["gap_tension_m", "gap_compression_m"] {
+        grid.remove(gap);
+    }
+    stage.write();
+}
+
 fn run(stage: &Stage) -> Output {
     stage.pontoon(&["run", "study.json", "--out", "out", "--quiet"])
 }
@@ -115,11 +125,7 @@ fn an_automatic_time_step_of_a_fast_crossing_begins_below_the_passage_of_a_modul
     let mut stage = stage(&json!({ "time_step_s": "auto", "time_step_tolerance": 0.05 }));
     let speeds = [5.0, 300.0, 336.0, 400.0, 900.0];
     stage.study["design"][0]["grid"]["speed_m_s"] = json!(speeds);
-    stage.study["design"][0]["grid"]["connection"] = json!("linear");
-    for gap in ["gap_tension_m", "gap_compression_m"] {
-        stage.study["design"][0]["grid"].as_object_mut().unwrap().remove(gap);
-    }
-    stage.write();
+    without_gaps(&mut stage);
     let output = run(&stage);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let length_m = stage.bridge["module"]["length_m"].as_f64().unwrap();
@@ -139,11 +145,7 @@ fn a_vehicle_far_behind_its_front_begins_when_it_arrives() {
         ], "inertia": "local" });
         // rounding of the place alone differs: contacts would make more of it, and so would a point that ends a step at a
         // joint, which 1.93 m avoid
-        stage.study["design"][0]["grid"]["connection"] = json!("linear");
-        for gap in ["gap_tension_m", "gap_compression_m"] {
-            stage.study["design"][0]["grid"].as_object_mut().unwrap().remove(gap);
-        }
-        stage.write();
+        without_gaps(&mut stage);
         let output = run(&stage);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         [

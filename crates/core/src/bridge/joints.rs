@@ -64,7 +64,7 @@ pub struct JointSpec {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointConnectors {
-    /// Places across of those meant `[m]`, of `connectors.y_m`; all where absent.
+    /// Which connectors of the joint: their places across `[m]`, of `connectors.y_m`; all where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_y_m: Option<Vec<f64>>,
     /// Whether they are lost: they neither pull nor push.
@@ -88,10 +88,10 @@ pub struct JointConnectors {
     /// Coefficient of the dashpot of one truss `[N s/m]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_n_s_m: Option<f64>,
-    /// A stiffer branch behind the tension truss, which is the buffer before it.
+    /// The second branch of the tension truss, which is then a buffer before a stop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop_tension: Option<StopSpec>,
-    /// A stiffer branch behind the compression truss, which is the buffer before it.
+    /// The second branch of the compression truss, which is then a buffer before a stop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop_compression: Option<StopSpec>,
 }
@@ -254,6 +254,7 @@ impl Joints {
     }
 }
 
+/// Refuses an empty list of places across, one off the module, and one that is given twice.
 pub(super) fn places(key: &str, y: &[f64], half: f64) -> Result<(), InvalidInput> {
     if y.is_empty() {
         return Err(InvalidInput::new(key, "an empty list", "at least one place across"));

@@ -119,7 +119,12 @@ impl Study {
         if let Some(wear) = &spec.wear {
             wear.check().map_err(|e| Refusal::of(&file, "wear", e))?;
             if analysis.kind() == Kind::Modes {
-                let refused = Refusal::new(&file, "wear", "wear", "none in a study of modes, which know no gaps");
+                let refused = Refusal::new(
+                    &file,
+                    "wear",
+                    "a wear",
+                    "no wear in a study of modes, which has no gaps",
+                );
                 return Err(refused.because(RefusalKind::Misplaced));
             }
         }
