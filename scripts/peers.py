@@ -618,7 +618,7 @@ def opensees_crossing(chain, crossing, time_step_s):
 
 
 def opensees_chain_statics(chain, connection, centre_m):
-    """Deflections of the positions [m], forces of the joints and of hinges that are springs [N] under a load at a place."""
+    """Deflections of the positions [m], forces of the joints and of hinges that are springs [N]."""
     peer, load = ChainPeer(chain, connection), chain["load"]
     x_m = np.array([centre_m])
     ops.timeSeries("Constant", 1)
@@ -741,7 +741,7 @@ PINS_CENTRES_M = (40.2, 43.55)
 
 
 def compare_pins(table):
-    """Forces of the hinges on the part left of them: springs in OpenSees, what the left module needs to move in pontoon.
+    """Forces of the hinges on the part left of them: springs in OpenSees, what the left module needs in pontoon.
 
     Points of the load pass a joint one by one, and its force upward jumps by theirs: 3 % of the largest in crossings.
     """
