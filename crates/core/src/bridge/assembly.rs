@@ -2,12 +2,13 @@
 //!
 //! Knows where everything is along the bridge. Does not know what is done with it.
 
+use super::banks::{BankSpring, bank_springs};
 use super::fit::check_fit;
 use super::pins::{PinPlace, pins};
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::product::ModuleProduct;
 use super::row::{HeldDof, Row};
-use super::{BridgeDesign, BridgeError, Ends, Model};
+use super::{BridgeDesign, BridgeError, Direction, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 use crate::module::Grid;
 
@@ -15,11 +16,26 @@ use crate::module::Grid;
 /// Equation (J1).
 #[derive(Debug, Clone)]
 pub struct ConnectorPlace {
-    /// Position number of the joint, 2 to modules.
+    /// Position number of the joint, 2 to modules; of a bank's spring its position.
     pub joint: usize,
     /// Place across `[m]`.
     pub y_m: f64,
-    /// `e = row . u`: the right deck node's motion along x minus the left one's.
+    /// `e = row . u`: the right deck node's motion along x minus the left one's; of a bank's spring the motion along its sense.
+    pub row: SparseRow,
+    /// The bank that it is a spring of; none of a connector.
+    pub bank: Option<usize>,
+}
+
+/// A spring that holds both ways: its stiffness stands in K.
+#[derive(Debug, Clone)]
+pub(crate) struct SpringPlace {
+    /// The bank that it is of.
+    pub bank: usize,
+    /// Place across `[m]`.
+    pub y_m: f64,
+    /// Its stiffness `[N/m]`.
+    pub stiffness_n_m: f64,
+    /// Its motion, `e = row . u`.
     pub row: SparseRow,
 }
 
@@ -37,6 +53,10 @@ pub struct Bridge {
     pub(crate) times_m: ModuleProduct,
     /// Connectors, joint after joint, each joint's in the design's order.
     pub(crate) connectors: Vec<ConnectorPlace>,
+    /// How many of these are connectors of joints; springs of banks stand behind them.
+    pub(crate) joint_connectors: usize,
+    /// Springs that hold both ways.
+    pub(crate) springs: Vec<SpringPlace>,
     /// z at the bottom's centre line of positions 1 to modules + 1.
     pub(crate) positions: Vec<SparseRow>,
     /// Place along the bridge and z at the bottom's centre line, node after node.
@@ -86,14 +106,32 @@ impl Bridge {
             row: &row,
         };
         let l = design.module.length_m;
+        let mut connectors = places.connectors();
+        let joint_connectors = connectors.len();
+        let springs = match ends {
+            Ends::Supported => bank_springs(design, &module.grid.y),
+            Ends::Free => Vec::new(),
+        };
+        let (one_sided, held): (Vec<_>, Vec<_>) = springs.into_iter().partition(|spring| spring.one_sided);
+        connectors.extend(one_sided.iter().map(|spring| places.bank_link(spring)));
+        let springs: Vec<SpringPlace> = held.iter().map(|spring| places.spring(spring)).collect();
+        let mut k = row.entries(&module.k);
+        for SpringPlace { stiffness_n_m, row, .. } in &springs {
+            for &(i, a) in &row.0 {
+                k.extend(row.0.iter().map(|&(j, b)| (i, j, stiffness_n_m * a * b)));
+            }
+        }
+        let in_k = springs.iter().map(|spring| (spring.stiffness_n_m, spring.row.clone())).collect();
         Ok(Self {
             design: design.clone(),
             model: module.model,
-            k: SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.k))?,
+            k: SymmetricMatrix::from_entries(row.dofs, &k)?,
             m: SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.m))?,
-            times_k: ModuleProduct::new(&module.k, &row.map, row.dofs),
+            times_k: ModuleProduct::new(&module.k, &row.map, row.dofs).with_springs(in_k),
             times_m: ModuleProduct::new(&module.m, &row.map, row.dofs),
-            connectors: places.connectors(),
+            connectors,
+            joint_connectors,
+            springs,
             positions: places.positions(),
             centre_line: places.centre_line(),
             edges: places.edges(),
@@ -202,11 +240,50 @@ impl Places<'_> {
                         joint: j + 1,
                         y_m,
                         row: SparseRow::combine(&[(-1.0, &left), (1.0, &right)]),
+                        bank: None,
                     });
                 }
             }
         }
         connectors
+    }
+
+    /// Makes the row of a bank's spring: the motion of its node along its sense.
+    fn bank_row(&self, spring: &BankSpring) -> SparseRow {
+        let grid = &self.module.grid;
+        let last = self.design.modules;
+        let (j, ix) = if spring.position > last {
+            (last - 1, grid.x.len() - 1)
+        } else {
+            (spring.position - 1, 0)
+        };
+        let direction = match spring.direction {
+            Direction::X => X,
+            Direction::Y => Y,
+            Direction::Z => Z,
+        };
+        let along = grid.y_line(spring.y_m).map(|iy| self.of(j, grid.bottom(ix, iy), direction));
+        SparseRow::combine(&[(spring.sign, &along.unwrap_or_default())])
+    }
+
+    /// Makes the link of a spring that acts in one sense alone.
+    fn bank_link(&self, spring: &BankSpring) -> ConnectorPlace {
+        ConnectorPlace {
+            joint: spring.position,
+            y_m: spring.y_m,
+            row: self.bank_row(spring),
+            bank: Some(spring.bank),
+        }
+    }
+
+    /// Makes the place of a spring that holds both ways.
+    fn spring(&self, spring: &BankSpring) -> SpringPlace {
+        SpringPlace {
+            bank: spring.bank,
+            y_m: spring.y_m,
+            stiffness_n_m: spring.stiffness_n_m,
+            row: self.bank_row(spring),
+        }
     }
 
     /// Makes the rows of [`Bridge::positions`]: the left end of each module, and the right end of the last.

@@ -2,6 +2,7 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
+use super::banks::{BankSpec, bank_law, check_banks};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
@@ -52,6 +53,9 @@ pub struct BridgeDesign {
     /// Supports of the two ends.
     #[serde(default)]
     pub supports: Supports,
+    /// Springs between the bridge and the ground.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub banks: Vec<BankSpec>,
     /// Still-water draft `[m]`, for reporting whether the bottom emerged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draft_m: Option<f64>,
@@ -178,6 +182,7 @@ impl BridgeDesign {
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
         self.joints.check(self.modules, half, &self.connectors)?;
+        check_banks(self)?;
         for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
             if let Some(value) = value {
                 positive(key, value)?;
@@ -351,7 +356,20 @@ impl BridgeDesign {
     /// [`InvalidInput`] on a stop that begins within the gap before it.
     /// Equations (J4), (J5).
     pub fn own_laws(&self, connection: Connection, worn: Option<&JointGaps<'_>>) -> Result<OwnLaws, InvalidInput> {
-        self.joints.own_laws(self.modules, &self.connectors, connection, worn)
+        let laws = self.joints.own_laws(self.modules, &self.connectors, connection, worn)?;
+        if self.banks.iter().all(|bank| !bank.one_sided) {
+            return Ok(laws);
+        }
+        let mut all = laws.to_vec();
+        let mut link = (self.modules - 1) * self.connectors.y_m.len();
+        let edge_lines = mesh_size(&self.module, &self.joint_lines_y_m()).lines_across;
+        for bank in self.banks.iter().filter(|bank| bank.one_sided) {
+            let places = bank.places(edge_lines, self.hinges.y_m.len());
+            let law = bank_law(bank, 1.0 / places as f64);
+            all.extend((link..link + places).map(|link| (link, law)));
+            link += places;
+        }
+        Ok(all.into())
     }
 
     /// Length of the bridge `[m]`.

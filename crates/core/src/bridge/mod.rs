@@ -3,6 +3,7 @@
 //! The one place where module, water, connector and vehicle meet. Does not know time, contact or response.
 
 mod assembly;
+mod banks;
 mod design;
 mod fit;
 mod joints;
@@ -18,6 +19,7 @@ mod stresses;
 mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
+pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports, Todd};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub(crate) use load::{Load, Rider};

@@ -3,7 +3,7 @@
 //! Knows that all modules share one matrix: it stays in the cache while the assembled one would not. Does not know what
 //! the matrix is.
 
-use crate::fem::SymmetricMatrix;
+use crate::fem::{SparseRow, SymmetricMatrix};
 use faer::{Accum, Mat, Par, linalg::matmul::matmul};
 
 /// `y = sum over modules of P_j^T A P_j x`.
@@ -13,6 +13,8 @@ pub(crate) struct ModuleProduct {
     map: Vec<Vec<usize>>,
     dofs: usize,
     matrix: Matrix,
+    /// Springs beside the modules: stiffness and row.
+    springs: Vec<(f64, SparseRow)>,
 }
 
 #[derive(Debug)]
@@ -43,7 +45,17 @@ impl ModuleProduct {
             .iter()
             .map(|m| m.iter().map(|i| i.unwrap_or(dofs)).collect())
             .collect();
-        Self { map, dofs, matrix }
+        Self {
+            map,
+            dofs,
+            matrix,
+            springs: Vec::new(),
+        }
+    }
+
+    /// With springs beside the modules: stiffness and row of each.
+    pub(super) fn with_springs(self, springs: Vec<(f64, SparseRow)>) -> Self {
+        Self { springs, ..self }
     }
 
     /// `y = A x` of the bridge.
@@ -65,6 +77,9 @@ impl ModuleProduct {
                     y[dof] += force;
                 }
             }
+        }
+        for (stiffness, row) in &self.springs {
+            row.add_to(stiffness * row.dot(x), y);
         }
     }
 }

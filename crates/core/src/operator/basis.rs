@@ -45,8 +45,10 @@ pub struct Followed {
 pub(super) struct Sizes {
     /// Modes m.
     pub modes: usize,
-    /// Connectors.
+    /// Links: connectors, then springs of banks.
     pub connectors: usize,
+    /// How many of these are connectors.
+    pub joint_connectors: usize,
     /// Observed rows that are followed through every step.
     pub observed: usize,
     /// Stations of the deck's edges inside modules, of each module.
@@ -188,6 +190,7 @@ impl BridgeOperator {
         let mut sizes = Sizes {
             modes: m,
             connectors: connectors.len(),
+            joint_connectors: bridge.joint_connectors,
             observed: observed.len(),
             inside: inside.len() / design.modules,
             modules: design.modules,
@@ -308,7 +311,8 @@ impl BridgeOperator {
 
     /// The operator of `bridge` from its numbers; none where they do not fit the bridge.
     pub fn from_parts(bridge: &Bridge, parts: &OperatorParts) -> Option<Self> {
-        let (sizes, rows, near) = counts(parts)?;
+        let (mut sizes, rows, near) = counts(parts)?;
+        sizes.joint_connectors = bridge.joint_connectors;
         let track = Track::new(bridge);
         if !fits(bridge, &sizes, &rows) || near != track.stations() / sizes.modules {
             return None;
@@ -386,6 +390,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
     let sizes = Sizes {
         modes,
         connectors,
+        joint_connectors: connectors,
         observed,
         inside,
         modules,

@@ -24,6 +24,7 @@ pub(super) const MOST_LANES: usize = 16;
 pub(super) struct Envelope {
     rows: Observed,
     per_joint: usize,
+    joint_connectors: usize,
     /// Largest values, downward and upward of each position, then pushing and pulling of each joint's sum and each
     /// connector; and when.
     value: LaneArray,
@@ -51,10 +52,11 @@ impl Envelope {
         let of = |rows: usize| LaneArray::new(rows, lanes);
         let (rows, sizes) = (operator.rows, &operator.sizes);
         let joints = sizes.modules - 1;
-        let peaks = 2 * (rows.positions + joints + sizes.connectors);
+        let peaks = 2 * (rows.positions + joints + sizes.joint_connectors);
         Self {
             rows,
-            per_joint: sizes.connectors.checked_div(joints).unwrap_or(0),
+            per_joint: sizes.joint_connectors.checked_div(joints).unwrap_or(0),
+            joint_connectors: sizes.joint_connectors,
             value: of(peaks),
             time: of(peaks),
             now: of(1),
@@ -153,7 +155,8 @@ impl Envelope {
         for &z in &self.observed.vectors::<S>()[..self.rows.positions] {
             peaks.update_both(z);
         }
-        for joint in connectors.by_law().vectors::<S>().chunks_exact(self.per_joint.max(1)) {
+        let forces = &connectors.by_law().vectors::<S>()[..self.joint_connectors];
+        for joint in forces.chunks_exact(self.per_joint.max(1)) {
             let mut sum = o.splat(0.0);
             for &force in joint {
                 sum = o.add(sum, force);
