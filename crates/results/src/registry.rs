@@ -212,7 +212,7 @@ mod tests {
                 .iter()
                 .any(|other| (other.table, other.name) == (column.table, column.name));
             assert!(!twice, "{column:?}");
-            let suffix = column.unit.to_lowercase().replace('/', "_");
+            let suffix = column.unit.to_lowercase().replace('/', "_").replace(' ', "");
             assert!(
                 suffix.is_empty() || column.name.ends_with(&format!("_{suffix}")),
                 "{column:?}"
