@@ -1,5 +1,6 @@
 //! Two ways to one answer: operator and reference solver, lanes, super-element and full model; the energy balance.
 
+mod banks;
 mod chain;
 mod chain_scenario;
 mod dashpots;

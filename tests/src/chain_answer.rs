@@ -65,6 +65,18 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
         Value::from(row)
     });
     let pins: Vec<_> = pins.collect();
+    let banks = response
+        .recorded
+        .banks
+        .iter()
+        .filter(|bank| bank.y_m.is_none())
+        .map(|bank| {
+            let mut row = Map::from_iter([("bank".into(), json!(bank.bank))]);
+            put(&mut row, "peak_toward", "n", bank.force.tension);
+            put(&mut row, "peak_away", "n", bank.force.compression);
+            Value::from(row)
+        });
+    let banks: Vec<_> = banks.collect();
     let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
     let mut largest = Map::new();
     for (list, of, unit, place) in [
@@ -88,7 +100,7 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
         largest.insert("min_contact_force_n".into(), json!(response.min_contact_force_n));
     }
     json!({ "kind": "crossing", "time_step_s": time_step_s, "positions": positions, "joints": joints,
-            "pins": pins, "largest": largest })
+            "pins": pins, "banks": banks, "largest": largest })
 }
 
 fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticResponse) -> Value {
@@ -105,6 +117,16 @@ fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticRespo
         json!({ "joint": joint, "x_n": sum(0), "z_n": sum(2), "angle_rad": sections[Section::Angle as usize] })
     });
     let pins: Vec<_> = pins.collect();
+    let of_bank = |bank: usize| {
+        response
+            .banks
+            .iter()
+            .filter(move |of| of.0 == bank)
+            .map(|of| of.2)
+            .sum::<f64>()
+    };
+    let banks = (0..scenario.design.banks.len()).map(|bank| json!({ "bank": bank, "force_n": of_bank(bank) }));
+    let banks: Vec<_> = banks.collect();
     let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
     let mut largest = Map::new();
     for (key, list, of, sign, place) in [
@@ -119,7 +141,7 @@ fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticRespo
         largest.insert(place.into(), row.map_or(Value::Null, |row| row[number].clone()));
     }
     json!({ "kind": "static", "time_step_s": null, "load_x_m": case.load_x_m, "positions": positions,
-            "joints": joints, "pins": pins, "largest": largest })
+            "joints": joints, "pins": pins, "banks": banks, "largest": largest })
 }
 
 /// A peak and its time; a value that never rose above zero has none.

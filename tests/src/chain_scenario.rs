@@ -6,7 +6,7 @@
 use crate::chain::Chain;
 use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::statics::StaticCase;
-use pontoon_core::bridge::{BridgeDesign, Joints, Model};
+use pontoon_core::bridge::{BankPlace, BankSpec, BridgeDesign, BridgeEnd, Joints, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{Found, InvalidInput, Problem, bound, not_negative, positive, within};
 use pontoon_core::response::Record;
@@ -24,6 +24,8 @@ struct ScenarioSpec {
     modules: Option<usize>,
     #[serde(default)]
     joints: Joints,
+    #[serde(default)]
+    banks: Vec<BankSpec>,
     #[serde(default)]
     connection: ConnectionSpec,
     gap_tension_m: Option<f64>,
@@ -129,7 +131,7 @@ impl ChainScenario {
 
     fn checked(mut chain: Chain, spec: &ScenarioSpec, time_step_s: Option<f64>) -> Result<Self, InvalidInput> {
         chain.modules = spec.modules.unwrap_or(chain.modules);
-        let design = with_joints(chain.design(), &spec.joints)?;
+        let design = with_banks(with_joints(chain.design(), &spec.joints)?, &spec.banks)?;
         let connection = spec.connection(&chain)?;
         let own_laws = design.own_laws(connection, None)?;
         let (under, loaded) = spec.loaded()?;
@@ -219,6 +221,21 @@ fn filled(mut document: Value, chain: &Chain) -> Value {
 }
 
 /// The chain's bridge with what its joints have of their own, checked as it is written, a joint's stiffness and damping then
+/// The bridge with banks in place of the supports there; a bank stands on the chain's two lines.
+fn with_banks(mut design: BridgeDesign, banks: &[BankSpec]) -> Result<BridgeDesign, InvalidInput> {
+    design.banks = banks.to_vec();
+    for bank in &mut design.banks {
+        bank.y_m.get_or_insert_with(|| design.hinges.y_m.clone());
+        match bank.at {
+            BankPlace::End(BridgeEnd::Left) => design.supports.left.retain(|held| *held != bank.direction),
+            BankPlace::End(BridgeEnd::Right) => design.supports.right.retain(|held| *held != bank.direction),
+            BankPlace::Position(_) => {}
+        }
+    }
+    design.check()?;
+    Ok(design)
+}
+
 /// given to two trusses.
 fn with_joints(mut design: BridgeDesign, joints: &Joints) -> Result<BridgeDesign, InvalidInput> {
     let misplaced = |key: String, found: &str, allowed: &str| {

@@ -11,6 +11,7 @@ use super::row::{HeldDof, Row};
 use super::{BridgeDesign, BridgeError, Direction, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 use crate::module::Grid;
+use crate::response::{BankPart, BankSource};
 
 /// One connector: where it is and the row of B that gives its elongation.
 /// Equation (J1).
@@ -121,7 +122,10 @@ impl Bridge {
                 k.extend(row.0.iter().map(|&(j, b)| (i, j, stiffness_n_m * a * b)));
             }
         }
-        let in_k = springs.iter().map(|spring| (spring.stiffness_n_m, spring.row.clone())).collect();
+        let in_k = springs
+            .iter()
+            .map(|spring| (spring.stiffness_n_m, spring.row.clone()))
+            .collect();
         Ok(Self {
             design: design.clone(),
             model: module.model,
@@ -166,6 +170,27 @@ impl Bridge {
     /// Degrees of freedom.
     pub fn dofs(&self) -> usize {
         self.k.order()
+    }
+
+    /// The springs of all banks, bank after bank.
+    pub(crate) fn bank_parts(&self) -> Vec<BankPart> {
+        let links = self.connectors.iter().enumerate();
+        let links = links.filter_map(|(link, place)| {
+            Some(BankPart {
+                bank: place.bank?,
+                y_m: place.y_m,
+                source: BankSource::Link(link),
+            })
+        });
+        let springs = self.springs.iter().enumerate();
+        let springs = springs.map(|(index, spring)| BankPart {
+            bank: spring.bank,
+            y_m: spring.y_m,
+            source: BankSource::Spring(index, spring.stiffness_n_m),
+        });
+        let mut parts: Vec<BankPart> = links.chain(springs).collect();
+        parts.sort_by_key(|part| part.bank);
+        parts
     }
 
     /// z of the bottom's centre line at a place on the bridge, linear between two stations; at a joint that of its position.
@@ -262,7 +287,9 @@ impl Places<'_> {
             Direction::Y => Y,
             Direction::Z => Z,
         };
-        let along = grid.y_line(spring.y_m).map(|iy| self.of(j, grid.bottom(ix, iy), direction));
+        let along = grid
+            .y_line(spring.y_m)
+            .map(|iy| self.of(j, grid.bottom(ix, iy), direction));
         SparseRow::combine(&[(spring.sign, &along.unwrap_or_default())])
     }
 

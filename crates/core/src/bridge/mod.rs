@@ -27,7 +27,7 @@ pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
 pub(crate) use pins::{PinPlace, joint_parts};
-pub(crate) use placement::VehiclePlacement;
+pub(crate) use placement::{VehiclePlacement, front_x_m};
 pub use prepared::PreparedModule;
 #[cfg(test)]
 pub(crate) use prepared::Side;

@@ -106,6 +106,22 @@ impl Track {
         })
     }
 
+    /// As [`Self::cell`], at a joint the end of the module on the left.
+    #[inline(always)]
+    pub(crate) fn cell_before(&self, x_m: f64) -> Option<DeckCell> {
+        let cell = self.cell(x_m)?;
+        if cell.in_module_m > 0.0 || cell.station == 0 {
+            return Some(cell);
+        }
+        let (ix, fraction, length_m) = interval(&self.lines_x, self.module_length_m);
+        Some(DeckCell {
+            station: cell.station - self.lines_x.len() + ix,
+            fraction,
+            length_m,
+            in_module_m: self.module_length_m,
+        })
+    }
+
     /// The two lines beside `y_m` with their shares.
     pub fn across(&self, y_m: f64) -> [(usize, f64); 2] {
         let (iy, t, _) = interval(&self.lines_y, y_m);

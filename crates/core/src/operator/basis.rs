@@ -76,13 +76,14 @@ impl Sizes {
     }
 }
 
-/// Where the observed rows stand among each other: positions, deck corners, bottom corners, places.
+/// Where the observed rows stand among each other: positions, deck corners, bottom corners, places, springs of banks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Observed {
     pub positions: usize,
     pub corners: usize,
     pub bottom_corners: usize,
     pub places: usize,
+    pub springs: usize,
 }
 
 /// Modes of the connector-free bridge up to a cut-off and the residual flexibilities among connectors, deck and observed
@@ -279,6 +280,7 @@ impl BridgeOperator {
             self.near,
             s.pins,
             r.places,
+            r.springs,
         ];
         let cutoff = [
             self.cutoff.frequency_hz,
@@ -383,6 +385,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
         near,
         pins,
         places,
+        springs,
     ] = &counts[..]
     else {
         return None;
@@ -401,6 +404,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
         corners,
         bottom_corners,
         places,
+        springs,
     };
     Some((sizes, rows, near))
 }
@@ -411,7 +415,7 @@ fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
         && sizes.connectors == bridge.connectors.len()
         && rows.positions == bridge.positions.len()
         && rows.corners == bridge.deck_corners.len()
-        && sizes.observed == rows.positions + rows.corners + rows.bottom_corners + rows.places
+        && sizes.observed == rows.positions + rows.corners + rows.bottom_corners + rows.places + rows.springs
         && sizes.modes <= bridge.dofs()
         && (sizes.pins == 0 || sizes.pins == 3 * bridge.pins.len())
 }
@@ -449,7 +453,8 @@ fn inside_bounds(all: &ResidualRows<'_>, lambda: &[f64], sizes: &Sizes, deck: &[
     (0..sizes.modules).map(of_module).collect()
 }
 
-/// The rows that are followed through every step: positions, deck corners, where a draft is given bottom corners, places.
+/// The rows that are followed through every step: positions, deck corners, where a draft is given bottom corners, places,
+/// springs of banks.
 fn observed(bridge: &Bridge, places_x_m: &[f64]) -> (Observed, Vec<SparseRow>) {
     let bottom: &[SparseRow] = if bridge.design().draft_m.is_some() {
         &bridge.bottom_corners
@@ -461,9 +466,11 @@ fn observed(bridge: &Bridge, places_x_m: &[f64]) -> (Observed, Vec<SparseRow>) {
         corners: bridge.deck_corners.len(),
         bottom_corners: bottom.len(),
         places: places_x_m.len(),
+        springs: bridge.springs.len(),
     };
+    let springs: Vec<SparseRow> = bridge.springs.iter().map(|spring| spring.row.clone()).collect();
     let places: Vec<SparseRow> = places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect();
-    let parts: [&[SparseRow]; 4] = [&bridge.positions, &bridge.deck_corners, bottom, &places];
+    let parts: [&[SparseRow]; 5] = [&bridge.positions, &bridge.deck_corners, bottom, &places, &springs];
     (rows, parts.concat())
 }
 

@@ -362,6 +362,10 @@ impl JointReading for LaneReading<'_> {
     fn pin_n(&self, pin: usize) -> [f64; 3] {
         self.of.pins.force_n(pin, self.lane)
     }
+
+    fn spring_m(&self, spring: usize) -> f64 {
+        self.of.envelope.spring_m(spring, self.lane)
+    }
 }
 
 impl Reading for LaneReading<'_> {

@@ -103,7 +103,13 @@ impl Envelope {
 
     /// Deflection of a place now, positive downward `[m]`.
     pub(super) fn place_m(&self, index: usize, lane: usize) -> f64 {
-        0.0 - self.observed.at(self.observed.rows() - self.rows.places + index, lane)
+        let first = self.observed.rows() - self.rows.springs - self.rows.places;
+        0.0 - self.observed.at(first + index, lane)
+    }
+
+    /// Motion of a spring of a bank now, along its sense `[m]`.
+    pub(super) fn spring_m(&self, index: usize, lane: usize) -> f64 {
+        self.observed.at(self.observed.rows() - self.rows.springs + index, lane)
     }
 
     /// Smallest force of an axle while it is whole on the bridge.

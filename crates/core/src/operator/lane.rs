@@ -14,7 +14,7 @@ use super::modes::Modes;
 use super::moving_masses::{FreeMotion, MovingMasses};
 use super::step_constants::StepConstants;
 use super::wheel_lines::{WheelCompliance, WheelLine, WheelLines};
-use crate::bridge::VehiclePlacement;
+use crate::bridge::{VehiclePlacement, front_x_m};
 use crate::contact::{Dashpot, LinkLaw, NotSettled};
 use crate::response::Statistics;
 use std::sync::Arc;
@@ -109,7 +109,7 @@ impl Lane {
         let Some(crossing) = &self.crossing else {
             return;
         };
-        let front_x_m = crossing.speed_m_s * self.time_s;
+        let front_x_m = front_x_m(&operator.track, crossing.speed_m_s, self.time_s);
         self.placement
             .place(&operator.track, &crossing.wheels.vehicle, front_x_m, crossing.speed_m_s);
         self.axles.fill((0.0, true));

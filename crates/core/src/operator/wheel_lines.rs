@@ -24,7 +24,7 @@ pub(super) struct LinePoint {
 pub(super) struct WheelLine {
     /// Lines of the masses that carry these points.
     pub lines: Vec<usize>,
-    /// Points from the rear.
+    /// Points in the order of x.
     pub points: Vec<LinePoint>,
     /// For each station the influence of a unit force there: `phi`, `R_BL`, `R_VL`, edges inside modules.
     pub influence: Vec<f64>,
@@ -57,8 +57,8 @@ pub(crate) struct WheelLines {
 }
 
 impl WheelLines {
-    /// A vehicle on the deck of an operator.
-    pub(crate) fn new(operator: &BridgeOperator, vehicle: &Vehicle) -> Self {
+    /// A vehicle on the deck of an operator, which drives toward x = 0 or away from there.
+    pub(crate) fn new(operator: &BridgeOperator, vehicle: &Vehicle, backward: bool) -> Self {
         let track = &operator.track;
         let mut lines: Vec<(f64, Vec<LinePoint>)> = Vec::new();
         let mut point_lines = Vec::new();
@@ -80,6 +80,9 @@ impl WheelLines {
         }
         for (_, points) in &mut lines {
             points.sort_by(|a, b| vehicle.along_m[a.along].total_cmp(&vehicle.along_m[b.along]));
+            if backward {
+                points.reverse();
+            }
         }
         let mut weights: Vec<WheelLine> = Vec::new();
         let mut masses = Vec::new();

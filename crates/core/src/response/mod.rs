@@ -9,13 +9,13 @@ mod subject;
 
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
 pub use peaks::{
-    ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PlacePeaks, PositionPeaks, SectionPeaks,
-    resultant_n,
+    BankPeaks, ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PlacePeaks, PositionPeaks,
+    SectionPeaks, resultant_n,
 };
 pub(crate) use recorder::Recorder;
 pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
 pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
-pub(crate) use subject::{JointParts, JointReading, Reading};
+pub(crate) use subject::{BankPart, BankSource, JointParts, JointReading, Reading};
 
 /// Counts of what the solver did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -93,6 +93,8 @@ pub struct StaticResponse {
     pub sections: Vec<[f64; SECTIONS]>,
     /// Deflection of each place asked for, positive downward `[m]`.
     pub places_m: Vec<f64>,
+    /// Force of each bank's spring on the bridge along its sense: bank, place across `[m]`, force `[N]`.
+    pub banks: Vec<(usize, f64, f64)>,
     /// Largest downward deflection of the deck's two edges `[m]`.
     pub peak_edge_deflection_m: f64,
     /// Largest roll of a module end, either sense `[rad]`.

@@ -45,6 +45,17 @@ pub struct PlacePeaks {
     pub uplift: Peak,
 }
 
+/// Peaks of the force of a bank on the bridge, or of its spring at one place `[N]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BankPeaks {
+    /// The bank, from 0 in the order of the bridge file.
+    pub bank: usize,
+    /// Place across `[m]`; none of the bank's sum.
+    pub y_m: Option<f64>,
+    /// Against its sense (as compression) and along it (as tension).
+    pub force: ForcePeaks,
+}
+
 /// Peaks of a section force or of the angle of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionPeaks {

@@ -3,8 +3,8 @@
 //!
 //! Knows what was asked for. Does not know which solver steps, nor what a number means to a table.
 
-use super::peaks::{ForcePeaks, Peak, PlacePeaks, SectionPeaks, resultant_n};
-use super::subject::{Axis, JointParts, Reading, Section, Subject, read};
+use super::peaks::{BankPeaks, ForcePeaks, Peak, PlacePeaks, SectionPeaks, resultant_n};
+use super::subject::{Axis, BankPart, JointParts, Reading, Section, Subject, read};
 
 /// What to record of a crossing.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -111,6 +111,8 @@ pub struct AtPeak {
 pub struct Recorded {
     /// Peaks of each place.
     pub places: Vec<PlacePeaks>,
+    /// Peaks of banks: of each bank's sum, then of each place.
+    pub banks: Vec<BankPeaks>,
     /// Peaks of angles and section forces, joint after joint.
     pub sections: Vec<SectionPeaks>,
     /// Times of the histories `[s]`; empty where none was asked for.
@@ -127,6 +129,7 @@ pub struct Recorded {
 #[derive(Debug, Clone)]
 pub(crate) struct Recorder {
     joints: Vec<JointParts>,
+    banks: Vec<BankPart>,
     told: Vec<Subject>,
     positions: usize,
     recorded: Recorded,
@@ -134,7 +137,7 @@ pub(crate) struct Recorder {
 
 impl Recorder {
     /// Begins to record, on a bridge of so many positions and these joints.
-    pub(crate) fn new(positions: usize, joints: Vec<JointParts>, record: &Record) -> Self {
+    pub(crate) fn new(positions: usize, (joints, banks): (Vec<JointParts>, Vec<BankPart>), record: &Record) -> Self {
         let place = |&x_m: &f64| PlacePeaks {
             x_m,
             deflection: Peak::default(),
@@ -168,6 +171,7 @@ impl Recorder {
             },
             positions,
             recorded: Recorded {
+                banks: bank_peaks(&banks),
                 places: record.places_x_m.iter().map(place).collect(),
                 sections: sections.collect(),
                 histories: record.histories().into_iter().map(history).collect(),
@@ -175,6 +179,7 @@ impl Recorder {
                 ..Recorded::default()
             },
             joints,
+            banks,
         }
     }
 
@@ -185,12 +190,14 @@ impl Recorder {
             places,
             sections,
             at_peaks,
+            banks,
             ..
         } = &mut self.recorded;
-        if places.is_empty() && sections.is_empty() && at_peaks.is_empty() {
+        if places.is_empty() && sections.is_empty() && at_peaks.is_empty() && banks.is_empty() {
             return;
         }
         let [now_s, balance_s] = reading.times_s();
+        take_banks(&self.banks, banks, reading);
         for (index, place) in places.iter_mut().enumerate() {
             let down = reading.place_m(index);
             place.deflection.take(down, now_s);
@@ -229,6 +236,37 @@ impl Recorder {
     /// What was recorded.
     pub(crate) fn finish(&mut self) -> Recorded {
         std::mem::take(&mut self.recorded)
+    }
+}
+
+/// Peaks of banks before anything occurred: of each bank's sum, then of each place.
+fn bank_peaks(parts: &[BankPart]) -> Vec<BankPeaks> {
+    let of_bank = |of: &[BankPart]| -> Vec<BankPeaks> {
+        let places = of.iter().map(|part| Some(part.y_m));
+        let rows = std::iter::once(None).chain(places);
+        let row = |y_m: Option<f64>| BankPeaks {
+            bank: of[0].bank,
+            y_m,
+            force: ForcePeaks::default(),
+        };
+        rows.map(row).collect()
+    };
+    parts.chunk_by(|a, b| a.bank == b.bank).flat_map(of_bank).collect()
+}
+
+/// Raises the peaks of banks.
+fn take_banks(parts: &[BankPart], peaks: &mut [BankPeaks], reading: &impl Reading) {
+    let [now_s, _] = reading.times_s();
+    let mut rows = peaks.iter_mut();
+    for of in parts.chunk_by(|a, b| a.bank == b.bank) {
+        let Some(sum) = rows.next() else { return };
+        let mut total = 0.0;
+        for (part, peaks) in of.iter().zip(&mut rows) {
+            let force = part.force_n(reading);
+            total += force;
+            peaks.force.take(force, now_s);
+        }
+        sum.force.take(total, now_s);
     }
 }
 

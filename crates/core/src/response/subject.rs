@@ -149,6 +149,36 @@ pub(crate) struct JointParts {
     pub depth_m: f64,
 }
 
+/// The spring of a bank at one place across.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BankPart {
+    /// The bank, from 0.
+    pub bank: usize,
+    /// Place across `[m]`.
+    pub y_m: f64,
+    /// Where its force is read.
+    pub source: BankSource,
+}
+
+/// Where the force of a bank's spring is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum BankSource {
+    /// A link, by its place among all.
+    Link(usize),
+    /// A spring that holds both ways, by its place among these, and its stiffness `[N/m]`.
+    Spring(usize, f64),
+}
+
+impl BankPart {
+    /// Its force on the bridge along its sense `[N]`.
+    pub(crate) fn force_n(&self, reading: &impl JointReading) -> f64 {
+        match self.source {
+            BankSource::Link(link) => 0.0 - reading.connector_n(link)[0],
+            BankSource::Spring(index, stiffness_n_m) => 0.0 - stiffness_n_m * reading.spring_m(index),
+        }
+    }
+}
+
 /// What joints do, to be read.
 pub(crate) trait JointReading {
     /// Force of a connector, now and at the balance `[N]`.
@@ -157,6 +187,8 @@ pub(crate) trait JointReading {
     fn elongation_m(&self, connector: usize) -> f64;
     /// Force of a pin at the balance `[N]`.
     fn pin_n(&self, pin: usize) -> [f64; 3];
+    /// Motion of a spring that holds both ways, along its sense `[m]`.
+    fn spring_m(&self, spring: usize) -> f64;
 }
 
 /// A state of the bridge, to be read.

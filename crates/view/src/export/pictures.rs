@@ -80,7 +80,7 @@ impl Pictures {
         let meshed = &ready.meshed;
         let hinges = meshed.hinge_forces_n(&state.elastic, state.inertial.as_deref());
         let sense = |force_n: f64| i32::from(force_n < 0.0) + 2 * i32::from(force_n > 0.0);
-        let now = &state.connectors;
+        let now = &state.connectors[..meshed.connectors.len()];
         let of_connectors = now.iter().map(|connector| match connector.state {
             State::Open => 0,
             State::Compression | State::CompressionStop => 1,

@@ -53,7 +53,7 @@ pub struct Crossing {
     pub own_laws: OwnLaws,
     /// Weight of the vehicle `[N]`.
     pub load_n: f64,
-    /// Speed `[m/s]`.
+    /// Speed `[m/s]`; below 0 the vehicle comes from the right end, its front there at t = 0.
     pub speed_m_s: f64,
     /// How long to go on after the last point has left `[s]`.
     pub tail_s: f64,
@@ -171,6 +171,7 @@ struct StepSpan {
 
 impl StepSpan {
     fn new(bridge_length_m: f64, vehicle: &Vehicle, h: f64, speed_m_s: f64, tail_s: f64) -> Self {
+        let speed_m_s = speed_m_s.abs();
         let rest = -((vehicle.ahead_m() / speed_m_s / h + 1e-9).floor() as i64 + 1);
         let seconds = (bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s;
         let end = (seconds / h - 1e-9).ceil() as i64;

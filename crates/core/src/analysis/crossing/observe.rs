@@ -61,7 +61,7 @@ impl<'a> Observer<'a> {
             statistics: Statistics::default(),
             energy: EnergyBalance::default(),
             places: record.places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect(),
-            recorder: Recorder::new(design.positions(), joint_parts(design), record),
+            recorder: Recorder::new(design.positions(), (joint_parts(design), bridge.bank_parts()), record),
         }
     }
 
@@ -186,6 +186,10 @@ impl JointReading for MotionReading<'_> {
 
     fn elongation_m(&self, connector: usize) -> f64 {
         self.now.elongations[connector]
+    }
+
+    fn spring_m(&self, spring: usize) -> f64 {
+        self.bridge.springs[spring].row.dot(&self.now.u)
     }
 
     fn pin_n(&self, pin: usize) -> [f64; 3] {

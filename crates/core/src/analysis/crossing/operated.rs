@@ -10,7 +10,7 @@ use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
 };
-use crate::response::{CrossingResponse, JointReading, PositionPeaks, Reading, Record, Recorder};
+use crate::response::{BankPart, CrossingResponse, JointReading, PositionPeaks, Reading, Record, Recorder};
 use crate::vehicle::Vehicle;
 use std::sync::{Arc, OnceLock};
 
@@ -18,6 +18,9 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub struct OperatorSolver {
     design: BridgeDesign,
+    banks: Vec<BankPart>,
+    /// Position number and place across of each link `[m]`.
+    link_places: Vec<(usize, f64)>,
     operator: Arc<BridgeOperator>,
     settings: CrossingSettings,
     constants: Vec<OnceLock<StepConstants>>,
@@ -33,6 +36,7 @@ pub const REFINEMENTS: usize = 6;
 #[derive(Debug)]
 struct Mount {
     vehicle: Vehicle,
+    backward: bool,
     wheels: Arc<WheelLines>,
     compliances: Vec<Option<Arc<WheelCompliance>>>,
 }
@@ -53,6 +57,7 @@ struct Crew<'a, C> {
 struct Under<'a> {
     index: usize,
     vehicle: &'a Vehicle,
+    backward: bool,
     record: &'a Record,
     step: usize,
     span: StepSpan,
@@ -64,6 +69,8 @@ impl OperatorSolver {
     pub fn new(bridge: &Bridge, operator: &Arc<BridgeOperator>, settings: &CrossingSettings) -> Self {
         Self {
             design: bridge.design().clone(),
+            banks: bridge.bank_parts(),
+            link_places: bridge.connectors.iter().map(|link| (link.joint, link.y_m)).collect(),
             operator: Arc::clone(operator),
             settings: *settings,
             constants: (0..=settings.bisection_limit + REFINEMENTS)
@@ -191,7 +198,7 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     fn begin<'c>(&mut self, lane: usize, index: usize, (vehicle, crossing): (&'c Vehicle, &'c Crossing)) -> Under<'c> {
-        let mount = self.mount(vehicle);
+        let mount = self.mount(vehicle, crossing.speed_m_s < 0.0);
         let crossing_input = CrossingInput {
             wheels: Arc::clone(&self.mounts[mount].wheels),
             compliance: self.compliance(mount, self.refinement),
@@ -206,11 +213,13 @@ impl<C: StepClock> Crew<'_, C> {
         let start_s = span.time_s(0, h);
         self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
         let design = &self.solver.design;
-        let mut recorder = Recorder::new(design.positions(), joint_parts(design), &crossing.record);
+        let parts = (joint_parts(design), self.solver.banks.clone());
+        let mut recorder = Recorder::new(design.positions(), parts, &crossing.record);
         recorder.note(&Start(start_s));
         Under {
             index,
             vehicle,
+            backward: crossing.speed_m_s < 0.0,
             record: &crossing.record,
             step: 0,
             span,
@@ -219,13 +228,15 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     /// The place of a vehicle among those kept ready.
-    fn mount(&mut self, vehicle: &Vehicle) -> usize {
-        if let Some(known) = self.mounts.iter().position(|m| m.vehicle == *vehicle) {
+    fn mount(&mut self, vehicle: &Vehicle, backward: bool) -> usize {
+        let known = |m: &Mount| m.backward == backward && m.vehicle == *vehicle;
+        if let Some(known) = self.mounts.iter().position(known) {
             return known;
         }
         let mount = Mount {
             vehicle: vehicle.clone(),
-            wheels: Arc::new(WheelLines::new(&self.solver.operator, vehicle)),
+            backward,
+            wheels: Arc::new(WheelLines::new(&self.solver.operator, vehicle, backward)),
             compliances: Vec::new(),
         };
         // lanes hold what they need, so that any other may go
@@ -251,7 +262,7 @@ impl<C: StepClock> Crew<'_, C> {
     fn after_step(&mut self, lane: usize, of: &mut Under<'_>) -> Option<Result<CrossingResponse, AnalysisError>> {
         let time_s = self.time_s(of);
         if let Some(stuck) = self.lanes.unsettled(lane) {
-            let mount = self.mount(of.vehicle);
+            let mount = self.mount(of.vehicle, of.backward);
             let span_s = [self.time_after(of.step - 1, of), time_s];
             if let Err(error) = self.halve((lane, mount), stuck, span_s, &mut of.recorder) {
                 return Some(Err(error));
@@ -368,12 +379,12 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
     }
 
     fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
-        let y_m = &self.crew.solver.design.connectors.y_m;
+        let (joint, y_m) = self.crew.solver.link_places[stuck.connector];
         AnalysisError::NotConverged {
             time_s,
             connector: stuck.connector + 1,
-            joint: stuck.connector / y_m.len() + 2,
-            y_m: y_m[stuck.connector % y_m.len()],
+            joint,
+            y_m,
             bisections,
         }
     }
@@ -393,6 +404,10 @@ impl JointReading for Start {
 
     fn pin_n(&self, _: usize) -> [f64; 3] {
         [0.0; 3]
+    }
+
+    fn spring_m(&self, _: usize) -> f64 {
+        0.0
     }
 }
 

@@ -4,7 +4,7 @@
 
 use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
-use crate::bridge::{Bridge, Load, PinPlace, Rider, Track};
+use crate::bridge::{Bridge, Load, PinPlace, Rider, Track, front_x_m};
 use crate::connector::State;
 use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled};
 use crate::fem::SparseRow;
@@ -178,7 +178,7 @@ impl Stepper<'_> {
 
     /// The vehicle where it is at a time.
     fn load(&self, time_s: f64) -> Load {
-        let front_x_m = self.speed_m_s * time_s;
+        let front_x_m = front_x_m(self.track, self.speed_m_s, time_s);
         Load::new(self.track, self.vehicle, self.load_n, front_x_m, self.speed_m_s)
     }
 

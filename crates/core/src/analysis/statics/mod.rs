@@ -103,9 +103,15 @@ impl StaticSolver {
         };
         let pins_n = self.pins_n(&load, &u);
         let at_rest = Rest {
+            bridge,
+            u: &u,
             contact: &contact,
             pins_n: &pins_n,
         };
+        let banks = bridge.bank_parts().into_iter();
+        let banks = banks
+            .map(|part| (part.bank, part.y_m, part.force_n(&at_rest)))
+            .collect();
         let sections = joint_parts(design)
             .iter()
             .map(|parts| parts.sections(&at_rest))
@@ -113,6 +119,7 @@ impl StaticSolver {
         let place_m = |&x_m: &f64| 0.0 - bridge.place(x_m).dot(&u);
         Ok(StaticResponse {
             sections,
+            banks,
             places_m: case.places_x_m.iter().map(place_m).collect(),
             // nothing is 0, not -0
             deflection_m: bridge.positions.iter().map(|row| 0.0 - row.dot(&u)).collect(),
@@ -304,6 +311,8 @@ fn brought_on(
 
 /// What joints do at rest, to be read.
 struct Rest<'a> {
+    bridge: &'a Bridge,
+    u: &'a [f64],
     contact: &'a ContactSolution,
     pins_n: &'a [[f64; 3]],
 }
@@ -319,5 +328,9 @@ impl JointReading for Rest<'_> {
 
     fn pin_n(&self, pin: usize) -> [f64; 3] {
         self.pins_n[pin]
+    }
+
+    fn spring_m(&self, spring: usize) -> f64 {
+        self.bridge.springs[spring].row.dot(self.u)
     }
 }
