@@ -119,6 +119,12 @@ impl InvalidInput {
         };
         self
     }
+
+    /// This error of a kind whose keys begin with `prefix`; of the only kind, which has no name, as it is.
+    #[must_use]
+    pub fn within_kind(self, prefix: &str) -> Self {
+        if prefix.is_empty() { self } else { self.under(prefix) }
+    }
 }
 
 /// Refuses what is not a finite number above zero.

@@ -3,7 +3,7 @@
 //! Knows how a shape is told from another by where its kinetic energy is. Does not know how the bridge was built.
 
 use super::AnalysisError;
-use crate::bridge::Bridge;
+use crate::bridge::{Bridge, ModulePlace};
 use crate::fem::{EigenPairs, SparseRow, SymmetricMatrix, lowest_modes_unless};
 pub use crate::scheme::Rayleigh;
 use crate::stop::Stop;
@@ -261,36 +261,52 @@ impl ShapeMotion {
                 values.iter().map(|(y, z)| y * z).sum::<f64>() / values.iter().map(|(y, _)| y * y).sum::<f64>(),
             ));
         }
-        // roll of the stations at module ends, to take the lateral motion from the hinges to mid-depth
-        let per_module = bridge.sections.len() / design.modules;
-        let end_roll = |i: usize| roll[(i / 2) * per_module + if i.is_multiple_of(2) { 0 } else { per_module - 1 }].1;
-        let half_depth = 0.5 * design.module.depth_m;
-        let hinges = bridge.hinge_lines.iter();
-        let y: Vec<(f64, f64)> = hinges
-            .clone()
-            .enumerate()
-            .map(|(i, (x, _, row))| (*x, row.dot(shape) - half_depth * end_roll(i)))
-            .collect();
-        let x: Vec<(f64, f64)> = hinges.map(|(x, row, _)| (*x, row.dot(shape))).collect();
-        let length = design.length_m();
-        let structure = bridge.structural_mass_kg_m;
+        let hinges = bridge.hinge_lines.chunks_exact(2).zip(&bridge.modules);
+        let (mut x, mut y, mut first) = (Vec::new(), Vec::new(), 0);
+        for (ends, module) in hinges {
+            let last = first + module.lines_x.len() - 1;
+            for ((place, along, across), station) in ends.iter().zip([first, last]) {
+                // the roll there takes the lateral motion from the hinges to mid-depth
+                let roll = roll[station].1;
+                y.push((*place, across.dot(shape) - 0.5 * module.depth_m * roll));
+                x.push((*place, along.dot(shape)));
+            }
+            first = last + 1;
+        }
+        let length = bridge.design().length_m();
+        let stations = |module: &ModulePlace| module.lines_x.len();
+        let inertias = |per_module: fn(&ModulePlace) -> usize, inertia: fn(&ModulePlace) -> f64| -> Vec<(f64, usize)> {
+            bridge.modules.iter().map(|module| (inertia(module), per_module(module))).collect()
+        };
+        let structure = inertias(|_| 2, |module| module.structural_mass_kg_m);
+        let afloat = inertias(stations, |module| module.structural_mass_kg_m + module.added_mass_kg_m);
         Self {
-            vertical: Profile::new(structure + design.m_a(), &z, length),
-            torsion: Profile::new(bridge.roll_inertia_kg_m, &roll, length),
-            horizontal: Profile::new(structure, &y, length),
-            axial: Profile::new(structure, &x, length),
+            vertical: Profile::new(&afloat, &z, length),
+            torsion: Profile::new(&inertias(stations, |module| module.roll_inertia_kg_m), &roll, length),
+            horizontal: Profile::new(&structure, &y, length),
+            axial: Profile::new(&structure, &x, length),
         }
     }
 }
 
 impl Profile {
-    /// Of values along x; two values at one x are the two sides of a joint.
-    fn new(inertia_per_m: f64, values: &[(f64, f64)], length: f64) -> Self {
+    /// Of values along x; two values at one x are the two sides of a joint. `modules` are the inertia per metre of each
+    /// module and how many of the values are its.
+    fn new(modules: &[(f64, usize)], values: &[(f64, f64)], length: f64) -> Self {
         let (mut square, mut mean, mut tilt) = (0.0, 0.0, 0.0);
-        for w in values.windows(2) {
+        let mut of_values = modules.iter().flat_map(|&(inertia, count)| std::iter::repeat_n(inertia, count));
+        // modules of one inertia side by side are one sum
+        let (mut share, mut inertia, mut own) = (0.0, of_values.next().unwrap_or(0.0), 0.0);
+        for (w, next) in values.windows(2).zip(of_values) {
             let [(xa, a), (xb, b)] = [w[0], w[1]];
             let dx = xb - xa;
-            square += dx * (a * a + a * b + b * b) / 3.0;
+            let of_interval = dx * (a * a + a * b + b * b) / 3.0;
+            if next != inertia {
+                share += inertia * own;
+                (inertia, own) = (next, 0.0);
+            }
+            own += of_interval;
+            square += of_interval;
             mean += dx * (a + b) / 2.0;
             let [ta, tb] = [xa, xb].map(|x| 2.0 * x / length - 1.0);
             tilt += dx * (2.0 * (ta * a + tb * b) + ta * b + tb * a) / 6.0;
@@ -300,7 +316,7 @@ impl Profile {
         }
         // the integral of t^2 over the bridge is length / 3
         Self {
-            share: inertia_per_m * square,
+            share: share + inertia * own,
             even: mean * mean / (length * square),
             odd: 3.0 * tilt * tilt / (length * square),
         }

@@ -3,7 +3,7 @@
 //! Knows where everything is along the bridge. Does not know what is done with it.
 
 use super::banks::{BankSpring, bank_springs};
-use super::fit::check_fit;
+use super::modules::Modules;
 use super::pins::{PinPlace, pins};
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::product::ModuleProduct;
@@ -12,6 +12,7 @@ use super::{BridgeDesign, BridgeError, Direction, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 use crate::module::Grid;
 use crate::response::{BankPart, BankSource};
+use std::borrow::Borrow;
 
 /// One connector: where it is and the row of B that gives its elongation.
 /// Equation (J1).
@@ -84,39 +85,69 @@ pub struct Bridge {
     pub(crate) pins: Vec<PinPlace>,
     /// Surge, sway and yaw of the whole bridge; motions of the bridge where no support holds them.
     pub(crate) horizontal_rigid: [Vec<f64>; 3],
-    pub(crate) structural_mass_kg_m: f64,
-    pub(crate) roll_inertia_kg_m: f64,
-    /// Dofs of the deck's z: `[module][ix][iy]`, with the lines they lie on.
+    /// What stands at each place of the row.
+    pub(crate) modules: Vec<ModulePlace>,
+    /// Dofs of the deck's z: `[module][ix][iy]`, with the lines across they lie on.
     pub(super) deck_z: Vec<Vec<Vec<usize>>>,
-    pub(super) lines_x: Vec<f64>,
     pub(super) lines_y: Vec<f64>,
 }
 
+/// A module at its place of the bridge.
+#[derive(Debug, Clone)]
+pub(crate) struct ModulePlace {
+    /// Place of its left end `[m]`.
+    pub left_m: f64,
+    /// Length and depth `[m]`.
+    pub length_m: f64,
+    pub depth_m: f64,
+    /// Lines along, from its left end `[m]`.
+    pub lines_x: Vec<f64>,
+    /// Mass of the structure, the water's added mass and inertia of roll with it, per metre.
+    pub structural_mass_kg_m: f64,
+    pub added_mass_kg_m: f64,
+    pub roll_inertia_kg_m: f64,
+    /// Still-water draft and freeboard, where its kind has them `[m]`.
+    pub draft_m: Option<f64>,
+    pub freeboard_m: Option<f64>,
+}
+
 impl Bridge {
-    /// Assembles the bridge from one prepared module.
+    /// Assembles the bridge from one prepared module, of which all its modules are.
     ///
     /// # Errors
-    /// [`BridgeError`]; a module whose mesh does not span the design's or has no line at one of its hinges or connectors is
-    /// refused.
+    /// As [`Bridge::of_kinds`].
     pub fn new(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Result<Self, BridgeError> {
-        check_fit(design, &module.grid)?;
-        let row = Row::number(design, module, ends);
+        Self::of_kinds(design, &[module], ends)
+    }
+
+    /// Assembles the bridge from the prepared modules of its [`BridgeDesign::variants`], see
+    /// [`PreparedModule::of_kinds`].
+    ///
+    /// # Errors
+    /// [`BridgeError`]; a module whose mesh does not span the design's, has no line at one of its hinges or connectors, or other
+    /// lines across than its neighbours is refused.
+    pub fn of_kinds<M: Borrow<PreparedModule>>(
+        design: &BridgeDesign,
+        prepared: &[M],
+        ends: Ends,
+    ) -> Result<Self, BridgeError> {
+        let modules = Modules::new(design, prepared)?;
+        let row = Row::number(design, &modules, ends);
         let places = Places {
             design,
-            module,
+            modules: &modules,
             row: &row,
         };
-        let l = design.module.length_m;
         let mut connectors = places.connectors();
         let joint_connectors = connectors.len();
         let springs = match ends {
-            Ends::Supported => bank_springs(design, &module.grid.y),
+            Ends::Supported => bank_springs(design, modules.lines_y()),
             Ends::Free => Vec::new(),
         };
         let (one_sided, held): (Vec<_>, Vec<_>) = springs.into_iter().partition(|spring| spring.one_sided);
         connectors.extend(one_sided.iter().map(|spring| places.bank_link(spring)));
         let springs: Vec<SpringPlace> = held.iter().map(|spring| places.spring(spring)).collect();
-        let mut k = row.entries(&module.k);
+        let mut k = row.entries(|module| &module.k);
         for SpringPlace { stiffness_n_m, row, .. } in &springs {
             for &(i, a) in &row.0 {
                 k.extend(row.0.iter().map(|&(j, b)| (i, j, stiffness_n_m * a * b)));
@@ -128,11 +159,11 @@ impl Bridge {
             .collect();
         Ok(Self {
             design: design.clone(),
-            model: module.model,
+            model: modules.model(),
             k: SymmetricMatrix::from_entries(row.dofs, &k)?,
-            m: SymmetricMatrix::from_entries(row.dofs, &row.entries(&module.m))?,
-            times_k: ModuleProduct::new(&module.k, &row.map, row.dofs).with_springs(in_k),
-            times_m: ModuleProduct::new(&module.m, &row.map, row.dofs),
+            m: SymmetricMatrix::from_entries(row.dofs, &row.entries(|module| &module.m))?,
+            times_k: ModuleProduct::new(&modules, &row, |module| &module.k).with_springs(in_k),
+            times_m: ModuleProduct::new(&modules, &row, |module| &module.m),
             connectors,
             joint_connectors,
             springs,
@@ -145,15 +176,13 @@ impl Bridge {
             rolls: places.rolls(),
             sections: places.sections(),
             hinge_lines: places.hinge_lines(),
-            water: std::array::from_fn(|which| row.water_resultant(module, which, l)),
-            held: row.held(module, l),
-            pins: pins(design, module, &row, &places.deck_z()),
-            horizontal_rigid: row.horizontal_rigid(module, l),
-            structural_mass_kg_m: module.structural_mass_kg() / l,
-            roll_inertia_kg_m: module.roll_inertia_kg_m2() / l,
+            water: std::array::from_fn(|which| row.water_resultant(which)),
+            held: row.held(),
+            pins: pins(design, &modules, &row, &places.deck_z()),
+            horizontal_rigid: row.horizontal_rigid(),
             deck_z: places.deck_z(),
-            lines_x: module.grid.x.clone(),
-            lines_y: module.grid.y.clone(),
+            lines_y: modules.lines_y().to_vec(),
+            modules: places.modules(),
         })
     }
 
@@ -170,6 +199,26 @@ impl Bridge {
     /// Degrees of freedom.
     pub fn dofs(&self) -> usize {
         self.k.order()
+    }
+
+    /// Least draft of a module `[m]`; none where no module has one.
+    pub(crate) fn least_draft_m(&self) -> Option<f64> {
+        self.modules.iter().filter_map(|module| module.draft_m).reduce(f64::min)
+    }
+
+    /// Least freeboard of a module `[m]`; none where no module has one.
+    pub(crate) fn least_freeboard_m(&self) -> Option<f64> {
+        self.modules.iter().filter_map(|module| module.freeboard_m).reduce(f64::min)
+    }
+
+    /// Whether a motion lifts a corner of a module's bottom above the water; none where no module has a draft.
+    pub(crate) fn bottom_emerges(&self, u: &[f64]) -> Option<bool> {
+        passes(&self.modules, |module| module.draft_m, &self.bottom_corners, |row| row.dot(u))
+    }
+
+    /// Whether a motion takes a corner of a module's deck below the water; none where no module has a freeboard.
+    pub(crate) fn deck_submerges(&self, u: &[f64]) -> Option<bool> {
+        passes(&self.modules, |module| module.freeboard_m, &self.deck_corners, |row| -row.dot(u))
     }
 
     /// The springs of all banks, bank after bank.
@@ -208,24 +257,36 @@ impl Bridge {
     }
 }
 
+/// Whether one of the four corners of a module goes farther than its limit; none where no module has one.
+fn passes(
+    modules: &[ModulePlace],
+    limit: impl Fn(&ModulePlace) -> Option<f64>,
+    corners: &[SparseRow],
+    way: impl Fn(&SparseRow) -> f64,
+) -> Option<bool> {
+    let limited = || modules.iter().zip(corners.chunks_exact(4)).filter_map(|(m, rows)| Some((limit(m)?, rows)));
+    limited().next()?;
+    Some(limited().any(|(limit_m, rows)| rows.iter().any(|row| way(row) > limit_m)))
+}
+
 /// Where a numbered row of modules is loaded and read: makes the rows of the bridge's dofs for places along it.
 ///
 /// A station is a module with one of its lines along, `(j, ix)`.
 struct Places<'a> {
     design: &'a BridgeDesign,
-    module: &'a PreparedModule,
+    modules: &'a Modules<'a>,
     row: &'a Row<'a>,
 }
 
 impl Places<'_> {
     /// Gives a node's translation in module `j` in terms of the bridge's dofs.
     fn of(&self, j: usize, node: NodeId, direction: usize) -> SparseRow {
-        self.row.global(j, &self.module.row(node, direction))
+        self.row.global(j, &self.modules.module(j).row(node, direction))
     }
 
     /// Gives z at the bottom's centre line of a station.
     fn centre(&self, j: usize, ix: usize) -> SparseRow {
-        let grid = &self.module.grid;
+        let grid = self.modules.grid(j);
         let rows: Vec<(f64, SparseRow)> = grid
             .centre()
             .into_iter()
@@ -236,31 +297,30 @@ impl Places<'_> {
 
     /// Lists the stations, module after module.
     fn stations(&self) -> impl Iterator<Item = (usize, usize)> {
-        let nx = self.module.grid.x.len();
-        (0..self.design.modules).flat_map(move |j| (0..nx).map(move |ix| (j, ix)))
+        let modules = self.modules.each().enumerate();
+        modules.flat_map(|(j, module)| (0..module.grid.x.len()).map(move |ix| (j, ix)))
     }
 
     /// Lists the stations at the modules' ends, each module's left one first.
     fn ends(&self) -> impl Iterator<Item = (usize, usize)> {
-        (0..self.design.modules)
-            .flat_map(|j| [(j, Side::Left), (j, Side::Right)])
-            .map(|(j, side)| (j, self.module.end_line(side)))
+        let modules = self.modules.each().enumerate();
+        modules.flat_map(|(j, module)| [Side::Left, Side::Right].map(|side| (j, module.end_line(side))))
     }
 
     /// Gives the place of a station along the bridge `[m]`.
     fn x_m(&self, j: usize, ix: usize) -> f64 {
-        j as f64 * self.design.module.length_m + self.module.grid.x[ix]
+        self.modules.left_m(j) + self.modules.grid(j).x[ix]
     }
 
     /// Makes the connectors, joint after joint.
     fn connectors(&self) -> Vec<ConnectorPlace> {
-        let grid = &self.module.grid;
         let mut connectors = Vec::new();
-        for j in 1..self.design.modules {
+        for j in 1..self.modules.len() {
+            let [left, right] = [j - 1, j].map(|j| self.modules.grid(j));
             for &y_m in &self.design.connectors.y_m {
-                if let Some(iy) = grid.y_line(y_m) {
-                    let left = self.of(j - 1, grid.deck(grid.x.len() - 1, iy), X);
-                    let right = self.of(j, grid.deck(0, iy), X);
+                if let (Some(left_iy), Some(right_iy)) = (left.y_line(y_m), right.y_line(y_m)) {
+                    let left = self.of(j - 1, left.deck(left.x.len() - 1, left_iy), X);
+                    let right = self.of(j, right.deck(0, right_iy), X);
                     connectors.push(ConnectorPlace {
                         joint: j + 1,
                         y_m,
@@ -275,13 +335,13 @@ impl Places<'_> {
 
     /// Makes the row of a bank's spring: the motion of its node along its sense.
     fn bank_row(&self, spring: &BankSpring) -> SparseRow {
-        let grid = &self.module.grid;
-        let last = self.design.modules;
-        let (j, ix) = if spring.position > last {
-            (last - 1, grid.x.len() - 1)
+        let last = self.modules.len();
+        let (j, side) = if spring.position > last {
+            (last - 1, Side::Right)
         } else {
-            (spring.position - 1, 0)
+            (spring.position - 1, Side::Left)
         };
+        let (grid, ix) = (self.modules.grid(j), self.modules.module(j).end_line(side));
         let direction = match spring.direction {
             Direction::X => X,
             Direction::Y => Y,
@@ -315,8 +375,9 @@ impl Places<'_> {
 
     /// Makes the rows of [`Bridge::positions`]: the left end of each module, and the right end of the last.
     fn positions(&self) -> Vec<SparseRow> {
-        let mut positions: Vec<SparseRow> = (0..self.design.modules).map(|j| self.centre(j, 0)).collect();
-        positions.push(self.centre(self.design.modules - 1, self.module.grid.x.len() - 1));
+        let last = self.modules.len() - 1;
+        let mut positions: Vec<SparseRow> = (0..=last).map(|j| self.centre(j, 0)).collect();
+        positions.push(self.centre(last, self.modules.grid(last).x.len() - 1));
         positions
     }
 
@@ -329,29 +390,29 @@ impl Places<'_> {
 
     /// Makes the rows of [`Bridge::edges`], station after station, the edge at the lowest y first.
     fn edges(&self) -> Vec<SparseRow> {
-        let grid = &self.module.grid;
+        let last = self.modules.lines_y().len() - 1;
         self.stations()
-            .flat_map(|station| [(station, 0), (station, grid.y.len() - 1)])
-            .map(|((j, ix), iy)| self.of(j, grid.deck(ix, iy), Z))
+            .flat_map(|station| [(station, 0), (station, last)])
+            .map(|((j, ix), iy)| self.of(j, self.modules.grid(j).deck(ix, iy), Z))
             .collect()
     }
 
     /// Makes the rows of z at the corners of the modules' ends; `node` is [`Grid::deck`] or [`Grid::bottom`].
     fn end_corners(&self, node: fn(&Grid, usize, usize) -> NodeId) -> Vec<SparseRow> {
-        let grid = &self.module.grid;
+        let last = self.modules.lines_y().len() - 1;
         self.ends()
-            .flat_map(|end| [(end, 0), (end, grid.y.len() - 1)])
-            .map(|((j, ix), iy)| self.of(j, node(grid, ix, iy), Z))
+            .flat_map(|end| [(end, 0), (end, last)])
+            .map(|((j, ix), iy)| self.of(j, node(self.modules.grid(j), ix, iy), Z))
             .collect()
     }
 
     /// Makes the rows of [`Bridge::corners`]: of each module the four at the bottom, then the four at the deck, each time
     /// around.
     fn corners(&self) -> Vec<[SparseRow; 3]> {
-        let grid = &self.module.grid;
-        let (nx, ny) = (grid.x.len(), grid.y.len());
-        (0..self.design.modules)
+        (0..self.modules.len())
             .flat_map(|j| {
+                let grid = self.modules.grid(j);
+                let (nx, ny) = (grid.x.len(), grid.y.len());
                 let around = [(0, 0), (nx - 1, 0), (nx - 1, ny - 1), (0, ny - 1)];
                 let bottom = around.map(|(ix, iy)| grid.bottom(ix, iy));
                 let deck = around.map(|(ix, iy)| grid.deck(ix, iy));
@@ -363,9 +424,9 @@ impl Places<'_> {
 
     /// Makes the rows of [`Bridge::rolls`]: z of the deck's two edges over the breadth.
     fn rolls(&self) -> Vec<SparseRow> {
-        let grid = &self.module.grid;
         self.ends()
             .map(|(j, ix)| {
+                let grid = self.modules.grid(j);
                 let right = self.of(j, grid.deck(ix, 0), Z);
                 let left = self.of(j, grid.deck(ix, grid.y.len() - 1), Z);
                 let per = 1.0 / self.design.module.breadth_m;
@@ -376,9 +437,9 @@ impl Places<'_> {
 
     /// Makes the rows of [`Bridge::sections`], each with its place along and across `[m]`.
     fn sections(&self) -> Vec<(f64, Vec<(f64, SparseRow)>)> {
-        let grid = &self.module.grid;
         self.stations()
             .map(|(j, ix)| {
+                let grid = self.modules.grid(j);
                 let row = |iy: usize| (grid.y[iy], self.of(j, grid.deck(ix, iy), Z));
                 (self.x_m(j, ix), (0..grid.y.len()).map(row).collect())
             })
@@ -387,10 +448,11 @@ impl Places<'_> {
 
     /// Makes the rows of [`Bridge::hinge_lines`], each pair with its place along `[m]`.
     fn hinge_lines(&self) -> Vec<(f64, SparseRow, SparseRow)> {
-        let grid = &self.module.grid;
-        let hinges: Vec<usize> = self.design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y)).collect();
         self.ends()
             .map(|(j, ix)| {
+                let grid = self.modules.grid(j);
+                let hinges = self.design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y));
+                let hinges: Vec<usize> = hinges.collect();
                 let mean = |direction: usize| {
                     let rows: Vec<SparseRow> = hinges
                         .iter()
@@ -406,11 +468,32 @@ impl Places<'_> {
 
     /// Lists the dofs of the deck's z, `[module][ix][iy]`.
     fn deck_z(&self) -> Vec<Vec<Vec<usize>>> {
-        let grid = &self.module.grid;
-        let node = |j: usize, ix: usize, iy: usize| self.row.direct(j, self.module, grid.deck(ix, iy), Z);
-        let line = |j: usize, ix: usize| (0..grid.y.len()).map(|iy| node(j, ix, iy)).collect();
-        (0..self.design.modules)
-            .map(|j| (0..grid.x.len()).map(|ix| line(j, ix)).collect())
-            .collect()
+        let of_module = |j: usize| {
+            let grid = self.modules.grid(j);
+            let node = |ix: usize, iy: usize| self.row.direct(j, grid.deck(ix, iy), Z);
+            let line = |ix: usize| (0..grid.y.len()).map(|iy| node(ix, iy)).collect();
+            (0..grid.x.len()).map(line).collect()
+        };
+        (0..self.modules.len()).map(of_module).collect()
+    }
+
+    /// Lists what stands at each place of the row.
+    fn modules(&self) -> Vec<ModulePlace> {
+        let of_module = |j: usize| {
+            let (module, design) = (self.modules.module(j), self.modules.design(j));
+            let length_m = design.module.length_m;
+            ModulePlace {
+                left_m: self.modules.left_m(j),
+                length_m,
+                depth_m: design.module.depth_m,
+                lines_x: module.grid.x.clone(),
+                structural_mass_kg_m: module.structural_mass_kg() / length_m,
+                added_mass_kg_m: design.m_a(),
+                roll_inertia_kg_m: module.roll_inertia_kg_m2() / length_m,
+                draft_m: design.draft_m,
+                freeboard_m: design.freeboard_m,
+            }
+        };
+        (0..self.modules.len()).map(of_module).collect()
     }
 }

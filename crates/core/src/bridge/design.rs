@@ -4,67 +4,58 @@
 
 use super::banks::{BankSpec, bank_law, check_banks};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
+use super::kinds::{ModuleRow, Variants};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
 use crate::input::{InvalidInput, Problem, not_negative, positive, within};
-use crate::module::{ModuleDesign, mesh_module, mesh_size};
+use crate::module::{MeshSize, ModuleDesign, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A bridge of identical modules.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+/// A bridge of modules side by side, as one of the two forms of its file has it: equal modules, or a row of kinds.
+#[derive(Debug, Clone, PartialEq)]
 pub struct BridgeDesign {
     /// Name of the bridge.
     pub name: String,
     /// Where the numbers come from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     /// How its numbers were identified, where a fit left them; nothing is computed from it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub provenance: Option<Provenance>,
     /// Number of modules.
     pub modules: usize,
-    /// The module.
+    /// The module; of a row of kinds this and the water below are those of the first module.
     pub module: ModuleDesign,
     /// Hydrostatic stiffness p_b: pressure per metre of sinking `[Pa/m]`. Either this or `draft_buoyancy`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hydrostatic_stiffness_pa_m: Option<f64>,
     /// Draft-buoyancy table, whose slope at the still-water draft gives p_b.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draft_buoyancy: Option<DraftBuoyancy>,
     /// Added mass per metre of bridge `[kg/m]`. Either this or `todd`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub added_mass_kg_m: Option<f64>,
     /// Todd's formula for the added mass.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub todd: Option<Todd>,
     /// How both waters are shared among the nodes of the wetted bottom.
-    #[serde(default)]
     pub water_distribution: WaterDistribution,
     /// Hinges at the bottom of every joint.
     pub hinges: Hinges,
     /// Connectors at the deck of every joint.
     pub connectors: Connectors,
     /// What single joints have of their own.
-    #[serde(default, skip_serializing_if = "Joints::is_empty")]
     pub joints: Joints,
     /// Supports of the two ends.
-    #[serde(default)]
     pub supports: Supports,
     /// Springs between the bridge and the ground.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub banks: Vec<BankSpec>,
     /// Still-water draft `[m]`, for reporting whether the bottom emerged.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draft_m: Option<f64>,
     /// Height of the deck above the still water `[m]`, for reporting whether the deck was submerged.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub freeboard_m: Option<f64>,
     /// How a module is condensed to a super-element.
-    #[serde(default)]
     pub condensation: Condensation,
+    /// The kinds in their row, where modules are not alike.
+    pub row: Option<ModuleRow>,
+    /// What its file says beside the form that it has chosen; [`BridgeDesign::check`] refuses it.
+    pub(super) fault: Option<Box<InvalidInput>>,
 }
 
 /// Buoyancy of one module against draft.
@@ -169,31 +160,43 @@ impl BridgeDesign {
     /// # Errors
     /// [`InvalidInput`] with the key's path.
     pub fn check(&self) -> Result<(), InvalidInput> {
-        if !(1..=500).contains(&self.modules) {
-            return Err(InvalidInput::new(
-                "modules",
-                self.modules,
-                "a whole number from 1 to 500",
-            ));
+        if let Some(fault) = &self.fault {
+            return Err((**fault).clone());
         }
-        self.module.check().map_err(|e| e.under("module"))?;
-        self.check_water()?;
+        match &self.row {
+            Some(row) => row.check()?,
+            None if (1..=500).contains(&self.modules) => {}
+            None => {
+                let allowed = "a whole number from 1 to 500";
+                return Err(InvalidInput::new("modules", self.modules, allowed));
+            }
+        }
+        for (key, kind) in self.named_kinds() {
+            kind.check_kind().map_err(|e| e.within_kind(&key))?;
+        }
         let half = 0.5 * self.module.breadth_m;
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
         self.joints.check(self.modules, half, &self.connectors)?;
         check_banks(self)?;
-        for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
-            if let Some(value) = value {
-                positive(key, value)?;
-            }
-        }
         if self.condensation.fixed_master_modes > 400 {
             return Err(InvalidInput::new(
                 "condensation.fixed_master_modes",
                 self.condensation.fixed_master_modes,
                 "a whole number from 0 to 400",
             ));
+        }
+        Ok(())
+    }
+
+    /// Refuses numbers that describe no module of the only kind.
+    fn check_kind(&self) -> Result<(), InvalidInput> {
+        self.module.check().map_err(|e| e.under("module"))?;
+        self.check_water()?;
+        for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
+            if let Some(value) = value {
+                positive(key, value)?;
+            }
         }
         Ok(())
     }
@@ -210,11 +213,16 @@ impl BridgeDesign {
     }
 
     /// Refuses a draft and a freeboard that contradict the depth of the module, each other, its mass or its table of
-    /// buoyancies.
+    /// buoyancies, of each kind.
     ///
     /// # Errors
     /// [`InvalidInput`] with the key's path.
     pub fn check_water_line(&self) -> Result<(), InvalidInput> {
+        let mut kinds = self.named_kinds().into_iter();
+        kinds.try_for_each(|(key, kind)| kind.check_own_water_line().map_err(|e| e.within_kind(&key)))
+    }
+
+    fn check_own_water_line(&self) -> Result<(), InvalidInput> {
         let conflict = |key: &str, found: f64, allowed: String| {
             Err(InvalidInput::new(key, found, allowed).because(Problem::Conflict))
         };
@@ -285,30 +293,40 @@ impl BridgeDesign {
     /// # Errors
     /// [`InvalidInput`] on the mesh.
     pub fn check_size(&self, model: Model) -> Result<(), InvalidInput> {
-        let size = mesh_size(&self.module, &self.joint_lines_y_m());
-        let nodes = (size.lines_along * size.lines_across) as f64;
-        let (module_dofs, condensation) = match model {
-            Model::Full => (size.dofs as f64, 0.0),
-            Model::SuperElement => {
-                let bottoms = if self.condensation.bottom_masters { 2.0 } else { 1.0 };
-                let kept = bottoms * nodes + self.condensation.fixed_master_modes as f64;
-                (kept, 3.0 * size.dofs as f64 * kept)
-            }
-        };
-        let modules = self.modules as f64;
-        let places = modules * (self.connectors.y_m.len() + 4 * size.lines_along) as f64;
-        let solvers = 2.0 * places * (modules * module_dofs + places);
+        let Variants {
+            designs,
+            of_module,
+            keys,
+        } = self.variants();
+        let lines_y_m = self.joint_lines_y_m();
+        let needs = designs.iter().map(|design| {
+            let size = mesh_size(&design.module, &lines_y_m);
+            let nodes = (size.lines_along * size.lines_across) as f64;
+            let (dofs, condensation) = match model {
+                Model::Full => (size.dofs as f64, 0.0),
+                Model::SuperElement => {
+                    let bottoms = if self.condensation.bottom_masters { 2.0 } else { 1.0 };
+                    let kept = bottoms * nodes + self.condensation.fixed_master_modes as f64;
+                    (kept, 3.0 * size.dofs as f64 * kept)
+                }
+            };
+            (size, dofs, condensation)
+        });
+        let needs: Vec<(MeshSize, f64, f64)> = needs.collect();
+        let of_places = |&of: &usize| (self.connectors.y_m.len() + 4 * needs[of].0.lines_along) as f64;
+        let places: f64 = of_module.iter().map(of_places).sum();
+        let dofs: f64 = of_module.iter().map(|&of| needs[of].1).sum();
+        let solvers = 2.0 * places * (dofs + places);
+        let condensation = needs.iter().map(|need| need.2).fold(0.0, f64::max);
         let gib = 8.0 * condensation.max(solvers) / f64::from(1 << 30);
         if gib > MOST_GIB {
+            let largest = (0..needs.len()).max_by_key(|&of| needs[of].0.dofs).unwrap_or(0);
             let found = format!(
                 "a mesh of {} degrees of freedom a module, which needs about {gib:.0} GiB",
-                size.dofs
+                needs[largest].0.dofs
             );
-            return Err(InvalidInput::new(
-                "module.mesh",
-                found,
-                format!("a mesh and a number of modules that need at most {MOST_GIB} GiB"),
-            ));
+            let allowed = format!("a mesh and a number of modules that need at most {MOST_GIB} GiB");
+            return Err(InvalidInput::new("module.mesh", found, allowed).within_kind(&keys[largest]));
         }
         Ok(())
     }
@@ -362,7 +380,11 @@ impl BridgeDesign {
         }
         let mut all = laws.to_vec();
         let mut link = (self.modules - 1) * self.connectors.y_m.len();
-        let edge_lines = mesh_size(&self.module, &self.joint_lines_y_m()).lines_across;
+        // lines across are those of all modules
+        let edge_lines = match &self.variants().designs[..] {
+            [first, ..] => mesh_size(&first.module, &self.joint_lines_y_m()).lines_across,
+            [] => 0,
+        };
         for bank in self.banks.iter().filter(|bank| bank.one_sided) {
             let places = bank.places(edge_lines, self.hinges.y_m.len());
             let law = bank_law(bank, 1.0 / places as f64);
@@ -374,7 +396,7 @@ impl BridgeDesign {
 
     /// Length of the bridge `[m]`.
     pub fn length_m(&self) -> f64 {
-        self.modules as f64 * self.module.length_m
+        self.position_x_m(self.positions())
     }
 
     /// Lines across that a module's mesh has for its joints: places of hinges, then of connectors `[m]`.
@@ -393,10 +415,13 @@ impl BridgeDesign {
 
     /// Place of a position (from 1) along the bridge `[m]`.
     pub fn position_x_m(&self, position: usize) -> f64 {
-        (position as f64 - 1.0) * self.module.length_m
+        match &self.row {
+            None => (position as f64 - 1.0) * self.module.length_m,
+            Some(_) => self.positions_m().get(position - 1).copied().unwrap_or(f64::NAN),
+        }
     }
 
-    /// Mass of one module's plates and beams `[kg]`: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
+    /// Mass of one module's plates and beams `[kg]`, of a row of kinds the first one's: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
     /// Verified by `tests/solvers/superelement.rs`.
     pub fn structural_mass_kg(&self) -> f64 {
         mesh_module(&self.module, &self.joint_lines_y_m()).mesh.mass_kg()

@@ -3,13 +3,14 @@
 //! Knows how a module's dofs go on to all its nodes: by themselves, or by the condensation's own transformation. Does not
 //! know what the motion is, nor files.
 
-use super::fit::check_fit;
+use super::modules::Modules;
 use super::prepared::{PreparedModule, Side, X};
 use super::row::Row;
 use super::{BridgeDesign, BridgeError, Ends};
-use crate::fem::{DOFS_PER_NODE, SparseRow};
-use crate::module::Plate;
+use crate::fem::{DOFS_PER_NODE, NodeId, SparseRow};
+use crate::module::{Grid, Plate};
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
+use std::borrow::Borrow;
 
 /// A shell of the whole bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,13 +62,16 @@ pub struct MeshedBridge {
     deck: Vec<usize>,
     /// For each module and each of its dofs the number in the bridge; none where held.
     map: Vec<Vec<Option<usize>>>,
-    /// The motion of a condensed module's nodes in terms of its dofs: a row a translation, node after node, and below them a
-    /// row a rotation.
-    condensed: Option<Mat<f64>>,
-    /// Stiffness and mass of a module in the rows of its left end along x, at each place of hinges.
-    hinge_rows: Vec<[SparseRow; 2]>,
-    /// Which of these each joint's hinges are at.
-    hinge_places: Vec<Vec<usize>>,
+    /// Of each module its variant.
+    of_module: Vec<usize>,
+    /// Number of nodes of each variant.
+    nodes: Vec<usize>,
+    /// Of each variant the motion of a condensed module's nodes in terms of its dofs: a row a translation, node after node, and
+    /// below them a row a rotation. None where nothing is condensed.
+    condensed: Option<Vec<Mat<f64>>>,
+    /// Joint after joint, at each of its hinges, stiffness and mass of the module on the right in the row of its left end along
+    /// x.
+    hinge_rows: Vec<Vec<[SparseRow; 2]>>,
 }
 
 impl MeshedBridge {
@@ -76,76 +80,84 @@ impl MeshedBridge {
     /// # Errors
     /// [`BridgeError`] as there.
     pub fn new(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Result<Self, BridgeError> {
-        check_fit(design, &module.grid)?;
-        let (mesh, grid) = (&module.mesh, &module.grid);
-        let (own, length_m) = (mesh.nodes.len(), design.module.length_m);
-        let modules = 0..design.modules;
-        let nodes_m = modules
-            .clone()
-            .flat_map(|j| mesh.nodes.iter().map(move |p| [p.x + j as f64 * length_m, p.y, p.z]));
-        let shells = modules.clone().flat_map(|j| {
+        Self::of_kinds(design, &[module], ends)
+    }
+
+    /// The mesh of the bridge that [`Bridge::of_kinds`](super::Bridge::of_kinds) assembles from the same things.
+    ///
+    /// # Errors
+    /// [`BridgeError`] as there.
+    pub fn of_kinds<M: Borrow<PreparedModule>>(
+        design: &BridgeDesign,
+        prepared: &[M],
+        ends: Ends,
+    ) -> Result<Self, BridgeError> {
+        let modules = Modules::new(design, prepared)?;
+        let mut first_node = vec![0];
+        first_node.extend(modules.each().scan(0, |nodes, module| {
+            *nodes += module.mesh.nodes.len();
+            Some(*nodes)
+        }));
+        let each = || modules.each().enumerate();
+        let nodes_m = each().flat_map(|(j, module)| {
+            let left_m = modules.left_m(j);
+            module.mesh.nodes.iter().map(move |p| [p.x + left_m, p.y, p.z])
+        });
+        let of_node = |j: usize, node: NodeId| first_node[j] + node.0;
+        let shells = each().flat_map(|(j, module)| {
+            let (modules, mesh) = (&modules, &module.mesh);
             mesh.shells.iter().map(move |shell| ShellCell {
-                nodes: shell.nodes.map(|node| j * own + node.0),
+                nodes: shell.nodes.map(|node| of_node(j, node)),
                 module: j + 1,
-                plate: Plate::of(&design.module, shell.nodes.map(|node| mesh.place(node))),
+                plate: Plate::of(&modules.design(j).module, shell.nodes.map(|node| mesh.place(node))),
                 thickness_m: shell.section.thickness_m,
             })
         });
-        let beams = modules.clone().flat_map(|j| {
-            mesh.beams.iter().map(move |beam| BeamCell {
-                nodes: beam.nodes.map(|node| j * own + node.0),
+        let beams = each().flat_map(|(j, module)| {
+            module.mesh.beams.iter().map(move |beam| BeamCell {
+                nodes: beam.nodes.map(|node| of_node(j, node)),
                 module: j + 1,
             })
         });
-        let [left, right] = [Side::Left, Side::Right].map(|side| module.end_line(side));
-        let links = |bottom: bool| -> Vec<Link> {
-            let at = |ix: usize, iy: usize| if bottom { grid.bottom(ix, iy) } else { grid.deck(ix, iy) };
-            let of_joint = |j: usize| {
-                let places = if bottom {
-                    &design.hinges_of(j + 1).y_m
-                } else {
-                    &design.connectors.y_m
+        let links = |node: fn(&Grid, usize, usize) -> NodeId, places: &dyn Fn(usize) -> Vec<f64>| -> Vec<Link> {
+            let link = |j: usize, y_m: f64| {
+                let end = |j: usize, side: Side| {
+                    let (grid, ix) = (modules.grid(j), modules.module(j).end_line(side));
+                    Some(of_node(j, node(grid, ix, grid.y_line(y_m)?)))
                 };
-                let across = places.iter().filter_map(|&y| Some((y, grid.y_line(y)?)));
-                across.map(move |(y_m, iy)| Link {
+                Some(Link {
                     joint: j + 1,
                     y_m,
-                    nodes: [(j - 1) * own + at(right, iy).0, j * own + at(left, iy).0],
+                    nodes: [end(j - 1, Side::Right)?, end(j, Side::Left)?],
                 })
             };
-            (1..design.modules).flat_map(of_joint).collect()
+            let of_joint = |j: usize| places(j + 1).into_iter().filter_map(move |y_m| link(j, y_m));
+            (1..modules.len()).flat_map(of_joint).collect()
         };
-        let deck = (0..grid.y.len()).flat_map(|iy| {
-            let stations = modules.clone().flat_map(|j| (0..grid.x.len()).map(move |ix| (j, ix)));
-            stations.map(move |(j, ix)| j * own + grid.deck(ix, iy).0)
+        let deck = (0..modules.lines_y().len()).flat_map(|iy| {
+            let stations = each().flat_map(|(j, module)| (0..module.grid.x.len()).map(move |ix| (j, ix)));
+            stations.map(move |(j, ix)| (j, ix, iy))
         });
-        let condensed = module.transformation().map(translations_first);
-        let lines: Vec<usize> = design
-            .hinge_lines_y_m()
-            .iter()
-            .filter_map(|&y| grid.y_line(y))
-            .collect();
-        let hinge_places = (2..=design.modules).map(|joint| {
-            let of_joint = design.hinges_of(joint).y_m.iter().filter_map(|&y| grid.y_line(y));
-            of_joint
-                .filter_map(|iy| lines.iter().position(|line| *line == iy))
+        let condensed = modules.variants.iter().map(|module| module.transformation().map(translations_first));
+        let hinge_rows = (2..=modules.len()).map(|joint| {
+            let module = modules.module(joint - 1);
+            let dofs = design.hinges_of(joint).y_m.iter();
+            let dofs = dofs.filter_map(|&y_m| module.end_dof(Side::Left, y_m, X));
+            dofs.map(|dof| [&module.k, &module.m].map(|matrix| SparseRow(matrix.column(dof).collect())))
                 .collect()
         });
-        let hinge_rows = lines
-            .iter()
-            .filter_map(|&iy| module.dof(grid.bottom(left, iy), X))
-            .map(|dof| [&module.k, &module.m].map(|matrix| SparseRow(matrix.column(dof).collect())));
         Ok(Self {
             nodes_m: nodes_m.collect(),
             shells: shells.collect(),
             beams: beams.collect(),
-            connectors: links(false),
-            hinges: links(true),
-            deck: deck.collect(),
-            map: Row::number(design, module, ends).map,
-            condensed,
+            connectors: links(Grid::deck, &|_| design.connectors.y_m.clone()),
+            hinges: links(Grid::bottom, &|joint| design.hinges_of(joint).y_m.clone()),
+            deck: deck.map(|(j, ix, iy)| of_node(j, modules.grid(j).deck(ix, iy))).collect(),
+            map: Row::number(design, &modules, ends).map,
+            nodes: modules.variants.iter().map(|module| module.mesh.nodes.len()).collect(),
+            condensed: condensed.collect(),
             hinge_rows: hinge_rows.collect(),
-            hinge_places: hinge_places.collect(),
+            of_module: modules.of_module.clone(),
         })
     }
 
@@ -173,18 +185,34 @@ impl MeshedBridge {
         self.triples_by(condensed, u, first)
     }
 
-    /// [`Self::triples`] by a matrix whose rows [`translations_first`] has put in order.
-    pub(super) fn triples_by(&self, matrix: &Mat<f64>, u: &[f64], first: usize) -> Vec<[f64; 3]> {
-        let rows = matrix.nrows() / 2;
-        let t = matrix.subrows(if first == 0 { 0 } else { rows }, rows);
+    /// [`Self::triples`] by a matrix of each variant, whose rows [`translations_first`] has put in order.
+    pub(super) fn triples_by(&self, matrices: &[Mat<f64>], u: &[f64], first: usize) -> Vec<[f64; 3]> {
         let of = |dof: Option<usize>| dof.map_or(0.0, |dof| u[dof]);
-        let own = Mat::from_fn(t.ncols(), self.map.len(), |i, j| of(self.map[j][i]));
-        let mut moved = Mat::<f64>::zeros(rows, self.map.len());
-        matmul(moved.as_mut(), Accum::Replace, t, own.as_ref(), 1.0, Par::Seq);
-        let nodes = (0..self.map.len()).flat_map(|j| (0..rows / 3).map(move |node| (j, node)));
+        let moved = matrices.iter().enumerate().map(|(variant, matrix)| {
+            let rows = matrix.nrows() / 2;
+            let t = matrix.subrows(if first == 0 { 0 } else { rows }, rows);
+            let own = self.map.iter().zip(&self.of_module).filter(|(_, of)| **of == variant);
+            let own: Vec<_> = own.map(|(map, _)| map).collect();
+            let motion = Mat::from_fn(t.ncols(), own.len(), |i, j| of(own[j][i]));
+            let mut moved = Mat::<f64>::zeros(rows, own.len());
+            matmul(moved.as_mut(), Accum::Replace, t, motion.as_ref(), 1.0, Par::Seq);
+            moved
+        });
+        let moved: Vec<Mat<f64>> = moved.collect();
+        let mut seen = vec![0; moved.len()];
+        let columns = self.of_module.iter().map(|&variant| {
+            seen[variant] += 1;
+            moved[variant].col(seen[variant] - 1)
+        });
+        let nodes = columns.flat_map(|column| (0..column.nrows() / 3).map(move |node| (column, node)));
         nodes
-            .map(|(j, node)| [0, 1, 2].map(|direction| moved[(3 * node + direction, j)]))
+            .map(|(column, node)| [0, 1, 2].map(|direction| column[3 * node + direction]))
             .collect()
+    }
+
+    /// Number of nodes of each module from left to right, with its variant.
+    pub(super) fn nodes_of_modules(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.of_module.iter().map(|&variant| (variant, self.nodes[variant]))
     }
 
     /// How far a point of the deck moves with the nodes around it: `row` is the track's at that point, `displacement_m` that
@@ -204,14 +232,14 @@ impl MeshedBridge {
             let term = |&(i, v): &(usize, f64)| map[i].map_or(0.0, |dof| v * x[dof]);
             row.0.iter().map(term).sum()
         };
-        let of_module = |(map, places): (&Vec<Option<usize>>, &Vec<usize>)| -> Vec<f64> {
+        let of_module = |(map, rows): (&Vec<Option<usize>>, &Vec<[SparseRow; 2]>)| -> Vec<f64> {
             let force = |[k, m]: &[SparseRow; 2]| {
                 0.0 - of(map, k, elastic) - inertial.map_or(0.0, |inertial| of(map, m, inertial))
             };
-            places.iter().map(|&place| force(&self.hinge_rows[place])).collect()
+            rows.iter().map(force).collect()
         };
         let right_of_joints = self.map.iter().skip(1);
-        right_of_joints.zip(&self.hinge_places).flat_map(of_module).collect()
+        right_of_joints.zip(&self.hinge_rows).flat_map(of_module).collect()
     }
 }
 

@@ -7,8 +7,10 @@ mod banks;
 mod design;
 mod fit;
 mod joints;
+mod kinds;
 mod load;
 mod meshed;
+mod modules;
 mod pins;
 mod placement;
 mod prepared;
@@ -17,11 +19,14 @@ mod provenance;
 mod row;
 mod stresses;
 mod track;
+mod written;
 
+pub(crate) use assembly::ModulePlace;
 pub use assembly::{Bridge, ConnectorPlace};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports, Todd};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
+pub use kinds::{ModuleKind, ModuleRow, ModuleRun, Variants};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 #[cfg(test)]

@@ -3,7 +3,8 @@
 //! Knows the rows of a module's own matrices at its hinges. Does not know how the motion came about, nor peaks.
 
 use super::BridgeDesign;
-use super::prepared::{PreparedModule, Side, X, Y, Z};
+use super::modules::Modules;
+use super::prepared::{Side, X, Y, Z};
 use super::row::Row;
 use crate::fem::{SparseRow, SymmetricMatrix};
 use crate::response::JointParts;
@@ -51,21 +52,21 @@ impl PinRow {
 /// `deck_z` are the dofs of the deck's z, `[module][ix][iy]`.
 pub(super) fn pins(
     design: &BridgeDesign,
-    module: &PreparedModule,
+    modules: &Modules<'_>,
     row: &Row<'_>,
     deck_z: &[Vec<Vec<usize>>],
 ) -> Vec<PinPlace> {
-    let (grid, end) = (&module.grid, module.end_line(Side::Right));
-    let (nx, ny) = (grid.x.len(), grid.y.len());
+    let (lines, stations) = (modules.lines_y().len(), deck_z.iter().map(Vec::len).sum::<usize>());
     let columns = |j: usize, dof: usize| -> Vec<usize> {
-        let nodes = (0..ny).flat_map(|line| (0..nx).map(move |ix| (line, ix)));
+        let first: usize = deck_z[..j].iter().map(Vec::len).sum();
+        let nodes = (0..lines).flat_map(|line| (0..deck_z[j].len()).map(move |ix| (line, ix)));
         let here = nodes.filter(|&(line, ix)| deck_z[j][ix][line] == dof);
-        here.map(|(line, ix)| (line * design.modules + j) * nx + ix).collect()
+        here.map(|(line, ix)| line * stations + first + ix).collect()
     };
     let place = |joint: usize, y_m: f64| {
-        let (j, iy) = (joint - 2, grid.y_line(y_m)?);
+        let (j, module) = (joint - 2, modules.module(joint - 2));
         let pin = |direction: usize| {
-            let dof = module.dof(grid.bottom(end, iy), direction)?;
+            let dof = module.end_dof(Side::Right, y_m, direction)?;
             let of = |matrix: &SymmetricMatrix| row.global(j, &SparseRow(matrix.column(dof).collect()));
             Some(PinRow {
                 stiffness: of(&module.k),
@@ -97,7 +98,7 @@ pub(super) fn pins(
 
 /// The parts of all joints.
 pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
-    let mut first_pin = 0;
+    let (mut first_pin, boxes) = (0, design.boxes());
     (2..=design.modules)
         .map(|joint| {
             let parts = JointParts {
@@ -106,7 +107,7 @@ pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
                 connectors_y_m: design.connectors.y_m.clone(),
                 first_pin,
                 pins_y_m: design.hinges_of(joint).y_m.clone(),
-                depth_m: design.module.depth_m,
+                depth_m: 0.5 * (boxes[joint - 2].depth_m + boxes[joint - 1].depth_m),
             };
             first_pin += parts.pins_y_m.len();
             parts
@@ -128,16 +129,19 @@ pub(crate) struct ModuleForces {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used)]
 impl ModuleForces {
     /// Of each module, at each of its dofs; arguments as of [`PinRow::force_n`].
     pub(crate) fn of(
         design: &BridgeDesign,
-        module: &PreparedModule,
+        module: &super::PreparedModule,
         elastic: &[f64],
         inertial: Option<&[f64]>,
         down: &[SparseRow],
     ) -> Vec<Vec<Self>> {
-        let row = Row::number(design, module, super::Ends::Supported);
+        let prepared = [module];
+        let modules = Modules::new(design, &prepared).expect("the modules of the design");
+        let row = Row::number(design, &modules, super::Ends::Supported);
         let (grid, nx, ny) = (&module.grid, module.grid.x.len(), module.grid.y.len());
         let of_module = |j: usize| {
             let own = |x: &[f64]| -> Vec<f64> { row.map[j].iter().map(|dof| dof.map_or(0.0, |dof| x[dof])).collect() };

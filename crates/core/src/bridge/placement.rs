@@ -29,8 +29,6 @@ pub(crate) struct VehiclePlacement {
     cells: Vec<Option<DeckCell>>,
     /// Distance that a point covers on a module while its contact force settles `[m]`.
     settling_m: f64,
-    /// Length of the modules `[m]`.
-    module_m: f64,
     /// Whether it drives toward x = 0.
     backward: bool,
 }
@@ -48,7 +46,6 @@ impl VehiclePlacement {
     pub(crate) fn place(&mut self, track: &Track, vehicle: &Vehicle, front_x_m: f64, speed_m_s: f64) {
         self.front_x_m = front_x_m;
         self.settling_m = SETTLING_S * speed_m_s.abs();
-        self.module_m = track.module_length_m();
         self.backward = speed_m_s < 0.0;
         self.cells.clear();
         for ahead_m in &vehicle.along_m {
@@ -72,7 +69,7 @@ impl VehiclePlacement {
     pub(crate) fn is_settled(&self, along: usize) -> bool {
         let covered_m = |cell: DeckCell| {
             if self.backward {
-                self.module_m - cell.in_module_m
+                cell.module_m - cell.in_module_m
             } else {
                 cell.in_module_m
             }

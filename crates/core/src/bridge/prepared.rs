@@ -58,6 +58,15 @@ impl PreparedModule {
         Self::from_mesh(design, mesh_module(&design.module, &design.joint_lines_y_m()), model)
     }
 
+    /// Prepares the modules of a bridge, those of each of its [`BridgeDesign::variants`] once.
+    ///
+    /// # Errors
+    /// [`BridgeError`].
+    pub fn of_kinds(design: &BridgeDesign, model: Model) -> Result<Vec<Self>, BridgeError> {
+        design.check()?;
+        design.variants().designs.iter().map(|of_kind| Self::new(of_kind, model)).collect()
+    }
+
     /// Takes any mesh for the module, adds the water and, for the super-element, condenses it.
     ///
     /// `k = k_structure + k_b`, `m = m_structure + m_a` as for the box (`crate::water::spread` over the cells of the grid's
@@ -166,6 +175,12 @@ impl PreparedModule {
             }
             (None, None) => SparseRow::default(),
         }
+    }
+
+    /// Place of a translation at the bottom of an end, at a place across, among the dofs; where it is one of them.
+    pub(super) fn end_dof(&self, side: Side, y_m: f64, direction: usize) -> Option<usize> {
+        let node = self.grid.bottom(self.end_line(side), self.grid.y_line(y_m)?);
+        self.dof(node, direction)
     }
 
     /// Line along the module of one of its ends.

@@ -1,25 +1,35 @@
 //! Products with the bridge's matrices, module by module.
 //!
-//! Knows that all modules share one matrix: it stays in the cache while the assembled one would not. Does not know what
-//! the matrix is.
+//! Knows that modules of one kind share one matrix: it stays in the cache while the assembled one would not. Does not know
+//! what the matrix is.
 
+use super::modules::Modules;
+use super::prepared::PreparedModule;
+use super::row::Row;
 use crate::fem::{SparseRow, SymmetricMatrix};
 use faer::{Accum, Mat, Par, linalg::matmul::matmul};
 
-/// `y = sum over modules of P_j^T A P_j x`.
+/// `y = sum over modules of P_j^T A_j P_j x`.
 #[derive(Debug)]
 pub(crate) struct ModuleProduct {
-    /// For each module and each of its dofs the number in the bridge; `dofs` where held.
-    map: Vec<Vec<usize>>,
     dofs: usize,
-    matrix: Matrix,
+    /// Modules by their matrix.
+    groups: Vec<Group>,
     /// Springs beside the modules: stiffness and row.
     springs: Vec<(f64, SparseRow)>,
 }
 
+/// Modules of one matrix.
+#[derive(Debug)]
+struct Group {
+    /// For each module and each of its dofs the number in the bridge; `dofs` where held.
+    map: Vec<Vec<usize>>,
+    matrix: Matrix,
+}
+
 #[derive(Debug)]
 enum Matrix {
-    /// A condensed module's: all modules in one dense product.
+    /// A condensed module's: all modules of the group in one dense product.
     Dense(Mat<f64>),
     /// A full module's.
     Sparse(SymmetricMatrix),
@@ -28,27 +38,35 @@ enum Matrix {
 /// Share of entries stored above which a matrix is taken as dense.
 const DENSE_ABOVE: f64 = 0.3;
 
-impl ModuleProduct {
-    /// Of the module's matrix and the numbering `map` (none where held) of a bridge of `dofs`.
-    pub(super) fn new(a: &SymmetricMatrix, map: &[Vec<Option<usize>>], dofs: usize) -> Self {
+impl Matrix {
+    fn of(a: &SymmetricMatrix) -> Self {
         let n = a.order();
-        let matrix = if a.nnz() as f64 > DENSE_ABOVE * (n * n) as f64 {
-            let mut dense = Mat::zeros(n, n);
-            for (i, j, v) in a.entries() {
-                dense[(i, j)] = v;
+        if a.nnz() as f64 <= DENSE_ABOVE * (n * n) as f64 {
+            return Self::Sparse(a.clone());
+        }
+        let mut dense = Mat::zeros(n, n);
+        for (i, j, v) in a.entries() {
+            dense[(i, j)] = v;
+        }
+        Self::Dense(dense)
+    }
+}
+
+impl ModuleProduct {
+    /// Of one of each module's matrices, numbered as in `row`.
+    pub(super) fn new(modules: &Modules<'_>, row: &Row<'_>, matrix: fn(&PreparedModule) -> &SymmetricMatrix) -> Self {
+        let dofs = row.dofs;
+        let group = |(variant, module): (usize, &&PreparedModule)| {
+            let own = row.map.iter().zip(&modules.of_module).filter(|(_, of)| **of == variant);
+            let numbers = |map: &Vec<Option<usize>>| map.iter().map(|i| i.unwrap_or(dofs)).collect();
+            Group {
+                map: own.map(|(map, _)| numbers(map)).collect(),
+                matrix: Matrix::of(matrix(module)),
             }
-            Matrix::Dense(dense)
-        } else {
-            Matrix::Sparse(a.clone())
         };
-        let map = map
-            .iter()
-            .map(|m| m.iter().map(|i| i.unwrap_or(dofs)).collect())
-            .collect();
         Self {
-            map,
             dofs,
-            matrix,
+            groups: modules.variants.iter().enumerate().map(group).collect(),
             springs: Vec::new(),
         }
     }
@@ -60,26 +78,35 @@ impl ModuleProduct {
 
     /// `y = A x` of the bridge.
     pub(crate) fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for group in &self.groups {
+            group.add(self.dofs, x, y);
+        }
+        for (stiffness, row) in &self.springs {
+            row.add_to(stiffness * row.dot(x), y);
+        }
+    }
+}
+
+impl Group {
+    /// `y += A x` of the group's modules.
+    fn add(&self, dofs: usize, x: &[f64], y: &mut [f64]) {
         let n = self.map.first().map_or(0, Vec::len);
         let own = Mat::<f64>::from_fn(n, self.map.len(), |i, j| {
             let dof = self.map[j][i];
-            if dof == self.dofs { 0.0 } else { x[dof] }
+            if dof == dofs { 0.0 } else { x[dof] }
         });
         let mut forces = Mat::<f64>::zeros(n, self.map.len());
         match &self.matrix {
             Matrix::Dense(a) => matmul(forces.as_mut(), Accum::Replace, a.as_ref(), own.as_ref(), 1.0, Par::Seq),
             Matrix::Sparse(a) => a.multiply_columns(own.as_ref(), forces.as_mut()),
         }
-        y.fill(0.0);
         for (j, map) in self.map.iter().enumerate() {
             for (&dof, force) in map.iter().zip(forces.col(j).iter()) {
-                if dof != self.dofs {
+                if dof != dofs {
                     y[dof] += force;
                 }
             }
-        }
-        for (stiffness, row) in &self.springs {
-            row.add_to(stiffness * row.dot(x), y);
         }
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Knows which dofs are one and which do not move. Does not know what is loaded or read.
 
+use super::modules::Modules;
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::{BridgeDesign, Direction, Ends};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
@@ -20,27 +21,25 @@ pub(super) struct Row<'a> {
     /// For each module and each of its dofs the number in the bridge; none where held.
     pub(super) map: Vec<Vec<Option<usize>>>,
     pub(super) dofs: usize,
-    module: &'a PreparedModule,
+    modules: &'a Modules<'a>,
 }
 
 impl<'a> Row<'a> {
     /// Numbers module after module; a left hinge node takes the numbers of the right hinge node it is tied to.
-    pub(super) fn number(design: &BridgeDesign, module: &'a PreparedModule, ends: Ends) -> Self {
-        let grid = &module.grid;
-        let hinges: Vec<usize> = design.hinges.y_m.iter().filter_map(|&y| grid.y_line(y)).collect();
+    pub(super) fn number(design: &BridgeDesign, modules: &'a Modules<'a>, ends: Ends) -> Self {
         let mut row = Self {
-            map: Vec::with_capacity(design.modules),
+            map: Vec::with_capacity(modules.len()),
             dofs: 0,
-            module,
+            modules,
         };
-        for j in 0..design.modules {
+        for (j, module) in modules.each().enumerate() {
             let mut own: Vec<Option<Option<usize>>> = vec![None; module.dofs()];
             if j > 0 {
-                let of_joint = design.hinges_of(j + 1).y_m.iter().filter_map(|&y| grid.y_line(y));
-                for iy in of_joint {
+                let before = modules.module(j - 1);
+                for &y_m in &design.hinges_of(j + 1).y_m {
                     for direction in [X, Y, Z] {
-                        let left = module.dof(grid.bottom(module.end_line(Side::Left), iy), direction);
-                        let right = module.dof(grid.bottom(module.end_line(Side::Right), iy), direction);
+                        let left = module.end_dof(Side::Left, y_m, direction);
+                        let right = before.end_dof(Side::Right, y_m, direction);
                         if let (Some(left), Some(right)) = (left, right) {
                             own[left] = Some(row.map[j - 1][right]);
                         }
@@ -50,10 +49,10 @@ impl<'a> Row<'a> {
             if ends == Ends::Supported {
                 for (side, at_end, held) in [
                     (Side::Left, j == 0, &design.supports.left),
-                    (Side::Right, j + 1 == design.modules, &design.supports.right),
+                    (Side::Right, j + 1 == modules.len(), &design.supports.right),
                 ] {
                     if at_end {
-                        for dof in held_dofs(module, side, held, &hinges) {
+                        for dof in held_dofs(module, side, held, &design.hinges.y_m) {
                             own[dof] = Some(None);
                         }
                     }
@@ -73,13 +72,14 @@ impl<'a> Row<'a> {
         row
     }
 
-    /// Entries of a module's matrix at every module's place.
-    pub(super) fn entries(&self, a: &SymmetricMatrix) -> Vec<(usize, usize, f64)> {
+    /// Entries of every module's matrix at its place.
+    pub(super) fn entries(&self, matrix: fn(&PreparedModule) -> &SymmetricMatrix) -> Vec<(usize, usize, f64)> {
         let place =
             |map: &Vec<Option<usize>>, (i, j, v): (usize, usize, f64)| map[i].zip(map[j]).map(|(i, j)| (i, j, v));
         self.map
             .iter()
-            .flat_map(|map| a.entries().filter_map(|e| place(map, e)))
+            .zip(self.modules.each())
+            .flat_map(|(map, module)| matrix(module).entries().filter_map(|e| place(map, e)))
             .collect()
     }
 
@@ -94,39 +94,41 @@ impl<'a> Row<'a> {
     }
 
     /// Number of a translation that is a dof of its own and not held; every deck z is.
-    pub(super) fn direct(&self, j: usize, module: &PreparedModule, node: NodeId, direction: usize) -> usize {
-        module
+    pub(super) fn direct(&self, j: usize, node: NodeId, direction: usize) -> usize {
+        self.modules
+            .module(j)
             .dof(node, direction)
             .and_then(|dof| self.map[j][dof])
             .unwrap_or(usize::MAX)
     }
 
     /// The water's force up, or its moment about x or y through the bridge's left end.
-    pub(super) fn water_resultant(&self, module: &PreparedModule, which: usize, l: f64) -> SparseRow {
-        let rows: Vec<SparseRow> = (0..self.map.len())
-            .map(|j| {
+    pub(super) fn water_resultant(&self, which: usize) -> SparseRow {
+        let modules = self.modules.each().enumerate();
+        let rows: Vec<SparseRow> = modules
+            .map(|(j, module)| {
                 let own = self.global(j, &module.water[which]);
                 if which < 2 {
                     return own;
                 }
                 // about y: the module's own moment and its force times its place
                 let force = self.global(j, &module.water[0]);
-                SparseRow::combine(&[(1.0, &own), (-(j as f64) * l, &force)])
+                SparseRow::combine(&[(1.0, &own), (-self.modules.left_m(j), &force)])
             })
             .collect();
         SparseRow::combine(&rows.iter().map(|r| (1.0, r)).collect::<Vec<_>>())
     }
 
     /// Surge, sway and yaw: a module's own, a yaw further along with the sway that it brings.
-    pub(super) fn horizontal_rigid(&self, module: &PreparedModule, l: f64) -> [Vec<f64>; 3] {
+    pub(super) fn horizontal_rigid(&self) -> [Vec<f64>; 3] {
         let mut motions = [(); 3].map(|()| vec![0.0; self.dofs]);
-        let [surge, sway, yaw] = &module.horizontal_rigid;
-        for (j, map) in self.map.iter().enumerate() {
+        for (j, (map, module)) in self.map.iter().zip(self.modules.each()).enumerate() {
+            let [surge, sway, yaw] = &module.horizontal_rigid;
             for (i, dof) in map.iter().enumerate() {
                 if let Some(dof) = *dof {
                     motions[0][dof] = surge[i];
                     motions[1][dof] = sway[i];
-                    motions[2][dof] = yaw[i] + j as f64 * l * sway[i];
+                    motions[2][dof] = yaw[i] + self.modules.left_m(j) * sway[i];
                 }
             }
         }
@@ -134,10 +136,10 @@ impl<'a> Row<'a> {
     }
 
     /// The held dofs of the bridge, each with the row of the stiffness that gives its reaction.
-    pub(super) fn held(&self, module: &PreparedModule, l: f64) -> Vec<HeldDof> {
-        let grid = &module.grid;
+    pub(super) fn held(&self) -> Vec<HeldDof> {
         let mut held = Vec::new();
-        for (j, map) in self.map.iter().enumerate() {
+        for (j, (map, module)) in self.map.iter().zip(self.modules.each()).enumerate() {
+            let grid = &module.grid;
             for side in [Side::Left, Side::Right] {
                 let ix = module.end_line(side);
                 for iy in 0..grid.y.len() {
@@ -148,9 +150,9 @@ impl<'a> Row<'a> {
                         if map[dof].is_some() {
                             continue;
                         }
-                        let row = self.global(j, &SparseRow(self.module.k.column(dof).collect()));
+                        let row = self.global(j, &SparseRow(module.k.column(dof).collect()));
                         held.push(HeldDof {
-                            x_m: j as f64 * l + grid.x[ix],
+                            x_m: self.modules.left_m(j) + grid.x[ix],
                             y_m: grid.y[iy],
                             vertical: direction == Z,
                             row,
@@ -163,20 +165,17 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Dofs of a module end that its support holds: z along the whole bottom edge, x and y at the hinge places.
-fn held_dofs(module: &PreparedModule, side: Side, held: &[Direction], hinges: &[usize]) -> Vec<usize> {
-    let ix = module.end_line(side);
-    let along_edge = |direction: usize, lines: Vec<usize>| -> Vec<usize> {
-        lines
-            .iter()
-            .filter_map(|&iy| module.dof(module.grid.bottom(ix, iy), direction))
-            .collect()
+/// Dofs of a module end that its support holds: z along the whole bottom edge, x and y at the places of `hinges_y_m`.
+fn held_dofs(module: &PreparedModule, side: Side, held: &[Direction], hinges_y_m: &[f64]) -> Vec<usize> {
+    let along_edge = |direction: usize, places: &[f64]| -> Vec<usize> {
+        let dof = |&y_m: &f64| module.end_dof(side, y_m, direction);
+        places.iter().filter_map(dof).collect()
     };
     held.iter()
         .flat_map(|direction| match direction {
-            Direction::X => along_edge(X, hinges.to_vec()),
-            Direction::Y => along_edge(Y, hinges.to_vec()),
-            Direction::Z => along_edge(Z, (0..module.grid.y.len()).collect()),
+            Direction::X => along_edge(X, hinges_y_m),
+            Direction::Y => along_edge(Y, hinges_y_m),
+            Direction::Z => along_edge(Z, &module.grid.y),
         })
         .collect()
 }

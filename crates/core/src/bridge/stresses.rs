@@ -4,21 +4,27 @@
 //! found, nor files.
 
 use super::meshed::{MeshedBridge, translations_first};
+use super::modules::Modules;
 use super::{BridgeDesign, BridgeError, PreparedModule};
 use crate::fem::{Beam, BeamForceMatrix, BeamForces, MeshBeam, MeshShell, Shell, ShellStress, ShellStressMatrix};
 use faer::Mat;
+use std::borrow::Borrow;
 
-/// What makes stresses of the motion of a bridge: the matrices of a module's elements, which all modules share.
+/// What makes stresses of the motion of a bridge: the matrices of the elements of each variant of its modules.
 #[derive(Debug)]
 pub struct StressRecovery {
-    /// Nodes of a module.
-    nodes: usize,
+    variants: Vec<ModuleElements>,
+    /// Of each variant what the inertia of condensed dofs adds to the motion of the nodes; none where nothing is condensed.
+    inertial: Option<Vec<Mat<f64>>>,
+}
+
+/// The elements of a module.
+#[derive(Debug)]
+struct ModuleElements {
     /// Each shell's nodes and its stress at the centre.
     shells: Vec<([usize; 4], ShellStressMatrix)>,
     /// Each beam's nodes and its forces at the middle.
     beams: Vec<([usize; 2], BeamForceMatrix)>,
-    /// What the inertia of condensed dofs adds to the motion of the nodes; none where nothing is condensed.
-    inertial: Option<Mat<f64>>,
 }
 
 /// Stresses of a bridge at one time.
@@ -30,12 +36,8 @@ pub struct BridgeStresses {
     pub beams: Vec<BeamForces>,
 }
 
-impl StressRecovery {
-    /// Of the bridges of a module, prepared from `design`.
-    ///
-    /// # Errors
-    /// [`BridgeError::Fem`], which the module would have met already.
-    pub fn new(design: &BridgeDesign, module: &PreparedModule) -> Result<Self, BridgeError> {
+impl ModuleElements {
+    fn of(module: &PreparedModule) -> Result<Self, BridgeError> {
         let mesh = &module.mesh;
         let shell = |(number, shell): (usize, &MeshShell)| {
             let element = Shell::new(number, &shell.nodes.map(|node| mesh.place(node)), shell.section)?;
@@ -46,22 +48,37 @@ impl StressRecovery {
             let element = Beam::new(number, &ends, &beam.up, beam.section)?;
             Ok((beam.nodes.map(|node| node.0), element.force_matrix()))
         };
-        let inertial = module.inertial_correction(design)?;
+        let (shells, beams) = (mesh.shells.iter().enumerate(), mesh.beams.iter().enumerate());
         Ok(Self {
-            nodes: mesh.nodes.len(),
-            shells: mesh
-                .shells
-                .iter()
-                .enumerate()
-                .map(shell)
-                .collect::<Result<_, BridgeError>>()?,
-            beams: mesh
-                .beams
-                .iter()
-                .enumerate()
-                .map(beam)
-                .collect::<Result<_, BridgeError>>()?,
-            inertial: inertial.map(|matrix| translations_first(matrix.as_ref())),
+            shells: shells.map(shell).collect::<Result<_, BridgeError>>()?,
+            beams: beams.map(beam).collect::<Result<_, BridgeError>>()?,
+        })
+    }
+}
+
+impl StressRecovery {
+    /// Of the bridges of a module, prepared from `design`.
+    ///
+    /// # Errors
+    /// [`BridgeError::Fem`], which the module would have met already.
+    pub fn new(design: &BridgeDesign, module: &PreparedModule) -> Result<Self, BridgeError> {
+        Self::of_kinds(design, &[module])
+    }
+
+    /// Of the bridges of the modules prepared from the variants of `design`.
+    ///
+    /// # Errors
+    /// As [`StressRecovery::new`], and [`BridgeError::Design`] where these are not its modules.
+    pub fn of_kinds<M: Borrow<PreparedModule>>(design: &BridgeDesign, prepared: &[M]) -> Result<Self, BridgeError> {
+        let modules = Modules::new(design, prepared)?;
+        let variants = || modules.variants.iter().zip(&modules.designs);
+        let inertial: Vec<Option<Mat<f64>>> = variants()
+            .map(|(module, design)| module.inertial_correction(design))
+            .collect::<Result<_, _>>()?;
+        let ordered = inertial.iter().map(|matrix| matrix.as_ref().map(|m| translations_first(m.as_ref())));
+        Ok(Self {
+            variants: variants().map(|(module, _)| ModuleElements::of(module)).collect::<Result<_, _>>()?,
+            inertial: ordered.collect(),
         })
     }
 
@@ -75,24 +92,27 @@ impl StressRecovery {
     pub fn stresses(&self, meshed: &MeshedBridge, u: &[f64], inertial: Option<&[f64]>) -> BridgeStresses {
         let [moved, turned] = [0, 3].map(|first| {
             let mut own = meshed.triples(u, first);
-            if let (Some(matrix), Some(inertial)) = (&self.inertial, inertial) {
-                let added = meshed.triples_by(matrix, inertial, first);
+            if let (Some(matrices), Some(inertial)) = (&self.inertial, inertial) {
+                let added = meshed.triples_by(matrices, inertial, first);
                 let components = own.iter_mut().flatten().zip(added.iter().flatten());
                 components.for_each(|(own, added)| *own += added);
             }
             own
         });
-        let modules = moved.chunks_exact(self.nodes).zip(turned.chunks_exact(self.nodes));
         let mut found = BridgeStresses {
             shells: Vec::with_capacity(meshed.shells.len()),
             beams: Vec::with_capacity(meshed.beams.len()),
         };
-        for module in modules {
+        let (mut moved, mut turned) = (&moved[..], &turned[..]);
+        for (variant, nodes) in meshed.nodes_of_modules() {
+            let module = (&moved[..nodes], &turned[..nodes]);
+            (moved, turned) = (&moved[nodes..], &turned[nodes..]);
             let shell =
                 |(nodes, matrix): &([usize; 4], ShellStressMatrix)| Shell::stress(matrix, &motion(nodes, module));
             let beam = |(nodes, matrix): &([usize; 2], BeamForceMatrix)| Beam::forces(matrix, &motion(nodes, module));
-            found.shells.extend(self.shells.iter().map(shell));
-            found.beams.extend(self.beams.iter().map(beam));
+            let elements = &self.variants[variant];
+            found.shells.extend(elements.shells.iter().map(shell));
+            found.beams.extend(elements.beams.iter().map(beam));
         }
         found
     }

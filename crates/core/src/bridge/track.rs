@@ -3,6 +3,7 @@
 //! Knows bilinear deck influence and its slope. Does not know weights or time.
 
 use super::Bridge;
+use super::assembly::ModulePlace;
 use crate::fem::SparseRow;
 
 /// The deck's nodes as columns, line after line across: column `line * stations + station`, stations from left to right,
@@ -11,10 +12,24 @@ use crate::fem::SparseRow;
 pub struct Track {
     /// Dof of the bridge behind each column: the node's z.
     dofs: Vec<usize>,
-    modules: usize,
-    module_length_m: f64,
-    lines_x: Vec<f64>,
+    modules: Vec<TrackModule>,
+    /// Length of the modules where all have one `[m]`.
+    common_length_m: Option<f64>,
+    length_m: f64,
+    stations: usize,
     lines_y: Vec<f64>,
+}
+
+/// The stations of a module.
+#[derive(Debug, Clone)]
+struct TrackModule {
+    /// Place of its left end, and its length `[m]`.
+    left_m: f64,
+    length_m: f64,
+    /// The first of its stations.
+    first: usize,
+    /// Places of its stations from its left end `[m]`.
+    lines_x: Vec<f64>,
 }
 
 impl Track {
@@ -25,18 +40,32 @@ impl Track {
         let dofs = (0..lines_y.len())
             .flat_map(|line| stations().map(move |across| across[line]))
             .collect();
+        let mut stations = 0;
+        let module = |of: &ModulePlace| {
+            stations += of.lines_x.len();
+            TrackModule {
+                left_m: of.left_m,
+                length_m: of.length_m,
+                first: stations - of.lines_x.len(),
+                lines_x: of.lines_x.clone(),
+            }
+        };
+        let modules: Vec<TrackModule> = bridge.modules.iter().map(module).collect();
+        let common_m = modules[0].length_m;
+        let alike = modules.iter().all(|module| module.length_m.to_bits() == common_m.to_bits());
         Self {
             dofs,
-            modules: bridge.deck_z.len(),
-            module_length_m: bridge.design().module.length_m,
-            lines_x: bridge.lines_x.clone(),
+            modules,
+            common_length_m: alike.then_some(common_m),
+            length_m: bridge.design().length_m(),
+            stations,
             lines_y,
         }
     }
 
     /// Length of the bridge `[m]`.
     pub fn length_m(&self) -> f64 {
-        self.modules as f64 * self.module_length_m
+        self.length_m
     }
 
     /// Number of lines across.
@@ -46,7 +75,7 @@ impl Track {
 
     /// Columns of a line.
     pub(crate) fn stations(&self) -> usize {
-        self.modules * self.lines_x.len()
+        self.stations
     }
 
     /// Number of columns.
@@ -95,15 +124,12 @@ impl Track {
         if !(0.0..=self.length_m()).contains(&x_m) {
             return None;
         }
-        let module = ((x_m / self.module_length_m) as usize).min(self.modules - 1);
-        let in_module_m = x_m - module as f64 * self.module_length_m;
-        let (ix, fraction, length_m) = interval(&self.lines_x, in_module_m);
-        Some(DeckCell {
-            station: module * self.lines_x.len() + ix,
-            fraction,
-            length_m,
-            in_module_m,
-        })
+        let at = match self.common_length_m {
+            Some(length_m) => (x_m / length_m) as usize,
+            None => self.modules.partition_point(|module| module.left_m <= x_m) - 1,
+        };
+        let module = &self.modules[at.min(self.modules.len() - 1)];
+        Some(module.cell(x_m - module.left_m))
     }
 
     /// As [`Self::cell`], at a joint the end of the module on the left.
@@ -113,13 +139,9 @@ impl Track {
         if cell.in_module_m > 0.0 || cell.station == 0 {
             return Some(cell);
         }
-        let (ix, fraction, length_m) = interval(&self.lines_x, self.module_length_m);
-        Some(DeckCell {
-            station: cell.station - self.lines_x.len() + ix,
-            fraction,
-            length_m,
-            in_module_m: self.module_length_m,
-        })
+        let at = self.modules.partition_point(|module| module.first < cell.station) - 1;
+        let module = &self.modules[at];
+        Some(module.cell(module.length_m))
     }
 
     /// The two lines beside `y_m` with their shares.
@@ -130,13 +152,35 @@ impl Track {
 
     /// Shortest distance between stations of a module `[m]`.
     pub(crate) fn shortest_m(&self) -> f64 {
-        let lengths = self.lines_x.windows(2).map(|w| w[1] - w[0]);
+        let modules = self.modules.iter();
+        let lengths = modules.flat_map(|module| module.lines_x.windows(2).map(|w| w[1] - w[0]));
         lengths.fold(f64::INFINITY, f64::min)
     }
 
-    /// Length of a module `[m]`.
-    pub fn module_length_m(&self) -> f64 {
-        self.module_length_m
+    /// Most stations that a module has.
+    pub(crate) fn most_stations(&self) -> usize {
+        self.modules.iter().map(|module| module.lines_x.len()).max().unwrap_or(0)
+    }
+
+    /// Length of the shortest module `[m]`.
+    pub(crate) fn shortest_module_m(&self) -> f64 {
+        let lengths = self.modules.iter().map(|module| module.length_m);
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl TrackModule {
+    /// The interval between two stations that holds a place of the module.
+    #[inline(always)]
+    fn cell(&self, in_module_m: f64) -> DeckCell {
+        let (ix, fraction, length_m) = interval(&self.lines_x, in_module_m);
+        DeckCell {
+            station: self.first + ix,
+            fraction,
+            length_m,
+            in_module_m,
+            module_m: self.length_m,
+        }
     }
 }
 
@@ -151,6 +195,8 @@ pub(crate) struct DeckCell {
     pub length_m: f64,
     /// Distance of the place from the left end of its module `[m]`.
     pub in_module_m: f64,
+    /// Length of that module `[m]`.
+    pub module_m: f64,
 }
 
 impl DeckCell {

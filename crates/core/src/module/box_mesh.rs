@@ -76,8 +76,7 @@ impl<'a> Builder<'a> {
         let longest = l / design.mesh.elements_along as f64;
         let x = divide(x, |length| (length / longest - 1e-6).ceil() as usize);
         let mut y = vec![-half, half, 0.0];
-        y.extend(&design.longitudinal_walls.y_m);
-        y.extend(&design.stiffeners.longitudinal_y_m);
+        y.extend(design.lines_across_m());
         y.extend(extra_y);
         let y = divide(y, |_| design.mesh.elements_between_lines);
         let over = design.mesh.elements_over_depth;
@@ -254,6 +253,7 @@ mod tests {
                 x_m: walls.iter().map(|w| 1.0 + w.abs()).collect(),
             },
             stiffeners: crate::module::Stiffeners::default(),
+            lines_y_m: Vec::new(),
             material: Material {
                 youngs_modulus_pa: 2e11,
                 poissons_ratio: 0.3,

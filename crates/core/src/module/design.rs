@@ -34,6 +34,9 @@ pub struct ModuleDesign {
     /// Beams on the plates.
     #[serde(default)]
     pub stiffeners: Stiffeners,
+    /// Lines across of the mesh beside those of walls, stiffeners, hinges and connectors `[m]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lines_y_m: Vec<f64>,
     /// Material of plates and beams.
     pub material: Material,
     /// How finely the box is meshed.
@@ -150,16 +153,41 @@ impl ModuleDesign {
             Some(self.transverse_walls.thickness_m),
         )?;
         self.stiffeners.check(self.length_m, half)?;
+        lines("", "lines_y_m", &self.lines_y_m, -half, half, None)?;
         self.material.check().map_err(|e| e.under("material"))?;
         self.mesh.check().map_err(|e| e.under("mesh"))
+    }
+
+    /// Lines across of its walls, its stiffeners and its mesh `[m]`; the mesh has more at the edges and the centre.
+    pub(crate) fn lines_across_m(&self) -> impl Iterator<Item = f64> {
+        let stiffened = self.stiffeners.longitudinal_y_m.iter();
+        self.longitudinal_walls.y_m.iter().chain(stiffened).chain(&self.lines_y_m).copied()
+    }
+
+    /// Its mirror image along x, ends exchanged; none where that is the box itself.
+    pub(crate) fn mirrored(&self) -> Option<Self> {
+        let image = |places: &[f64]| places.iter().rev().map(|x_m| self.length_m - x_m).collect::<Vec<_>>();
+        let is_own_image = |places: &[f64]| {
+            let own = |x_m: &f64| places.iter().any(|place| (place - x_m).abs() <= SAME_PLACE_M);
+            image(places).iter().all(own)
+        };
+        let (walls, beams) = (&self.transverse_walls.x_m, &self.stiffeners.transverse_x_m);
+        if is_own_image(walls) && is_own_image(beams) {
+            return None;
+        }
+        let mut mirrored = self.clone();
+        mirrored.transverse_walls.x_m = image(walls);
+        mirrored.stiffeners.transverse_x_m = image(beams);
+        Some(mirrored)
     }
 }
 
 fn lines(of: &str, key: &str, places: &[f64], from: f64, to: f64, thickness: Option<f64>) -> Result<(), InvalidInput> {
+    let path = if of.is_empty() { key.to_owned() } else { format!("{of}.{key}") };
     for (i, &place) in places.iter().enumerate() {
-        within(&format!("{of}.{key}[{i}]"), place, from - 1e-9, to + 1e-9)?;
+        within(&format!("{path}[{i}]"), place, from - 1e-9, to + 1e-9)?;
     }
-    apart(&format!("{of}.{key}"), places)?;
+    apart(&path, places)?;
     match thickness {
         Some(t) if !places.is_empty() => positive(&format!("{of}.thickness_m"), t).map(|_| ()),
         _ => Ok(()),

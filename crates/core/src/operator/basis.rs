@@ -7,12 +7,13 @@ use super::cutoff::{Cutoff, CutoffJudge};
 use super::persist::{NumberReader, OperatorParts};
 use super::pin_rows::{PinRows, pin_places, pin_rows};
 use super::residual_rows::{ResidualRows, dot, residual_of_deck};
-use crate::bridge::{Bridge, Track};
+use crate::bridge::{Bridge, ModulePlace, Track};
 use crate::fem::{EigenPairs, Factor, FemError, ModeSearch, ONE_SEARCH, SparseRow, SymmetricMatrix};
 use crate::stop::Stop;
 use faer::Mat;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::ops::Range;
 use thiserror::Error;
 
 /// Shift of eigenproblem and flexibilities `[1/s^2]`, the square of 0.1 Hz: a bridge that nothing holds along has an operator
@@ -51,7 +52,7 @@ pub(super) struct Sizes {
     pub joint_connectors: usize,
     /// Observed rows that are followed through every step.
     pub observed: usize,
-    /// Stations of the deck's edges inside modules, of each module.
+    /// Stations of the deck's edges inside modules, of all modules.
     pub inside: usize,
     /// Modules.
     pub modules: usize,
@@ -67,7 +68,7 @@ impl Sizes {
 
     /// Of these the ones before the pins.
     pub(super) fn before_pins(&self) -> usize {
-        self.followed() + self.inside * self.modules
+        self.followed() + self.inside
     }
 
     /// Of these the ones that are followed through every step.
@@ -84,6 +85,18 @@ pub(super) struct Observed {
     pub bottom_corners: usize,
     pub places: usize,
     pub springs: usize,
+}
+
+/// What an operator knows of a module.
+#[derive(Debug, Clone)]
+pub(super) struct OperatedModule {
+    /// Rows of its edges among those inside all modules.
+    pub inside: Range<usize>,
+    /// Place of each of its stations but those at its ends, 0 to 1.
+    pub places: Vec<f64>,
+    /// How much its draft and its freeboard are above the least of a module `[m]`; without bound where it has none.
+    pub draft_beyond_m: f64,
+    pub freeboard_beyond_m: f64,
 }
 
 /// Modes of the connector-free bridge up to a cut-off and the residual flexibilities among connectors, deck and observed
@@ -112,8 +125,8 @@ pub struct BridgeOperator {
     pub(super) r_inside_b: DMatrix<f64>,
     /// For each module the largest `sqrt(sum of phi^2 / omega^2)`, `sqrt(R)` and influence of the deck on these rows.
     pub(super) inside_bounds: Vec<[f64; 3]>,
-    /// Place of each station inside a module, 0 to 1.
-    pub(super) places: Vec<f64>,
+    /// Where each module's rows stand among these.
+    pub(super) of_modules: Vec<OperatedModule>,
     /// The pins, where they are followed.
     pub(super) pins: PinRows,
     /// For each track column its influence: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules, at the pins.
@@ -121,7 +134,7 @@ pub struct BridgeOperator {
     /// Residual flexibility of the deck's nodes among each other, for each track column every line at the stations not
     /// farther than [`BridgeOperator::near`]; farther ones are left out.
     pub(super) r_deck: Vec<f64>,
-    /// Stations of a module.
+    /// Most stations of a module.
     pub(super) near: usize,
     pub(super) track: Track,
     pub(super) breadth_m: f64,
@@ -187,13 +200,14 @@ impl BridgeOperator {
         let lambda = &pairs.lambda[..m];
         let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
         let (rows, observed) = observed(bridge, &followed.places_x_m);
-        let (places, inside) = inside(bridge);
+        let of_modules = operated_modules(bridge);
+        let inside = inside(bridge, &of_modules);
         let mut sizes = Sizes {
             modes: m,
             connectors: connectors.len(),
             joint_connectors: bridge.joint_connectors,
             observed: observed.len(),
-            inside: inside.len() / design.modules,
+            inside: inside.len(),
             modules: design.modules,
             pins: 0,
         };
@@ -206,7 +220,7 @@ impl BridgeOperator {
             stop,
         )?;
         let mut deck = all.deck(&track)?;
-        let inside_bounds = inside_bounds(&all, lambda, &sizes, &deck);
+        let inside_bounds = inside_bounds(&all, lambda, (&sizes, &of_modules), &deck);
         let mut pins = PinRows::default();
         if followed.pins {
             let (rows, of_deck) = pin_rows(bridge, solver, &track, (lambda, SHIFT), (shapes, &all), stop)?;
@@ -215,7 +229,7 @@ impl BridgeOperator {
             deck = beside(&deck, width, &of_deck, sizes.pins);
             pins = rows;
         }
-        let near = track.stations() / design.modules;
+        let near = track.most_stations();
         let r_bb = all.among(0, nc, 0, nc);
         Ok(Self {
             sizes,
@@ -233,7 +247,7 @@ impl BridgeOperator {
             b: all.phi.rows(0, nc).into_owned(),
             v: all.phi.rows(nc, nv).into_owned(),
             inside: all.phi.rows(nc + nv, ni).into_owned(),
-            places,
+            of_modules,
             deck,
             track,
         })
@@ -288,7 +302,7 @@ impl BridgeOperator {
             self.cutoff.error,
             self.breadth_m,
         ];
-        let lists: [&[f64]; 14] = [
+        let lists: [&[f64]; 13] = [
             &cutoff,
             &self.omega2,
             self.b.as_slice(),
@@ -297,7 +311,6 @@ impl BridgeOperator {
             self.r_vb.as_slice(),
             self.inside.as_slice(),
             self.r_inside_b.as_slice(),
-            &self.places,
             &self.deck,
             &self.r_deck,
             self.pins.stiffness.as_slice(),
@@ -316,7 +329,9 @@ impl BridgeOperator {
         let (mut sizes, rows, near) = counts(parts)?;
         sizes.joint_connectors = bridge.joint_connectors;
         let track = Track::new(bridge);
-        if !fits(bridge, &sizes, &rows) || near != track.stations() / sizes.modules {
+        let of_modules = operated_modules(bridge);
+        let inside = of_modules.last().map_or(0, |module| module.inside.end);
+        if !fits(bridge, &sizes, &rows) || near != track.most_stations() || sizes.inside != inside {
             return None;
         }
         let Sizes {
@@ -325,7 +340,6 @@ impl BridgeOperator {
             observed,
             ..
         } = sizes;
-        let inside = sizes.inside * sizes.modules;
         let nodes = track.lines() * track.stations();
         let mut r = NumberReader::new(&parts.numbers);
         let &[frequency_hz, tolerance, error, breadth_m] = &r.list(4)?[..] else {
@@ -347,7 +361,7 @@ impl BridgeOperator {
             r_vb: r.matrix(observed, connectors)?,
             inside: r.matrix(inside, modes)?,
             r_inside_b: r.matrix(inside, connectors)?,
-            places: r.list(sizes.inside / 2)?,
+            of_modules,
             deck: r.list(nodes * sizes.influence())?,
             r_deck: r.list(nodes * track.lines() * (2 * near + 1))?,
             pins: PinRows {
@@ -432,14 +446,19 @@ fn beside(left: &[f64], width: usize, right: &[f64], more: usize) -> Vec<f64> {
 }
 
 /// Bounds of the edges inside each module, see [`BridgeOperator::inside_bounds`].
-fn inside_bounds(all: &ResidualRows<'_>, lambda: &[f64], sizes: &Sizes, deck: &[f64]) -> Vec<[f64; 3]> {
+fn inside_bounds(
+    all: &ResidualRows<'_>,
+    lambda: &[f64],
+    (sizes, modules): (&Sizes, &[OperatedModule]),
+    deck: &[f64],
+) -> Vec<[f64; 3]> {
     let first = sizes.connectors + sizes.observed;
     let modal = |i: usize| {
         let of_mode = |(k, lambda): (usize, &f64)| all.phi[(first + i, k)].powi(2) / lambda.max(1.0);
         lambda.iter().enumerate().map(of_mode).sum::<f64>()
     };
-    let of_module = |j: usize| {
-        let own = j * sizes.inside..(j + 1) * sizes.inside;
+    let of_module = |module: &OperatedModule| {
+        let own = module.inside.clone();
         let influence = deck
             .chunks_exact(sizes.influence())
             .flat_map(|r| &r[sizes.followed()..][own.clone()]);
@@ -450,13 +469,13 @@ fn inside_bounds(all: &ResidualRows<'_>, lambda: &[f64], sizes: &Sizes, deck: &[
             influence.fold(0.0, |most, r| r.abs().max(most)),
         ]
     };
-    (0..sizes.modules).map(of_module).collect()
+    modules.iter().map(of_module).collect()
 }
 
 /// The rows that are followed through every step: positions, deck corners, where a draft is given bottom corners, places,
 /// springs of banks.
 fn observed(bridge: &Bridge, places_x_m: &[f64]) -> (Observed, Vec<SparseRow>) {
-    let bottom: &[SparseRow] = if bridge.design().draft_m.is_some() {
+    let bottom: &[SparseRow] = if bridge.least_draft_m().is_some() {
         &bridge.bottom_corners
     } else {
         &[]
@@ -509,22 +528,39 @@ fn judged_rows(bridge: &Bridge, track: &Track) -> Vec<SparseRow> {
     rows
 }
 
+/// Where the rows of each module stand, and what it has beyond other modules.
+fn operated_modules(bridge: &Bridge) -> Vec<OperatedModule> {
+    let (draft_m, freeboard_m) = (bridge.least_draft_m(), bridge.least_freeboard_m());
+    let beyond = |own: Option<f64>, least: Option<f64>| own.zip(least).map_or(f64::INFINITY, |(own, least)| own - least);
+    let mut end = 0;
+    let module = |of: &ModulePlace| {
+        let between = &of.lines_x[1..of.lines_x.len() - 1];
+        let first = end;
+        end += 2 * between.len();
+        OperatedModule {
+            inside: first..end,
+            places: between.iter().map(|x| x / of.length_m).collect(),
+            draft_beyond_m: beyond(of.draft_m, draft_m),
+            freeboard_beyond_m: beyond(of.freeboard_m, freeboard_m),
+        }
+    };
+    bridge.modules.iter().map(module).collect()
+}
+
 /// Stations of the deck's edges inside modules, module after module, right and left edge in turn, each measured from the
-/// straight line between its module's corners; and their places in a module.
-fn inside(bridge: &Bridge) -> (Vec<f64>, Vec<SparseRow>) {
-    let design = bridge.design();
-    let along = bridge.sections.len() / design.modules;
-    let l = design.module.length_m;
-    let places: Vec<f64> = bridge.sections[..along].iter().map(|(x, _)| x / l).collect();
-    let mut rows = Vec::new();
-    for j in 0..design.modules {
-        for (ix, place) in places.iter().enumerate().take(along - 1).skip(1) {
+/// straight line between its module's corners.
+fn inside(bridge: &Bridge, modules: &[OperatedModule]) -> Vec<SparseRow> {
+    let (mut rows, mut first) = (Vec::new(), 0);
+    for module in modules {
+        let last = module.places.len() + 1;
+        for (ix, place) in (1..).zip(&module.places) {
             for side in 0..2 {
-                let edge = |ix: usize| &bridge.edges[2 * (j * along + ix) + side];
-                let straight = [(place - 1.0, edge(0)), (-place, edge(along - 1)), (1.0, edge(ix))];
+                let edge = |ix: usize| &bridge.edges[2 * (first + ix) + side];
+                let straight = [(place - 1.0, edge(0)), (-place, edge(last)), (1.0, edge(ix))];
                 rows.push(SparseRow::combine(&straight));
             }
         }
+        first += last + 1;
     }
-    (places[1..along - 1].to_vec(), rows)
+    rows
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows the observed rows. Does not know how the motion came about.
 
-use super::basis::{BridgeOperator, Observed};
+use super::basis::{BridgeOperator, Observed, OperatedModule};
 use super::connectors::Connectors;
 use super::energy::Energy;
 use super::lane::Lane;
@@ -45,13 +45,16 @@ pub(super) struct Envelope {
     observed: LaneArray,
     inside: LaneArray,
     breadth_m: f64,
+    /// Of each module how much its freeboard and its draft are above the least `[m]`.
+    beyond_m: Vec<[f64; 2]>,
 }
 
 impl Envelope {
     pub(super) fn new(operator: &BridgeOperator, lanes: usize) -> Self {
         let of = |rows: usize| LaneArray::new(rows, lanes);
         let (rows, sizes) = (operator.rows, &operator.sizes);
-        let joints = sizes.modules - 1;
+        let (joints, modules) = (sizes.modules - 1, &operator.of_modules);
+        let beyond_m = |module: &OperatedModule| [module.freeboard_beyond_m, module.draft_beyond_m];
         let peaks = 2 * (rows.positions + joints + sizes.joint_connectors);
         Self {
             rows,
@@ -68,8 +71,9 @@ impl Envelope {
             of_module: of(sizes.modules),
             motion: of(sizes.modes + sizes.connectors),
             observed: of(sizes.observed),
-            inside: of(sizes.inside),
+            inside: of(modules.iter().map(|module| module.inside.len()).max().unwrap_or(0)),
             breadth_m: operator.breadth_m,
+            beyond_m: modules.iter().map(beyond_m).collect(),
         }
     }
 
@@ -188,7 +192,9 @@ impl Envelope {
         let mut roll = self.roll.vectors::<S>()[0];
         let mut corner = self.corner.vectors::<S>()[0];
         let of_corners = observed[positions..][..corners].chunks_exact(4);
-        for (module, ends) in self.of_module.vectors_mut::<S>().iter_mut().zip(of_corners) {
+        let modules = self.of_module.vectors_mut::<S>().iter_mut().zip(&self.beyond_m);
+        let edge = &mut self.edge.vectors_mut::<S>()[0];
+        for ((module, [freeboard, _]), ends) in modules.zip(of_corners) {
             let mut down = o.neg(ends[0]);
             for end in ends.chunks_exact(2) {
                 roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
@@ -197,15 +203,18 @@ impl Envelope {
                 }
             }
             *module = down;
-            corner = o.max(corner, down);
+            *edge = o.max(*edge, down);
+            corner = o.max(corner, o.sub(down, o.splat(*freeboard)));
         }
         self.roll.vectors_mut::<S>()[0] = roll;
         self.corner.vectors_mut::<S>()[0] = corner;
-        let edge = &mut self.edge.vectors_mut::<S>()[0];
-        *edge = o.max(*edge, corner);
         let bottom = &mut self.bottom.vectors_mut::<S>()[0];
-        for &z in &observed[positions + corners..][..bottom_corners] {
-            *bottom = o.max(*bottom, z);
+        let of_bottom = observed[positions + corners..][..bottom_corners].chunks_exact(4);
+        for ([_, draft], ends) in self.beyond_m.iter().zip(of_bottom) {
+            let draft = o.splat(*draft);
+            for &z in ends {
+                *bottom = o.max(*bottom, o.sub(z, draft));
+            }
         }
     }
 
@@ -244,7 +253,8 @@ impl Envelope {
             lanes_mut::<S>(&mut lowests)[0] = lowest;
             let is_lower = |edge: &LaneArray, lane: usize| lowests[lane] > edge.at(0, lane);
             if (0..each.len()).any(|lane| each[lane].crossing.is_some() && is_lower(&self.edge, lane)) {
-                let inside = self.inside.vectors_mut::<S>();
+                let rows = operator.of_modules[module].inside.len();
+                let inside = &mut self.inside.vectors_mut::<S>()[..rows];
                 constants.panels.inside[module].multiply(o, self.motion.vectors::<S>(), inside);
             }
             for (lane, of) in each.iter().enumerate() {
@@ -262,10 +272,11 @@ impl Envelope {
             return;
         };
         let corner = |i: usize| self.observed.at(self.rows.positions + 4 * module + i, lane);
-        let first = sizes.followed() + module * sizes.inside;
+        let of_module = &operator.of_modules[module];
+        let first = sizes.followed() + of_module.inside.start;
         let wheels = &crossing.wheels;
-        for i in 0..sizes.inside {
-            let (place, side) = (operator.places[i / 2], i % 2);
+        for i in 0..of_module.inside.len() {
+            let (place, side) = (of_module.places[i / 2], i % 2);
             let straight = (1.0 - place) * corner(side) + place * corner(2 + side);
             let mut z = straight + self.inside.at(i, lane);
             for (lines, forces) in [(&wheels.weights, &of.weights), (&wheels.masses, &of.mass_forces)] {
@@ -338,9 +349,9 @@ pub(crate) struct LanePeaks {
     pub forces: Vec<ForcePeaks>,
     /// Largest downward deflection of the deck's edges `[m]`.
     pub edge_m: f64,
-    /// Largest downward deflection of the deck's corners alone `[m]`.
+    /// Largest downward deflection of the deck's corners alone, less what a module's freeboard is above the least `[m]`.
     pub corner_m: f64,
-    /// Largest height of a bottom corner `[m]`; 0 where none is followed.
+    /// Largest height of a bottom corner, less what a module's draft is above the least `[m]`; 0 where none is followed.
     pub bottom_m: f64,
     /// Largest roll of a module end `[rad]`.
     pub roll_rad: f64,

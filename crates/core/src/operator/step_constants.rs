@@ -2,7 +2,7 @@
 //!
 //! Knows the scheme, damping, and the small flexibilities of a step. Does not know gaps, speeds or loads.
 
-use super::basis::BridgeOperator;
+use super::basis::{BridgeOperator, OperatedModule};
 use super::panel::Panel;
 use crate::scheme::{Arithmetic, Rayleigh, Scheme};
 use nalgebra::DMatrix;
@@ -124,13 +124,16 @@ impl Panels {
                 }
             })
         };
-        let of_module = |j: usize| with_residual(&o.inside, &o.r_inside_b, j * o.sizes.inside, o.sizes.inside);
+        let of_module = |module: &OperatedModule| {
+            let rows = &module.inside;
+            with_residual(&o.inside, &o.r_inside_b, rows.start, rows.len())
+        };
         Self {
             b: Panel::new(nc, m, |i, k| o.b[(i, k)]),
             b_t: Panel::new(m, nc, |k, i| o.b[(i, k)]),
             r_bb: Panel::new(nc, nc, |i, j| o.r_bb[(i, j)]),
             v: with_residual(&o.v, &o.r_vb, 0, o.sizes.observed),
-            inside: (0..o.sizes.modules).map(of_module).collect(),
+            inside: o.of_modules.iter().map(of_module).collect(),
             pins: o.pins.panel(),
         }
     }

@@ -223,7 +223,7 @@ fn band(track: &Track, vehicle: &Vehicle) -> usize {
         });
     let span = front - rear;
     let stations = (span / track.shortest_m()).ceil() as usize + 2;
-    let joints = (span / track.module_length_m()).floor() as usize + 1;
+    let joints = (span / track.shortest_module_m()).floor() as usize + 1;
     (stations + joints).min(track.stations() - 1)
 }
 

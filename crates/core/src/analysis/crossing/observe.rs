@@ -56,8 +56,8 @@ impl<'a> Observer<'a> {
             edge: 0.0,
             roll: 0.0,
             min_contact_force_n: f64::INFINITY,
-            bottom_emerged: design.draft_m.map(|_| false),
-            deck_submerged: design.freeboard_m.map(|_| false),
+            bottom_emerged: bridge.least_draft_m().map(|_| false),
+            deck_submerged: bridge.least_freeboard_m().map(|_| false),
             statistics: Statistics::default(),
             energy: EnergyBalance::default(),
             places: record.places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect(),
@@ -108,15 +108,9 @@ impl<'a> Observer<'a> {
         for row in &self.bridge.rolls {
             self.roll = self.roll.max(row.dot(u).abs());
         }
-        let design = self.bridge.design();
-        if let Some(draft) = design.draft_m {
-            let emerged = self.bridge.bottom_corners.iter().any(|row| row.dot(u) > draft);
-            self.bottom_emerged = self.bottom_emerged.map(|before| before || emerged);
-        }
-        if let Some(freeboard) = design.freeboard_m {
-            let submerged = self.bridge.deck_corners.iter().any(|row| -row.dot(u) > freeboard);
-            self.deck_submerged = self.deck_submerged.map(|before| before || submerged);
-        }
+        let ever = |before: Option<bool>, now: Option<bool>| before.zip(now).map(|(before, now)| before || now);
+        self.bottom_emerged = ever(self.bottom_emerged, self.bridge.bottom_emerges(u));
+        self.deck_submerged = ever(self.deck_submerged, self.bridge.deck_submerges(u));
         for (axle, &(weight, whole)) in now.load.axles.iter().enumerate() {
             if whole {
                 let riders = now.load.riders.iter().zip(&now.inertia);

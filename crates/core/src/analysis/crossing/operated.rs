@@ -18,6 +18,9 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub struct OperatorSolver {
     design: BridgeDesign,
+    /// Least draft and freeboard of a module `[m]`.
+    least_draft_m: Option<f64>,
+    least_freeboard_m: Option<f64>,
     banks: Vec<BankPart>,
     /// Position number and place across of each link `[m]`.
     link_places: Vec<(usize, f64)>,
@@ -69,6 +72,8 @@ impl OperatorSolver {
     pub fn new(bridge: &Bridge, operator: &Arc<BridgeOperator>, settings: &CrossingSettings) -> Self {
         Self {
             design: bridge.design().clone(),
+            least_draft_m: bridge.least_draft_m(),
+            least_freeboard_m: bridge.least_freeboard_m(),
             banks: bridge.bank_parts(),
             link_places: bridge.connectors.iter().map(|link| (link.joint, link.y_m)).collect(),
             operator: Arc::clone(operator),
@@ -335,8 +340,8 @@ impl<C: StepClock> Crew<'_, C> {
             peak_edge_deflection_m: peaks.edge_m,
             peak_roll_rad: peaks.roll_rad,
             min_contact_force_n: peaks.min_contact_force_n,
-            bottom_emerged: design.draft_m.map(|draft| peaks.bottom_m > draft),
-            deck_submerged: design.freeboard_m.map(|board| peaks.corner_m > board),
+            bottom_emerged: self.solver.least_draft_m.map(|draft| peaks.bottom_m > draft),
+            deck_submerged: self.solver.least_freeboard_m.map(|board| peaks.corner_m > board),
             statistics: *self.lanes.statistics(lane),
             energy: peaks.energy,
             recorded: of.recorder.finish(),

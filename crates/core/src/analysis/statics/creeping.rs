@@ -5,9 +5,10 @@
 
 use super::{NEWTON_LIMIT, StaticCase, brought_on};
 use crate::analysis::AnalysisError;
-use crate::bridge::{Bridge, Load};
+use crate::bridge::{Bridge, BridgeDesign, Load};
 use crate::contact::WarmContact;
 use crate::flexibility::Flexibility;
+use crate::module::ModuleDesign;
 use crate::vehicle::{Inertia, Vehicle};
 use nalgebra::DMatrix;
 
@@ -29,10 +30,7 @@ impl CreepingLoad {
     /// Folds the track's `influence` on connectors and positions into places a quarter of an element apart.
     pub(super) fn new(bridge: &Bridge, flexibility: &Flexibility, influence: &DMatrix<f64>, vehicle: &Vehicle) -> Self {
         let design = bridge.design();
-        let last = design.modules * design.module.mesh.elements_along * 4;
-        let places_m: Vec<f64> = (0..=last)
-            .map(|place| design.length_m() * place as f64 / last as f64)
-            .collect();
+        let places_m = places_m(design);
         let weight_alone = Vehicle {
             inertia: Inertia::None,
             ..vehicle.clone()
@@ -110,6 +108,25 @@ fn scale(to: &mut [f64], factor: f64, from: &[f64]) {
     for (to, from) in to.iter_mut().zip(from) {
         *to = factor * from;
     }
+}
+
+/// Places a quarter of an element apart `[m]`: of modules that are not alike a quarter of each one's own.
+fn places_m(design: &BridgeDesign) -> Vec<f64> {
+    let boxes = design.boxes();
+    let parts = |module: &ModuleDesign| 4 * module.mesh.elements_along;
+    let alike = |a: &ModuleDesign, b: &ModuleDesign| a.length_m.to_bits() == b.length_m.to_bits() && parts(a) == parts(b);
+    if boxes.windows(2).all(|pair| alike(pair[0], pair[1])) {
+        let last: usize = boxes.iter().map(|module| parts(module)).sum();
+        let length_m = design.length_m();
+        return (0..=last).map(|place| length_m * place as f64 / last as f64).collect();
+    }
+    let ends_m = design.positions_m();
+    let of_module = |(ends, module): (&[f64], &&ModuleDesign)| {
+        let (left_m, step_m, parts) = (ends[0], (ends[1] - ends[0]) / parts(module) as f64, parts(module));
+        (0..parts).map(move |place| left_m + step_m * place as f64).collect::<Vec<_>>()
+    };
+    let places = ends_m.windows(2).zip(&boxes).flat_map(of_module);
+    places.chain(ends_m.last().copied()).collect()
 }
 
 #[cfg(test)]

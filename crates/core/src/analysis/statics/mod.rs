@@ -128,12 +128,8 @@ impl StaticSolver {
             peak_edge_deflection_m: largest(&bridge.edges, &|z| -z),
             peak_roll_rad: largest(&bridge.rolls, &f64::abs),
             influential_length_m: self.influential_length_m(&u, case.load_x_m),
-            bottom_emerged: design
-                .draft_m
-                .map(|draft| bridge.bottom_corners.iter().any(|row| row.dot(&u) > draft)),
-            deck_submerged: design
-                .freeboard_m
-                .map(|board| bridge.deck_corners.iter().any(|row| -row.dot(&u) > board)),
+            bottom_emerged: bridge.bottom_emerges(&u),
+            deck_submerged: bridge.deck_submerges(&u),
             newton_iterations: contact.iterations,
             equilibrium: self.equilibrium(vehicle, case, &load.placement, &u),
         })

@@ -1,0 +1,302 @@
+//! Modules that are not alike: kinds by name, and the row in which they stand.
+//!
+//! Knows which kind stands at each place of the row and how a kind becomes the design of a bridge of its like. Does not know
+//! matrices.
+
+use super::{BridgeDesign, DraftBuoyancy, Todd};
+use crate::input::{InvalidInput, Problem, SAME_PLACE_M};
+use crate::module::ModuleDesign;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A kind of module: its box and the water under it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModuleKind {
+    /// The module.
+    pub module: ModuleDesign,
+    /// Hydrostatic stiffness p_b: pressure per metre of sinking `[Pa/m]`. Either this or `draft_buoyancy`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hydrostatic_stiffness_pa_m: Option<f64>,
+    /// Draft-buoyancy table, whose slope at the still-water draft gives p_b.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draft_buoyancy: Option<DraftBuoyancy>,
+    /// Added mass per metre of bridge `[kg/m]`. Either this or `todd`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub added_mass_kg_m: Option<f64>,
+    /// Todd's formula for the added mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub todd: Option<Todd>,
+    /// Still-water draft `[m]`, for reporting whether the bottom emerged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draft_m: Option<f64>,
+    /// Height of the deck above the still water `[m]`, for reporting whether the deck was submerged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub freeboard_m: Option<f64>,
+}
+
+/// Modules of one kind side by side.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModuleRun {
+    /// Name of their kind.
+    pub kind: String,
+    /// How many they are.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub count: usize,
+    /// Whether their left ends are the kind's right ones.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub mirrored: bool,
+}
+
+fn one() -> usize {
+    1
+}
+
+// serde asks for a reference
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_one(count: &usize) -> bool {
+    *count == 1
+}
+
+/// A row of modules of named kinds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModuleRow {
+    /// The kinds by name.
+    pub kinds: BTreeMap<String, ModuleKind>,
+    /// The modules from left to right.
+    pub runs: Vec<ModuleRun>,
+}
+
+/// The modules of a row as they are built: what differs stands here once, a mirrored kind apart from the kind unless it is its
+/// own mirror image.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variants {
+    /// The design of a bridge of each variant alone: what [`PreparedModule::new`](super::PreparedModule::new) takes.
+    pub designs: Vec<BridgeDesign>,
+    /// Of each module of the row which variant it is.
+    pub of_module: Vec<usize>,
+    /// What the keys of each variant's kind begin with, see [`BridgeDesign::named_kinds`].
+    pub keys: Vec<String>,
+}
+
+impl ModuleRow {
+    /// Number of modules.
+    pub(super) fn count(&self) -> usize {
+        self.runs.iter().map(|run| run.count).fold(0, usize::saturating_add)
+    }
+
+    /// Of each module its run; of a row that was checked.
+    fn each(&self) -> impl Iterator<Item = &ModuleRun> {
+        self.runs.iter().flat_map(|run| std::iter::repeat_n(run, run.count))
+    }
+
+    /// The kind of each module.
+    pub(super) fn kinds_in_row(&self) -> impl Iterator<Item = &ModuleKind> {
+        self.each().filter_map(|run| self.kinds.get(&run.kind))
+    }
+
+    /// The first kind of the row; any other of a row that was not checked.
+    pub(super) fn first(&self) -> Option<&ModuleKind> {
+        self.kinds_in_row().next().or_else(|| self.kinds.values().next())
+    }
+
+    /// Refuses a row that names kinds that do not exist, leaves kinds out or joins ends that do not fit.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    pub(super) fn check(&self) -> Result<(), InvalidInput> {
+        if self.runs.is_empty() {
+            let allowed = "a whole number from 1 to 500, or a list of modules";
+            return Err(InvalidInput::new("modules", "an empty list", allowed));
+        }
+        for (i, run) in self.runs.iter().enumerate() {
+            if !self.kinds.contains_key(&run.kind) {
+                let known = self.kinds.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+                let key = format!("modules[{i}].kind");
+                return Err(InvalidInput::new(key, run.kind.clone(), format!("a kind of module_kinds: {known}")));
+            }
+            if !(1..=500).contains(&run.count) {
+                let key = format!("modules[{i}].count");
+                return Err(InvalidInput::new(key, run.count, "a whole number from 1 to 500"));
+            }
+        }
+        if self.count() > 500 {
+            return Err(InvalidInput::new("modules", self.count(), "at most 500 modules"));
+        }
+        for name in self.kinds.keys() {
+            let key = || key_of(name);
+            if !is_word(name) {
+                let allowed = "a name of letters, digits, - and _ that begins with a letter";
+                return Err(InvalidInput::new(key(), name.clone(), allowed));
+            }
+            if !self.runs.iter().any(|run| run.kind == *name) {
+                let allowed = "a kind that modules names";
+                return Err(InvalidInput::new(key(), "a kind of no module", allowed).because(Problem::Conflict));
+            }
+        }
+        self.check_ends()
+    }
+
+    /// Refuses kinds whose ends cannot be joined: one breadth, and as many elements between two lines across.
+    fn check_ends(&self) -> Result<(), InvalidInput> {
+        let mut kinds = self.kinds.iter();
+        let Some((first, of_first)) = kinds.next() else {
+            return Ok(());
+        };
+        let (breadth_m, elements) = (of_first.module.breadth_m, of_first.module.mesh.elements_between_lines);
+        for (name, kind) in kinds {
+            let refused = |found: InvalidInput| Err(found.because(Problem::Conflict).under(&key_of(name)));
+            let module = &kind.module;
+            // a breadth that is no number is refused for what it is
+            if (module.breadth_m - breadth_m).abs() > SAME_PLACE_M {
+                let allowed = format!("{breadth_m}, the breadth of {first}: ends of modules meet over their whole breadth");
+                let found = InvalidInput::new("module.breadth_m", module.breadth_m, allowed);
+                return refused(found);
+            }
+            if module.mesh.elements_between_lines != elements {
+                let allowed = format!("{elements}, as of {first}: modules share their lines across");
+                let found = module.mesh.elements_between_lines;
+                let found = InvalidInput::new("module.mesh.elements_between_lines", found, allowed);
+                return refused(found);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lines across that a kind needs for the sake of its neighbours `[m]`: those of other kinds where it has none.
+    fn lines_of_others(&self, kind: &ModuleKind, joint_lines_y_m: &[f64]) -> Vec<f64> {
+        let mut known: Vec<f64> = kind.module.lines_across_m().chain(joint_lines_y_m.iter().copied()).collect();
+        let own = known.len();
+        for y_m in self.kinds.values().flat_map(|other| other.module.lines_across_m()) {
+            if !known.iter().any(|line| (line - y_m).abs() <= SAME_PLACE_M) {
+                known.push(y_m);
+            }
+        }
+        known.split_off(own)
+    }
+
+    /// The variants of the row of `design`.
+    pub(super) fn variants(&self, design: &BridgeDesign) -> Variants {
+        let joint_lines_y_m = design.joint_lines_y_m();
+        let mut variants = Variants {
+            designs: Vec::new(),
+            of_module: Vec::with_capacity(design.modules),
+            keys: Vec::new(),
+        };
+        for run in &self.runs {
+            let Some(kind) = self.kinds.get(&run.kind) else {
+                continue;
+            };
+            let mut of_kind = design.of_kind(kind);
+            let module = &mut of_kind.module;
+            module.lines_y_m.extend(self.lines_of_others(kind, &joint_lines_y_m));
+            if let Some(mirrored) = module.mirrored().filter(|_| run.mirrored) {
+                *module = mirrored;
+            }
+            let known = variants.designs.iter().position(|design| *design == of_kind);
+            let number = known.unwrap_or(variants.designs.len());
+            if known.is_none() {
+                variants.designs.push(of_kind);
+                variants.keys.push(key_of(&run.kind));
+            }
+            variants.of_module.extend(std::iter::repeat_n(number, run.count));
+        }
+        variants
+    }
+}
+
+/// The key of a kind.
+pub(super) fn key_of(name: &str) -> String {
+    format!("module_kinds.{name}")
+}
+
+/// Whether a name can stand in a path.
+fn is_word(name: &str) -> bool {
+    let of_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(of_word)
+}
+
+impl BridgeDesign {
+    /// The bridge as one of modules of a kind alone.
+    pub(super) fn of_kind(&self, kind: &ModuleKind) -> Self {
+        Self {
+            row: None,
+            module: kind.module.clone(),
+            hydrostatic_stiffness_pa_m: kind.hydrostatic_stiffness_pa_m,
+            draft_buoyancy: kind.draft_buoyancy.clone(),
+            added_mass_kg_m: kind.added_mass_kg_m,
+            todd: kind.todd,
+            draft_m: kind.draft_m,
+            freeboard_m: kind.freeboard_m,
+            ..self.clone()
+        }
+    }
+
+    /// What its modules are built as.
+    pub fn variants(&self) -> Variants {
+        match &self.row {
+            Some(row) => row.variants(self),
+            None => Variants {
+                designs: vec![self.clone()],
+                of_module: vec![0; self.modules],
+                keys: vec![String::new()],
+            },
+        }
+    }
+
+    /// Each kind with what its keys begin with: `module_kinds.ramp` of a named kind, nothing of the only one.
+    pub fn named_kinds(&self) -> Vec<(String, Self)> {
+        let Some(row) = &self.row else {
+            return vec![(String::new(), self.clone())];
+        };
+        let kinds = row.kinds.iter();
+        kinds.map(|(name, kind)| (key_of(name), self.of_kind(kind))).collect()
+    }
+
+    /// The box of each module from left to right; of a mirrored one as its kind has it.
+    pub fn boxes(&self) -> Vec<&ModuleDesign> {
+        match &self.row {
+            Some(row) => row.kinds_in_row().map(|kind| &kind.module).collect(),
+            None => vec![&self.module; self.modules],
+        }
+    }
+
+    /// Still-water draft of each module `[m]`; none where its kind has none.
+    pub(crate) fn drafts_m(&self) -> Vec<Option<f64>> {
+        match &self.row {
+            Some(row) => row.kinds_in_row().map(|kind| kind.draft_m).collect(),
+            None => vec![self.draft_m; self.modules],
+        }
+    }
+
+    /// Freeboard of each module `[m]`; none where its kind has none.
+    pub(crate) fn freeboards_m(&self) -> Vec<Option<f64>> {
+        match &self.row {
+            Some(row) => row.kinds_in_row().map(|kind| kind.freeboard_m).collect(),
+            None => vec![self.freeboard_m; self.modules],
+        }
+    }
+
+    /// Length of the shortest module `[m]`.
+    pub fn shortest_module_m(&self) -> f64 {
+        let lengths = self.boxes().into_iter().map(|module| module.length_m);
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Place of each position along the bridge `[m]`: the left end of each module and the right end of the last. Modules of one
+    /// length side by side are multiplied, not added.
+    pub fn positions_m(&self) -> Vec<f64> {
+        let lengths: Vec<f64> = self.boxes().iter().map(|module| module.length_m).collect();
+        let (mut places, mut first, mut from_m) = (vec![0.0], 0, 0.0);
+        for (j, &length_m) in lengths.iter().enumerate() {
+            if length_m.to_bits() != lengths[first].to_bits() {
+                from_m += (j - first) as f64 * lengths[first];
+                first = j;
+            }
+            places.push(from_m + (j + 1 - first) as f64 * length_m);
+        }
+        places
+    }
+}
