@@ -148,7 +148,7 @@ impl Manifest {
             notes: Doubts::of(jobs).notes(),
             distinct_bridges: jobs.iter().map(|job| job.bridge.id).collect::<BTreeSet<_>>().len(),
             distinct_modules: condensed
-                .map(|job| &job.bridge.module_key)
+                .flat_map(|job| &job.bridge.module_keys)
                 .collect::<BTreeSet<_>>()
                 .len(),
             condensations: preparation.condensations,

@@ -52,11 +52,11 @@ pub struct BridgeReport {
     pub model: String,
     /// Number of modules.
     pub modules: usize,
-    /// Degrees of freedom of one module's finite elements.
+    /// Degrees of freedom of one module's finite elements, the largest's where modules are not alike.
     pub module_full_dofs: Option<usize>,
-    /// Degrees of freedom of one module as it is assembled.
+    /// Degrees of freedom of one module as it is assembled, the largest's.
     pub module_dofs: Option<usize>,
-    /// Structural mass of one module `[kg]`.
+    /// Structural mass of one module, the mean of modules that are not alike `[kg]`.
     pub structural_mass_kg: Option<f64>,
     /// Degrees of freedom of the bridge on its supports.
     pub dofs: Option<usize>,

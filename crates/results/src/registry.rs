@@ -108,7 +108,7 @@ pub const COLUMNS: &[Column] = &[
     of_job("verify_tension", Numbers, ("verify tension", "how far the operator's largest tension is off, a share of the job's largest joint force"), |r| r.summary.verify_tension.into()).when(When::Verify),
     of_job("verify_contact", Numbers, ("verify contact", "how far the smallest contact force of an axle is off, as a share of the vehicle's weight; judged with a linear connection only"), |r| r.summary.verify_contact.into()).when(When::Verify),
     of_job("verify_held", Flags, ("verify held", "whether all are within their tolerances"), |r| r.summary.verify_held.into()).when(When::Verify),
-    measure("structural_mass_kg", "structural mass", "structural mass of a module", |r| r.summary.structural_mass_kg.into()).unit("kg").when(When::Modes),
+    measure("structural_mass_kg", "structural mass", "structural mass of a module, of modules that are not alike the mean", |r| r.summary.structural_mass_kg.into()).unit("kg").when(When::Modes),
 
     of_position("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
     of_position("position", Counts, ("position", "number of the module end, from 1 at x = 0"), |r| r.row.position.into()).role(ColumnRole::Key),

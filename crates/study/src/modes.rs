@@ -20,7 +20,7 @@ pub struct ModesRequest {
     pub count: usize,
     /// Whether the ends are held.
     pub supports: bool,
-    /// Whether the single module is meant, floating alone.
+    /// Whether a single module is meant, floating alone: the first.
     pub module: bool,
 }
 
@@ -42,6 +42,8 @@ pub enum ModesError {
 pub fn modes(file: &BridgeFile, request: ModesRequest) -> Result<Vec<ModeRow>, ModesError> {
     let mut design = file.design.clone();
     if request.module {
+        // of a row of kinds the first module
+        design = design.variants().designs.swap_remove(0);
         design.modules = 1;
     }
     design.check_size(request.model.into()).map_err(BridgeError::from)?;
@@ -50,8 +52,8 @@ pub fn modes(file: &BridgeFile, request: ModesRequest) -> Result<Vec<ModeRow>, M
     } else {
         Ends::Free
     };
-    let module = PreparedModule::new(&design, request.model.into())?;
-    Ok(rows(&Bridge::new(&design, &module, ends)?, request.count)?)
+    let modules = PreparedModule::of_kinds(&design, request.model.into())?;
+    Ok(rows(&Bridge::of_kinds(&design, &modules, ends)?, request.count)?)
 }
 
 /// The lowest modes of a bridge, numbered from 1.

@@ -251,7 +251,6 @@ struct ShapeMotion {
 
 impl ShapeMotion {
     fn of(bridge: &Bridge, shape: &[f64]) -> Self {
-        let design = bridge.design();
         let (mut z, mut roll) = (Vec::new(), Vec::new());
         for (x, across) in &bridge.sections {
             let values: Vec<(f64, f64)> = across.iter().map(|(y, row)| (*y, row.dot(shape))).collect();
@@ -276,7 +275,11 @@ impl ShapeMotion {
         let length = bridge.design().length_m();
         let stations = |module: &ModulePlace| module.lines_x.len();
         let inertias = |per_module: fn(&ModulePlace) -> usize, inertia: fn(&ModulePlace) -> f64| -> Vec<(f64, usize)> {
-            bridge.modules.iter().map(|module| (inertia(module), per_module(module))).collect()
+            bridge
+                .modules
+                .iter()
+                .map(|module| (inertia(module), per_module(module)))
+                .collect()
         };
         let structure = inertias(|_| 2, |module| module.structural_mass_kg_m);
         let afloat = inertias(stations, |module| module.structural_mass_kg_m + module.added_mass_kg_m);
@@ -294,7 +297,9 @@ impl Profile {
     /// module and how many of the values are its.
     fn new(modules: &[(f64, usize)], values: &[(f64, f64)], length: f64) -> Self {
         let (mut square, mut mean, mut tilt) = (0.0, 0.0, 0.0);
-        let mut of_values = modules.iter().flat_map(|&(inertia, count)| std::iter::repeat_n(inertia, count));
+        let mut of_values = modules
+            .iter()
+            .flat_map(|&(inertia, count)| std::iter::repeat_n(inertia, count));
         // modules of one inertia side by side are one sum
         let (mut share, mut inertia, mut own) = (0.0, of_values.next().unwrap_or(0.0), 0.0);
         for (w, next) in values.windows(2).zip(of_values) {

@@ -208,17 +208,30 @@ impl Bridge {
 
     /// Least freeboard of a module `[m]`; none where no module has one.
     pub(crate) fn least_freeboard_m(&self) -> Option<f64> {
-        self.modules.iter().filter_map(|module| module.freeboard_m).reduce(f64::min)
+        self.modules
+            .iter()
+            .filter_map(|module| module.freeboard_m)
+            .reduce(f64::min)
     }
 
     /// Whether a motion lifts a corner of a module's bottom above the water; none where no module has a draft.
     pub(crate) fn bottom_emerges(&self, u: &[f64]) -> Option<bool> {
-        passes(&self.modules, |module| module.draft_m, &self.bottom_corners, |row| row.dot(u))
+        passes(
+            &self.modules,
+            |module| module.draft_m,
+            &self.bottom_corners,
+            |row| row.dot(u),
+        )
     }
 
     /// Whether a motion takes a corner of a module's deck below the water; none where no module has a freeboard.
     pub(crate) fn deck_submerges(&self, u: &[f64]) -> Option<bool> {
-        passes(&self.modules, |module| module.freeboard_m, &self.deck_corners, |row| -row.dot(u))
+        passes(
+            &self.modules,
+            |module| module.freeboard_m,
+            &self.deck_corners,
+            |row| -row.dot(u),
+        )
     }
 
     /// The springs of all banks, bank after bank.
@@ -264,7 +277,12 @@ fn passes(
     corners: &[SparseRow],
     way: impl Fn(&SparseRow) -> f64,
 ) -> Option<bool> {
-    let limited = || modules.iter().zip(corners.chunks_exact(4)).filter_map(|(m, rows)| Some((limit(m)?, rows)));
+    let limited = || {
+        modules
+            .iter()
+            .zip(corners.chunks_exact(4))
+            .filter_map(|(m, rows)| Some((limit(m)?, rows)))
+    };
     limited().next()?;
     Some(limited().any(|(limit_m, rows)| rows.iter().any(|row| way(row) > limit_m)))
 }

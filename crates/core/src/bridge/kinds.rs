@@ -115,7 +115,11 @@ impl ModuleRow {
             if !self.kinds.contains_key(&run.kind) {
                 let known = self.kinds.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
                 let key = format!("modules[{i}].kind");
-                return Err(InvalidInput::new(key, run.kind.clone(), format!("a kind of module_kinds: {known}")));
+                return Err(InvalidInput::new(
+                    key,
+                    run.kind.clone(),
+                    format!("a kind of module_kinds: {known}"),
+                ));
             }
             if !(1..=500).contains(&run.count) {
                 let key = format!("modules[{i}].count");
@@ -151,7 +155,8 @@ impl ModuleRow {
             let module = &kind.module;
             // a breadth that is no number is refused for what it is
             if (module.breadth_m - breadth_m).abs() > SAME_PLACE_M {
-                let allowed = format!("{breadth_m}, the breadth of {first}: ends of modules meet over their whole breadth");
+                let allowed =
+                    format!("{breadth_m}, the breadth of {first}: ends of modules meet over their whole breadth");
                 let found = InvalidInput::new("module.breadth_m", module.breadth_m, allowed);
                 return refused(found);
             }
@@ -167,7 +172,11 @@ impl ModuleRow {
 
     /// Lines across that a kind needs for the sake of its neighbours `[m]`: those of other kinds where it has none.
     fn lines_of_others(&self, kind: &ModuleKind, joint_lines_y_m: &[f64]) -> Vec<f64> {
-        let mut known: Vec<f64> = kind.module.lines_across_m().chain(joint_lines_y_m.iter().copied()).collect();
+        let mut known: Vec<f64> = kind
+            .module
+            .lines_across_m()
+            .chain(joint_lines_y_m.iter().copied())
+            .collect();
         let own = known.len();
         for y_m in self.kinds.values().flat_map(|other| other.module.lines_across_m()) {
             if !known.iter().any(|line| (line - y_m).abs() <= SAME_PLACE_M) {
@@ -263,26 +272,21 @@ impl BridgeDesign {
         }
     }
 
-    /// Still-water draft of each module `[m]`; none where its kind has none.
-    pub(crate) fn drafts_m(&self) -> Vec<Option<f64>> {
-        match &self.row {
-            Some(row) => row.kinds_in_row().map(|kind| kind.draft_m).collect(),
-            None => vec![self.draft_m; self.modules],
-        }
-    }
-
-    /// Freeboard of each module `[m]`; none where its kind has none.
-    pub(crate) fn freeboards_m(&self) -> Vec<Option<f64>> {
-        match &self.row {
-            Some(row) => row.kinds_in_row().map(|kind| kind.freeboard_m).collect(),
-            None => vec![self.freeboard_m; self.modules],
-        }
-    }
-
     /// Length of the shortest module `[m]`.
     pub fn shortest_module_m(&self) -> f64 {
-        let lengths = self.boxes().into_iter().map(|module| module.length_m);
-        lengths.fold(f64::INFINITY, f64::min)
+        match &self.row {
+            None => self.module.length_m,
+            Some(row) => {
+                let lengths = row.kinds_in_row().map(|kind| kind.module.length_m);
+                lengths.fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
+    /// The box of the deepest module.
+    pub fn deepest(&self) -> &ModuleDesign {
+        let boxes = self.boxes().into_iter();
+        boxes.fold(&self.module, |a, b| if b.depth_m > a.depth_m { b } else { a })
     }
 
     /// Place of each position along the bridge `[m]`: the left end of each module and the right end of the last. Modules of one

@@ -138,7 +138,10 @@ impl MeshedBridge {
             let stations = each().flat_map(|(j, module)| (0..module.grid.x.len()).map(move |ix| (j, ix)));
             stations.map(move |(j, ix)| (j, ix, iy))
         });
-        let condensed = modules.variants.iter().map(|module| module.transformation().map(translations_first));
+        let condensed = modules
+            .variants
+            .iter()
+            .map(|module| module.transformation().map(translations_first));
         let hinge_rows = (2..=modules.len()).map(|joint| {
             let module = modules.module(joint - 1);
             let dofs = design.hinges_of(joint).y_m.iter();
@@ -152,7 +155,9 @@ impl MeshedBridge {
             beams: beams.collect(),
             connectors: links(Grid::deck, &|_| design.connectors.y_m.clone()),
             hinges: links(Grid::bottom, &|joint| design.hinges_of(joint).y_m.clone()),
-            deck: deck.map(|(j, ix, iy)| of_node(j, modules.grid(j).deck(ix, iy))).collect(),
+            deck: deck
+                .map(|(j, ix, iy)| of_node(j, modules.grid(j).deck(ix, iy)))
+                .collect(),
             map: Row::number(design, &modules, ends).map,
             nodes: modules.variants.iter().map(|module| module.mesh.nodes.len()).collect(),
             condensed: condensed.collect(),

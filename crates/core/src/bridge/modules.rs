@@ -27,7 +27,10 @@ impl<'a> Modules<'a> {
     ///
     /// # Errors
     /// [`BridgeError::Design`] where a module does not serve its design or its neighbours.
-    pub(super) fn new<M: Borrow<PreparedModule>>(design: &BridgeDesign, prepared: &'a [M]) -> Result<Self, BridgeError> {
+    pub(super) fn new<M: Borrow<PreparedModule>>(
+        design: &BridgeDesign,
+        prepared: &'a [M],
+    ) -> Result<Self, BridgeError> {
         let of = design.variants();
         if prepared.len() != of.designs.len() {
             let (found, needed) = (prepared.len(), of.designs.len());
@@ -96,5 +99,9 @@ fn check_lines(first: &Grid, grid: &Grid) -> Result<(), InvalidInput> {
         return Ok(());
     }
     let [found, allowed] = [grid, first].map(|grid| grid.y.iter().map(f64::to_string).collect::<Vec<_>>().join(", "));
-    Err(InvalidInput::new("grid.y", found, format!("the lines across of the first module: {allowed}")))
+    Err(InvalidInput::new(
+        "grid.y",
+        found,
+        format!("the lines across of the first module: {allowed}"),
+    ))
 }

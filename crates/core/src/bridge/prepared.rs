@@ -64,7 +64,12 @@ impl PreparedModule {
     /// [`BridgeError`].
     pub fn of_kinds(design: &BridgeDesign, model: Model) -> Result<Vec<Self>, BridgeError> {
         design.check()?;
-        design.variants().designs.iter().map(|of_kind| Self::new(of_kind, model)).collect()
+        design
+            .variants()
+            .designs
+            .iter()
+            .map(|of_kind| Self::new(of_kind, model))
+            .collect()
     }
 
     /// Takes any mesh for the module, adds the water and, for the super-element, condenses it.

@@ -75,9 +75,13 @@ impl StressRecovery {
         let inertial: Vec<Option<Mat<f64>>> = variants()
             .map(|(module, design)| module.inertial_correction(design))
             .collect::<Result<_, _>>()?;
-        let ordered = inertial.iter().map(|matrix| matrix.as_ref().map(|m| translations_first(m.as_ref())));
+        let ordered = inertial
+            .iter()
+            .map(|matrix| matrix.as_ref().map(|m| translations_first(m.as_ref())));
         Ok(Self {
-            variants: variants().map(|(module, _)| ModuleElements::of(module)).collect::<Result<_, _>>()?,
+            variants: variants()
+                .map(|(module, _)| ModuleElements::of(module))
+                .collect::<Result<_, _>>()?,
             inertial: ordered.collect(),
         })
     }

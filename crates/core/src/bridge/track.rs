@@ -52,7 +52,9 @@ impl Track {
         };
         let modules: Vec<TrackModule> = bridge.modules.iter().map(module).collect();
         let common_m = modules[0].length_m;
-        let alike = modules.iter().all(|module| module.length_m.to_bits() == common_m.to_bits());
+        let alike = modules
+            .iter()
+            .all(|module| module.length_m.to_bits() == common_m.to_bits());
         Self {
             dofs,
             modules,
@@ -159,7 +161,11 @@ impl Track {
 
     /// Most stations that a module has.
     pub(crate) fn most_stations(&self) -> usize {
-        self.modules.iter().map(|module| module.lines_x.len()).max().unwrap_or(0)
+        self.modules
+            .iter()
+            .map(|module| module.lines_x.len())
+            .max()
+            .unwrap_or(0)
     }
 
     /// Length of the shortest module `[m]`.

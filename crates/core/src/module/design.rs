@@ -161,7 +161,12 @@ impl ModuleDesign {
     /// Lines across of its walls, its stiffeners and its mesh `[m]`; the mesh has more at the edges and the centre.
     pub(crate) fn lines_across_m(&self) -> impl Iterator<Item = f64> {
         let stiffened = self.stiffeners.longitudinal_y_m.iter();
-        self.longitudinal_walls.y_m.iter().chain(stiffened).chain(&self.lines_y_m).copied()
+        self.longitudinal_walls
+            .y_m
+            .iter()
+            .chain(stiffened)
+            .chain(&self.lines_y_m)
+            .copied()
     }
 
     /// Its mirror image along x, ends exchanged; none where that is the box itself.
@@ -183,7 +188,11 @@ impl ModuleDesign {
 }
 
 fn lines(of: &str, key: &str, places: &[f64], from: f64, to: f64, thickness: Option<f64>) -> Result<(), InvalidInput> {
-    let path = if of.is_empty() { key.to_owned() } else { format!("{of}.{key}") };
+    let path = if of.is_empty() {
+        key.to_owned()
+    } else {
+        format!("{of}.{key}")
+    };
     for (i, &place) in places.iter().enumerate() {
         within(&format!("{path}[{i}]"), place, from - 1e-9, to + 1e-9)?;
     }

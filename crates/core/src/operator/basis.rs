@@ -531,7 +531,8 @@ fn judged_rows(bridge: &Bridge, track: &Track) -> Vec<SparseRow> {
 /// Where the rows of each module stand, and what it has beyond other modules.
 fn operated_modules(bridge: &Bridge) -> Vec<OperatedModule> {
     let (draft_m, freeboard_m) = (bridge.least_draft_m(), bridge.least_freeboard_m());
-    let beyond = |own: Option<f64>, least: Option<f64>| own.zip(least).map_or(f64::INFINITY, |(own, least)| own - least);
+    let beyond =
+        |own: Option<f64>, least: Option<f64>| own.zip(least).map_or(f64::INFINITY, |(own, least)| own - least);
     let mut end = 0;
     let module = |of: &ModulePlace| {
         let between = &of.lines_x[1..of.lines_x.len() - 1];

@@ -59,6 +59,11 @@ impl Candidate {
         let mut candidate = Self { design };
         candidate.design.provenance = None;
         candidate.design.check().map_err(|wrong| of_numbers(file, wrong))?;
+        if let (Some(_), Some((name, _))) = (&candidate.design.row, masses.first()) {
+            let allowed = "numbers of the bridge file: its modules are not alike, so that no module stands for all";
+            let refused = Refusal::new(file, format!("hold.{name}"), "a quantity of a module", allowed);
+            return Err(refused.because(RefusalKind::Misplaced));
+        }
         for quantity in QUANTITIES {
             if let Some((_, value)) = masses.iter().find(|(name, _)| *name == quantity) {
                 candidate.take_mass(quantity, *value);

@@ -16,9 +16,10 @@ pub(super) const FOLLOWS: [(&str, &str); 5] = [
     ("total_mass_kg_m", "todd.three_dimensional_correction"),
 ];
 
-/// A quantity of a bridge by its name.
+/// A quantity of a bridge by its name; none of one whose modules are not alike.
 pub(super) fn quantity(design: &BridgeDesign, name: &str) -> Option<f64> {
     match name {
+        _ if design.row.is_some() => None,
         "structural_mass_kg" => Some(design.structural_mass_kg()),
         "total_mass_kg_m" => Some(design.structural_mass_kg() / design.module.length_m + design.m_a()),
         _ => None,

@@ -31,9 +31,9 @@ pub struct BridgeEntry {
     pub structure_key: Arc<str>,
     /// Equal for bridges that have one operator: the connectors' stiffness is no part of it either.
     pub operator_key: Arc<str>,
-    /// Equal for bridges whose modules are equal: neither are the connectors' stiffness, the number of modules and the
-    /// supports part of a module.
-    pub module_key: Arc<str>,
+    /// One for each of the design's variants, in their order; equal for modules that are equal: neither are the connectors'
+    /// stiffness, the number of modules, the supports and the other kinds part of a module.
+    pub module_keys: Vec<Arc<str>>,
 }
 
 /// A vehicle after the axes, checked on a deck.
@@ -236,13 +236,17 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
     let operator_key = hash_of(&to_value(&neutral)).as_str().into();
-    neutral.modules = 1;
-    neutral.hinges.y_m = design.hinge_lines_y_m();
-    neutral.joints = Joints::default();
-    neutral.supports = Supports::default();
-    neutral.draft_m = None;
-    neutral.freeboard_m = None;
-    let module_key = hash_of(&to_value(&neutral)).as_str().into();
+    let module_key = |mut of_kind: BridgeDesign| {
+        of_kind.modules = 1;
+        of_kind.hinges.y_m = design.hinge_lines_y_m();
+        of_kind.joints = Joints::default();
+        of_kind.supports = Supports::default();
+        of_kind.draft_m = None;
+        of_kind.freeboard_m = None;
+        hash_of(&to_value(&of_kind)).as_str().into()
+    };
+    neutral.joints = design.joints.clone();
+    let module_keys = neutral.variants().designs.into_iter().map(module_key).collect();
     BridgeEntry {
         id,
         design,
@@ -250,7 +254,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
         hash,
         structure_key,
         operator_key,
-        module_key,
+        module_keys,
     }
 }
 

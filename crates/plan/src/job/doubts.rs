@@ -4,6 +4,8 @@
 
 use super::{Job, Task};
 use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::module::ModuleDesign;
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 /// Speed from which a vehicle on a floating bridge is a doubt `[m/s]`: 108 km/h.
@@ -18,7 +20,7 @@ const THICK_M: f64 = 0.1;
 /// A number that is in doubt.
 #[derive(Debug)]
 struct Doubt {
-    key: &'static str,
+    key: Cow<'static, str>,
     /// The first such value.
     value: f64,
     /// Jobs that have one.
@@ -74,7 +76,7 @@ impl Doubts {
                 "below 1000 N, the weight of a person: is it in kN?",
             );
         }
-        let depth_m = job.bridge.design.module.depth_m;
+        let depth_m = job.bridge.design.deepest().depth_m;
         if let Some((tension, compression)) = job.gaps_m() {
             for (key, gap) in [("gap_tension_m", tension), ("gap_compression_m", compression)] {
                 self.note(gap > depth_m, key, gap, "above the depth of a module: is it in mm?");
@@ -83,32 +85,39 @@ impl Doubts {
     }
 
     fn bridge(&mut self, design: &BridgeDesign) {
-        let module = &design.module;
-        let modulus = module.material.youngs_modulus_pa;
-        let key = "bridge.module.material.youngs_modulus_pa";
-        self.note(modulus < SOFT_PA, key, modulus, "below 1e9 Pa: is it in GPa or MPa?");
-        for (key, thickness) in [
-            ("bridge.module.deck_thickness_m", module.deck_thickness_m),
-            ("bridge.module.bottom_thickness_m", module.bottom_thickness_m),
-            ("bridge.module.side_thickness_m", module.side_thickness_m),
-            ("bridge.module.end_thickness_m", module.end_thickness_m),
-            (
-                "bridge.module.longitudinal_walls.thickness_m",
-                module.longitudinal_walls.thickness_m,
-            ),
-            (
-                "bridge.module.transverse_walls.thickness_m",
-                module.transverse_walls.thickness_m,
-            ),
-        ] {
-            self.note(thickness > THICK_M, key, thickness, "above 0.1 m: is it in mm?");
+        for (key, kind) in design.named_kinds() {
+            let key = if key.is_empty() {
+                String::new()
+            } else {
+                format!("{key}.")
+            };
+            self.module(&format!("bridge.{key}module"), &kind.module);
         }
     }
 
-    fn note(&mut self, doubted: bool, key: &'static str, value: f64, why: &'static str) {
+    fn module(&mut self, key: &str, module: &ModuleDesign) {
+        let of = |rest: &str| format!("{key}.{rest}");
+        let modulus = module.material.youngs_modulus_pa;
+        let why = "below 1e9 Pa: is it in GPa or MPa?";
+        self.note(modulus < SOFT_PA, of("material.youngs_modulus_pa"), modulus, why);
+        for (rest, thickness) in [
+            ("deck_thickness_m", module.deck_thickness_m),
+            ("bottom_thickness_m", module.bottom_thickness_m),
+            ("side_thickness_m", module.side_thickness_m),
+            ("end_thickness_m", module.end_thickness_m),
+            ("longitudinal_walls.thickness_m", module.longitudinal_walls.thickness_m),
+            ("transverse_walls.thickness_m", module.transverse_walls.thickness_m),
+        ] {
+            let thick = thickness > THICK_M;
+            self.note(thick, of(rest), thickness, "above 0.1 m: is it in mm?");
+        }
+    }
+
+    fn note(&mut self, doubted: bool, key: impl Into<Cow<'static, str>>, value: f64, why: &'static str) {
         if !doubted {
             return;
         }
+        let key = key.into();
         match self.found.iter_mut().find(|doubt| doubt.key == key) {
             Some(doubt) => doubt.jobs += 1,
             None => self.found.push(Doubt {

@@ -272,7 +272,7 @@ impl Short<'_> {
         vehicle: &VehicleEntry,
         speed_m_s: f64,
     ) -> Result<(), Refusal> {
-        let passage = bridge.design.module.length_m / speed_m_s;
+        let passage = bridge.design.shortest_module_m() / speed_m_s;
         let step = analysis.time_step.first_s(passage);
         let refuse = |found: FoundValue, allowed: String| {
             let path = self.path_or("analysis.time_step_s");

@@ -120,7 +120,7 @@ pub struct TooManySteps {
 impl<'a> CrossingJob<'a> {
     /// The time step that it begins with `[s]`: the stated one, or the coarsest of its own.
     pub fn first_time_step_s(&self) -> f64 {
-        let passage_s = self.job.bridge.design.module.length_m / self.speed_m_s;
+        let passage_s = self.job.bridge.design.shortest_module_m() / self.speed_m_s;
         self.analysis.time_step.first_s(passage_s)
     }
 

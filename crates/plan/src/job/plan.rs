@@ -134,7 +134,7 @@ impl Plan {
             plan.steps += job.steps() as u64;
             let model = job.model();
             if bridges.insert((job.bridge.id, model)) && model == ModelSpec::SuperElement {
-                modules.insert(job.bridge.module_key.clone());
+                modules.extend(job.bridge.module_keys.iter().cloned());
             }
         }
         plan.distinct_bridges = bridges.iter().map(|(id, _)| id).collect::<HashSet<_>>().len();
@@ -452,10 +452,10 @@ mod tests {
         assert!(
             jobs[..3]
                 .iter()
-                .all(|job| job.bridge.module_key == jobs[0].bridge.module_key)
+                .all(|job| job.bridge.module_keys == jobs[0].bridge.module_keys)
         );
         assert_ne!(jobs[0].bridge.structure_key, jobs[1].bridge.structure_key);
-        assert_eq!(jobs[0].bridge.module_key, jobs[3].bridge.module_key);
+        assert_eq!(jobs[0].bridge.module_keys, jobs[3].bridge.module_keys);
         assert_ne!(jobs[0].bridge.structure_key, jobs[3].bridge.structure_key);
         assert_eq!(jobs[1].column("gap_tension_m"), Cell::Number(0.01));
         assert_eq!(jobs[3].column("bridge.modules"), Cell::Whole(4));

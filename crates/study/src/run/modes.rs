@@ -16,7 +16,7 @@ pub(super) fn solve(job: &Job, asked: &ModesAnalysis, models: &SharedModels) -> 
     let bridge = models.bridge(job, ends)?;
     let modes = rows(&bridge, asked.count)?;
     let summary = Summary {
-        structural_mass_kg: Some(models.module_of(job)?.structural_mass_kg()),
+        structural_mass_kg: Some(models.mean_mass_kg(job)?),
         ..Summary::default()
     };
     Ok(JobRecord {

@@ -80,7 +80,8 @@ pub struct PreparedModules(BTreeMap<ModuleKey, SharedResult<PreparedModule>>);
 impl PreparedModules {
     /// Lets go of modules that none of some jobs needs.
     pub(super) fn keep_for(&mut self, jobs: &[&Job]) {
-        self.0.retain(|key, _| jobs.iter().any(|job| module_key(job) == *key));
+        self.0
+            .retain(|key, _| jobs.iter().any(|job| module_keys(job).contains(key)));
     }
 }
 
@@ -175,37 +176,59 @@ impl SharedModels {
         models
     }
 
-    fn all_modules(
+    fn all_modules<'j>(
         &self,
-        all: &[&Job],
+        all: &[&'j Job],
         known: &PreparedModules,
         cancel: &CancelToken,
     ) -> BTreeMap<ModuleKey, SharedResult<PreparedModule>> {
-        let is_known = |job: &&Job| known.0.contains_key(&module_key(job));
-        let (old, new): (Vec<&Job>, Vec<&Job>) = all.iter().copied().partition(is_known);
-        let mut modules = each(cancel, &new, |job| Some(module_key(job)), |job| self.module(job));
-        let taken = old.iter().filter_map(|job| known.0.get_key_value(&module_key(job)));
+        let each_module = |job: &&'j Job| {
+            let job: &'j Job = job;
+            module_keys(job)
+                .into_iter()
+                .enumerate()
+                .map(move |(variant, key)| (job, variant, key))
+        };
+        let is_known = |(.., key): &(&Job, usize, ModuleKey)| known.0.contains_key(key);
+        let (old, new): (Vec<_>, Vec<_>) = all.iter().flat_map(each_module).partition(is_known);
+        let key = |(.., key): &(&Job, usize, ModuleKey)| Some(key.clone());
+        let mut modules = each(cancel, &new, key, |(job, variant, _)| self.module(job, *variant));
+        let taken = old.iter().filter_map(|(.., key)| known.0.get_key_value(key));
         modules.extend(taken.map(|(key, module)| (key.clone(), module.clone())));
         modules
     }
 
-    fn module(&self, job: &Job) -> Result<PreparedModule, JobFailure> {
+    fn module(&self, job: &Job, variant: usize) -> Result<PreparedModule, JobFailure> {
         let model = model(job);
         if model == Model::SuperElement {
             self.condensations.fetch_add(1, Ordering::Relaxed);
         }
-        Ok(PreparedModule::new(&job.bridge.design, model)?)
+        Ok(PreparedModule::new(
+            &job.bridge.design.variants().designs[variant],
+            model,
+        )?)
     }
 
-    /// The module of a job.
-    pub(super) fn module_of(&self, job: &Job) -> SharedResult<PreparedModule> {
-        shared(&self.modules, &module_key(job))
+    /// The modules of a job, in the order of its bridge's variants.
+    fn modules_of(&self, job: &Job) -> Result<Vec<Arc<PreparedModule>>, JobFailure> {
+        let keys = module_keys(job).into_iter();
+        keys.map(|key| shared(&self.modules, &key)).collect()
+    }
+
+    /// Structural mass of a module of a job's bridge `[kg]`; of modules that are not alike the mean.
+    pub(super) fn mean_mass_kg(&self, job: &Job) -> Result<f64, JobFailure> {
+        let modules = self.modules_of(job)?;
+        if let [only] = &modules[..] {
+            return Ok(only.structural_mass_kg());
+        }
+        let of_module = job.bridge.design.variants().of_module;
+        let total: f64 = of_module.iter().map(|&of| modules[of].structural_mass_kg()).sum();
+        Ok(total / of_module.len() as f64)
     }
 
     /// The bridge of a job, assembled anew.
     pub(super) fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, JobFailure> {
-        let module = shared(&self.modules, &module_key(job))?;
-        Ok(Bridge::new(&job.bridge.design, &module, ends)?)
+        Ok(Bridge::of_kinds(&job.bridge.design, &self.modules_of(job)?, ends)?)
     }
 
     fn damping_of(&self, crossing: &CrossingJob<'_>, cancel: &CancelToken) -> Result<Damping, JobFailure> {
@@ -376,7 +399,11 @@ impl SharedModels {
             if !seen.insert((job.bridge.id, job.analysis.id)) {
                 continue;
             }
-            let module = shared(&self.modules, &module_key(job)).ok();
+            let modules = self.modules_of(job).ok();
+            let largest = |size: fn(&PreparedModule) -> usize| {
+                let sizes = modules.iter().flatten().map(|module| size(module));
+                sizes.max()
+            };
             let crossing = job.as_crossing();
             let damping = crossing.and_then(|crossing| shared(&self.damping, &damping_key(&crossing)).ok());
             let operator = crossing.and_then(|crossing| self.operator_of(&crossing).ok());
@@ -386,9 +413,9 @@ impl SharedModels {
                 name: job.bridge.design.name.clone(),
                 model: word(model(job)).to_owned(),
                 modules: job.bridge.design.modules,
-                module_full_dofs: module.as_ref().map(|m| m.full_dofs()),
-                module_dofs: module.as_ref().map(|m| m.dofs()),
-                structural_mass_kg: module.as_ref().map(|m| m.structural_mass_kg()),
+                module_full_dofs: largest(PreparedModule::full_dofs),
+                module_dofs: largest(PreparedModule::dofs),
+                structural_mass_kg: self.mean_mass_kg(job).ok(),
                 dofs: shared(&self.bridges, &bridge_key(job)).ok().map(|b| b.dofs()),
                 damping_frequencies_hz: damping.as_ref().map(|d| d.frequencies_hz),
                 damping_stiffness_s: damping.as_ref().map(|d| d.coefficients.a),
@@ -475,9 +502,9 @@ const fn word(model: Model) -> &'static str {
 
 /// Jobs by the bridge whose preparation they share; bridges of the same module stand side by side.
 pub(super) fn by_bridge<'j>(jobs: impl Iterator<Item = &'j Job>) -> Vec<(PreparationKey, Vec<&'j Job>)> {
-    let mut bridges: BTreeMap<(ModuleKey, BridgeKey), Vec<&Job>> = BTreeMap::new();
+    let mut bridges: BTreeMap<(Vec<ModuleKey>, BridgeKey), Vec<&Job>> = BTreeMap::new();
     for job in jobs {
-        let key = (module_key(job), bridge_key(job));
+        let key = (module_keys(job), bridge_key(job));
         bridges.entry(key).or_default().push(job);
     }
     let keyed = bridges
@@ -498,8 +525,10 @@ fn preparation_key((model, structure): &BridgeKey) -> PreparationKey {
     PreparationKey(key)
 }
 
-fn module_key(job: &Job) -> ModuleKey {
-    (model(job), job.bridge.module_key.clone())
+/// The keys of a job's modules, in the order of its bridge's variants.
+fn module_keys(job: &Job) -> Vec<ModuleKey> {
+    let keys = job.bridge.module_keys.iter();
+    keys.map(|key| (model(job), key.clone())).collect()
 }
 
 fn bridge_key(job: &Job) -> BridgeKey {

@@ -122,12 +122,17 @@
 
     let faces = [],
       view = {};
+    /** Where so many modules end along the bridge; of another number of modules than the bridge has they are alike. */
+    const end = n => {
+      const xs = bridge.position_x_m;
+      return array(mode.motion).length / 24 === xs.length - 1 ? xs[n] : bridge.module_length_m * n;
+    };
     /** The boxes' rest position, right to left and far to near, so that the near ones cover. */
     function build() {
       width = page.dom.room(stage) || 800;
       // A set of modes may be of another bridge of the study: its motion says how many modules it has.
       const modules = array(mode.motion).length / 24,
-        L = bridge.module_length_m * modules,
+        L = end(modules),
         reach = 0.055 * L;
       const s = Math.min(
         (width - 20) / (L + 0.55 * bridge.breadth_m + 2 * reach),
@@ -179,12 +184,12 @@
       const motion = array(mode.motion),
         { X, Y, reach } = view,
         scale = reach * amplitude * phase,
-        { breadth_m: B, depth_m: D, module_length_m: l } = bridge;
+        B = bridge.breadth_m;
       const corner = (m, c) => {
         const k = (m * 8 + c) * 3,
-          x = (m + (c % 4 === 1 || c % 4 === 2 ? 1 : 0)) * l,
+          x = end(m + (c % 4 === 1 || c % 4 === 2 ? 1 : 0)),
           y = c % 4 >= 2 ? B : 0,
-          z = c >= 4 ? D * 1.6 : 0;
+          z = c >= 4 ? (bridge.module_depth_m?.[m] ?? bridge.depth_m) * 1.6 : 0;
         const px = x + scale * motion[k],
           py = y + scale * motion[k + 1],
           pz = z + scale * motion[k + 2];

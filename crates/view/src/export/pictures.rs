@@ -42,8 +42,8 @@ impl Pictures {
         let design = ready.bridge.design();
         Self {
             mesh: mesh(ready),
-            joints: joints(ready, DRAWN * design.module.length_m),
-            depth_m: design.module.depth_m,
+            joints: joints(ready, DRAWN * design.shortest_module_m()),
+            depth_m: design.deepest().depth_m,
         }
     }
 

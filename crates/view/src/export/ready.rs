@@ -32,15 +32,20 @@ impl Ready {
         ends: Ends,
         stresses: Stresses,
     ) -> Result<Self, ExportError> {
-        Self::of(design, &PreparedModule::new(design, model)?, ends, stresses)
+        Self::of(design, &PreparedModule::of_kinds(design, model)?, ends, stresses)
     }
 
-    fn of(design: &BridgeDesign, module: &PreparedModule, ends: Ends, stresses: Stresses) -> Result<Self, ExportError> {
+    fn of(
+        design: &BridgeDesign,
+        modules: &[PreparedModule],
+        ends: Ends,
+        stresses: Stresses,
+    ) -> Result<Self, ExportError> {
         Ok(Self {
-            bridge: Arc::new(Bridge::new(design, module, ends)?),
-            meshed: MeshedBridge::new(design, module, ends)?,
+            bridge: Arc::new(Bridge::of_kinds(design, modules, ends)?),
+            meshed: MeshedBridge::of_kinds(design, modules, ends)?,
             recovery: match stresses {
-                Stresses::Wanted => Some(StressRecovery::new(design, module)?),
+                Stresses::Wanted => Some(StressRecovery::of_kinds(design, modules)?),
                 Stresses::Unwanted => None,
             },
         })
@@ -61,17 +66,17 @@ impl Ready {
         stresses: Stresses,
     ) -> Result<(Self, CrossingSettings), ExportError> {
         let (design, crossing) = (&wanted.job.bridge.design, wanted.crossing()?);
-        let module = PreparedModule::new(design, wanted.job.model().into())?;
+        let modules = PreparedModule::of_kinds(design, wanted.job.model().into())?;
         let damping = crossing.analysis.damping;
         let frequencies_hz = match damping.frequencies_hz {
             Some(stated) => stated,
-            None => bending_frequencies_hz(&Bridge::new(design, &module, Ends::Free)?, Stop::never())?,
+            None => bending_frequencies_hz(&Bridge::of_kinds(design, &modules, Ends::Free)?, Stop::never())?,
         };
         let settings = CrossingSettings {
             time_step_s: wanted.time_step_s,
             ..crossing.settings(rayleigh(damping.ratio, frequencies_hz))
         };
-        Ok((Self::of(design, &module, Ends::Supported, stresses)?, settings))
+        Ok((Self::of(design, &modules, Ends::Supported, stresses)?, settings))
     }
 
     /// The solver of a crossing on this bridge.

@@ -124,12 +124,15 @@ impl StudyNote {
 pub struct BridgeNote {
     /// Number of modules.
     pub modules: usize,
-    /// Length of a module `[m]`.
+    /// Length of a module `[m]`, of the shortest where they are not alike.
     pub module_length_m: f64,
     /// Its breadth `[m]`.
     pub breadth_m: f64,
-    /// Its depth `[m]`.
+    /// Its depth `[m]`, of the deepest where they are not alike.
     pub depth_m: f64,
+    /// Depth of each module `[m]`, where they are not alike.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub module_depth_m: Vec<f64>,
     /// How deep it floats `[m]`, where the bridge says so.
     pub draft_m: Option<f64>,
     /// Places of the positions `[m]`.
@@ -149,9 +152,13 @@ impl BridgeNote {
         let design = &job.bridge.design;
         Self {
             modules: design.modules,
-            module_length_m: design.module.length_m,
+            module_length_m: design.shortest_module_m(),
             breadth_m: design.module.breadth_m,
-            depth_m: design.module.depth_m,
+            depth_m: design.deepest().depth_m,
+            module_depth_m: match &design.row {
+                Some(_) => design.boxes().iter().map(|module| module.depth_m).collect(),
+                None => Vec::new(),
+            },
             draft_m: design.draft_m,
             position_x_m: (1..=design.positions())
                 .map(|position| design.position_x_m(position))

@@ -32,17 +32,25 @@ pub(super) fn settings(study: &Study) -> Vec<Item> {
 
 fn bridge(study: &Study) -> String {
     let design = &study.bridge.design;
-    let module = &design.module;
-    let metres = |x: f64| number(x);
+    let kinds = design.named_kinds().into_iter().map(|(key, kind)| {
+        let module = &kind.module;
+        let name = key
+            .rsplit_once('.')
+            .map_or(String::new(), |(_, name)| format!("{name} "));
+        format!(
+            "{name}{} m, {} m wide, {} m deep; water {} kPa/m and {} kg/m",
+            number(module.length_m),
+            number(module.breadth_m),
+            number(module.depth_m),
+            number(1e-3 * kind.p_b()),
+            number(kind.m_a()),
+        )
+    });
+    let kinds = kinds.collect::<Vec<_>>().join("; ");
     format!(
-        "{}: {} of {} m, {} m wide, {} m deep; water {} kPa/m and {} kg/m",
+        "{}: {} of {kinds}",
         design.name,
-        labels::counted(design.modules, "module"),
-        metres(module.length_m),
-        metres(module.breadth_m),
-        metres(module.depth_m),
-        number(1e-3 * design.p_b()),
-        number(design.m_a()),
+        labels::counted(design.modules, "module")
     )
 }
 

@@ -102,8 +102,8 @@ pub(super) fn mode_sets(
 
 fn found(job: &Job, ends: Ends, model: ModelSpec, count: usize) -> Result<Vec<ModeShape>, ModesError> {
     let design = &job.bridge.design;
-    let module = PreparedModule::new(design, model.into())?;
-    let bridge = Bridge::new(design, &module, ends)?;
+    let modules = PreparedModule::of_kinds(design, model.into())?;
+    let bridge = Bridge::of_kinds(design, &modules, ends)?;
     let found = shapes(&bridge, count.min(bridge.dofs()))?;
     let shape = |(number, (mode, corners)): (usize, (_, Vec<[f64; 3]>))| {
         let mode: pontoon_core::analysis::modes::Mode = mode;

@@ -114,7 +114,8 @@ fn scale(to: &mut [f64], factor: f64, from: &[f64]) {
 fn places_m(design: &BridgeDesign) -> Vec<f64> {
     let boxes = design.boxes();
     let parts = |module: &ModuleDesign| 4 * module.mesh.elements_along;
-    let alike = |a: &ModuleDesign, b: &ModuleDesign| a.length_m.to_bits() == b.length_m.to_bits() && parts(a) == parts(b);
+    let alike =
+        |a: &ModuleDesign, b: &ModuleDesign| a.length_m.to_bits() == b.length_m.to_bits() && parts(a) == parts(b);
     if boxes.windows(2).all(|pair| alike(pair[0], pair[1])) {
         let last: usize = boxes.iter().map(|module| parts(module)).sum();
         let length_m = design.length_m();
@@ -123,7 +124,9 @@ fn places_m(design: &BridgeDesign) -> Vec<f64> {
     let ends_m = design.positions_m();
     let of_module = |(ends, module): (&[f64], &&ModuleDesign)| {
         let (left_m, step_m, parts) = (ends[0], (ends[1] - ends[0]) / parts(module) as f64, parts(module));
-        (0..parts).map(move |place| left_m + step_m * place as f64).collect::<Vec<_>>()
+        (0..parts)
+            .map(move |place| left_m + step_m * place as f64)
+            .collect::<Vec<_>>()
     };
     let places = ends_m.windows(2).zip(&boxes).flat_map(of_module);
     places.chain(ends_m.last().copied()).collect()
