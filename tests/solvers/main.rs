@@ -6,6 +6,7 @@ mod chain_scenario;
 mod dashpots;
 mod energy;
 mod joints;
+mod kinds;
 mod lanes;
 mod meshed;
 mod operator;

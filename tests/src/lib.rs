@@ -98,7 +98,7 @@ pub fn condensed(design: &BridgeDesign, fixed_master_modes: usize, bottom_master
 pub struct Ready {
     /// What it was built from.
     pub design: BridgeDesign,
-    /// The module.
+    /// The module; of a row of kinds the first.
     pub module: PreparedModule,
     /// Floating free.
     pub free: Arc<Bridge>,
@@ -109,16 +109,20 @@ pub struct Ready {
 impl Ready {
     /// Prepares a design.
     pub fn new(design: &BridgeDesign, model: Model) -> Self {
-        Self::of(design, PreparedModule::new(design, model).expect("a module"))
+        Self::of_kinds(design, PreparedModule::of_kinds(design, model).expect("modules"))
     }
 
     /// Prepares a design with a module that was made otherwise.
     pub fn of(design: &BridgeDesign, module: PreparedModule) -> Self {
-        let [free, bridge] =
-            [Ends::Free, Ends::Supported].map(|ends| Arc::new(Bridge::new(design, &module, ends).expect("a bridge")));
+        Self::of_kinds(design, vec![module])
+    }
+
+    fn of_kinds(design: &BridgeDesign, mut modules: Vec<PreparedModule>) -> Self {
+        let bridge = |ends| Arc::new(Bridge::of_kinds(design, &modules, ends).expect("a bridge"));
+        let [free, bridge] = [Ends::Free, Ends::Supported].map(bridge);
         Self {
             design: design.clone(),
-            module,
+            module: modules.swap_remove(0),
             free,
             bridge,
         }

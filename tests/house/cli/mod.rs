@@ -17,6 +17,7 @@ mod export_stage;
 mod export_stresses;
 mod figures;
 mod joints;
+mod kinds;
 mod old_results;
 mod operator;
 mod recorded;

@@ -115,7 +115,6 @@ mod tests {
             (json!(-3), "-3"),
             (json!(3.5), "3.5"),
             (json!("three"), "\"three\""),
-            (json!([3]), "a list"),
             (json!({}), "an object"),
             (json!(null), "null"),
             (json!(true), "true"),
@@ -125,7 +124,7 @@ mod tests {
             let e = refused(&value);
             assert_eq!(
                 (e.path.as_str(), e.found.text().as_str(), e.allowed.as_str()),
-                ("modules", word, "a whole number of at least 0"),
+                ("modules", word, "a whole number of at least 0, or a list of modules"),
                 "{e}"
             );
         }
