@@ -22,7 +22,8 @@ pub struct ConnectorPlace {
     pub joint: usize,
     /// Place across `[m]`.
     pub y_m: f64,
-    /// `e = row . u`: the right deck node's motion along x minus the left one's; of a bank's spring the motion along its sense.
+    /// `e = row . u`: the right deck node's motion along x minus the left one's, between decks of unlike depth at the height of
+    /// the lower one; of a bank's spring the motion along its sense.
     pub row: SparseRow,
     /// The bank that it is a spring of; none of a connector.
     pub bank: Option<usize>,
@@ -335,10 +336,11 @@ impl Places<'_> {
         let mut connectors = Vec::new();
         for j in 1..self.modules.len() {
             let [left, right] = [j - 1, j].map(|j| self.modules.grid(j));
+            let height_m = self.modules.depth_m(j - 1).min(self.modules.depth_m(j));
             for &y_m in &self.design.connectors.y_m {
                 if let (Some(left_iy), Some(right_iy)) = (left.y_line(y_m), right.y_line(y_m)) {
-                    let left = self.of(j - 1, left.deck(left.x.len() - 1, left_iy), X);
-                    let right = self.of(j, right.deck(0, right_iy), X);
+                    let left = self.at_height(j - 1, (left.x.len() - 1, left_iy), height_m);
+                    let right = self.at_height(j, (0, right_iy), height_m);
                     connectors.push(ConnectorPlace {
                         joint: j + 1,
                         y_m,
@@ -349,6 +351,18 @@ impl Places<'_> {
             }
         }
         connectors
+    }
+
+    /// Gives the motion along the bridge of a module's end at a height: of its deck, or lower down linear between bottom and
+    /// deck, so that two ends that turn together have no elongation between them.
+    fn at_height(&self, j: usize, (ix, iy): (usize, usize), height_m: f64) -> SparseRow {
+        let (grid, share) = (self.modules.grid(j), height_m / self.modules.depth_m(j));
+        let deck = self.of(j, grid.deck(ix, iy), X);
+        if share >= 1.0 {
+            return deck;
+        }
+        let bottom = self.of(j, grid.bottom(ix, iy), X);
+        SparseRow::combine(&[(share, &deck), (1.0 - share, &bottom)])
     }
 
     /// Makes the row of a bank's spring: the motion of its node along its sense.

@@ -81,6 +81,11 @@ impl<'a> Modules<'a> {
         self.positions_m[j]
     }
 
+    /// Depth of a module `[m]`.
+    pub(super) fn depth_m(&self, j: usize) -> f64 {
+        self.design(j).module.depth_m
+    }
+
     /// The design of a module.
     pub(super) fn design(&self, j: usize) -> &BridgeDesign {
         &self.designs[self.of_module[j]]

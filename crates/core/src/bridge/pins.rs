@@ -107,7 +107,7 @@ pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
                 connectors_y_m: design.connectors.y_m.clone(),
                 first_pin,
                 pins_y_m: design.hinges_of(joint).y_m.clone(),
-                depth_m: 0.5 * (boxes[joint - 2].depth_m + boxes[joint - 1].depth_m),
+                depth_m: boxes[joint - 2].depth_m.min(boxes[joint - 1].depth_m),
             };
             first_pin += parts.pins_y_m.len();
             parts
