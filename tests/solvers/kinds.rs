@@ -7,7 +7,7 @@
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver};
 use pontoon_core::bridge::{BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
 use pontoon_core::operator::{BridgeOperator, Followed};
-use pontoon_core::response::{CrossingResponse, Record};
+use pontoon_core::response::{CrossingResponse, Record, Section};
 use pontoon_core::stop::Stop;
 use pontoon_core::vehicle::Inertia;
 use pontoon_tests::operated::{Apart, Both, deflections, forces, operator};
@@ -171,16 +171,25 @@ fn condensed_kinds_keep_the_frequencies_of_the_full_model() {
 }
 
 /// Load, water and supports of a static case add up to zero, force and both moments: 1e-8 of the load's. Twin: 5 % more load.
+/// Pins and connectors of a joint pull along the bridge as much as they push: 1e-8 of the largest. Twin: connectors 5 % off.
 #[test]
 fn a_row_of_kinds_is_in_equilibrium() {
     let ready = Ready::new(&unlike(1.0), Model::SuperElement);
     let vehicle = footprint(&[-0.4, 2.4], Inertia::None);
     for x_m in [2.0, 5.0, 9.0, 20.0] {
         let case = ready.case(gaps(0.002, 0.001), PAPER_LOAD_N, x_m);
-        let e = ready.statics(&vehicle).solve(&case).expect("solved").equilibrium;
+        let answer = ready.statics(&vehicle).solve(&case).expect("solved");
+        let e = answer.equilibrium;
         let sum = |factor: f64, i: usize| (factor * e.load[i] + e.water[i] + e.supports[i]).abs() / e.load[i].abs();
         let [right, wrong] = [1.0, 1.05].map(|factor| largest((0..3).map(|i| sum(factor, i))));
         held("equilibrium of kinds", 1e-8, right, wrong);
+        let forces = || answer.joints.iter().map(|joint| joint.sum_n);
+        let scale = largest(forces().map(f64::abs));
+        let [right, wrong] = [0.0, 0.05].map(|off| {
+            let joints = answer.sections.iter().zip(forces());
+            largest(joints.map(|(section, sum)| (section[Section::Axial as usize] + off * sum).abs())) / scale
+        });
+        held("axial force of joints", 1e-8, right, wrong);
     }
 }
 

@@ -191,6 +191,14 @@ fn rows_that_no_bridge_can_have_are_refused_at_the_key() {
         &["module_kinds.ramp.module.mesh.elements_between_lines: found 2"],
     );
     refuses(
+        |b| {
+            b["hinges"]["y_m"][0] = json!(-2.02);
+            b["module_kinds"]["ramp"]["module"]["depth_m"] = json!(1.0);
+            b["module_kinds"]["ramp"]["freeboard_m"] = json!(0.903);
+        },
+        &["connectors.y_m[0]: found -2.02, allowed: a place without a hinge: the depths at joint 3"],
+    );
+    refuses(
         |b| b["hinges"]["y_m"] = json!([-5.0, 0.0]),
         &["hinges.y_m[0]: found -5"],
     );

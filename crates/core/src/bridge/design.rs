@@ -178,6 +178,7 @@ impl BridgeDesign {
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
         self.joints.check(self.modules, half, &self.connectors)?;
+        self.check_unlike_depths()?;
         check_banks(self)?;
         if self.condensation.fixed_master_modes > 400 {
             return Err(InvalidInput::new(

@@ -272,6 +272,25 @@ impl BridgeDesign {
         }
     }
 
+    /// Refuses connectors above a hinge at a joint of unlike depths, where they would act on the hinge itself.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    pub(super) fn check_unlike_depths(&self) -> Result<(), InvalidInput> {
+        let boxes = self.boxes();
+        let unlike = (2..=self.modules).filter(|joint| boxes[joint - 2].depth_m != boxes[joint - 1].depth_m);
+        for joint in unlike {
+            let hinges = &self.hinges_of(joint).y_m;
+            let above = |y_m: &f64| hinges.iter().any(|hinge| (hinge - y_m).abs() <= SAME_PLACE_M);
+            if let Some(i) = self.connectors.y_m.iter().position(above) {
+                let allowed = format!("a place without a hinge: the depths at joint {joint} are not alike");
+                let refused = InvalidInput::new(format!("connectors.y_m[{i}]"), self.connectors.y_m[i], allowed);
+                return Err(refused.because(Problem::Conflict));
+            }
+        }
+        Ok(())
+    }
+
     /// Length of the shortest module `[m]`.
     pub fn shortest_module_m(&self) -> f64 {
         match &self.row {
@@ -283,10 +302,13 @@ impl BridgeDesign {
         }
     }
 
-    /// The box of the deepest module.
-    pub fn deepest(&self) -> &ModuleDesign {
-        let boxes = self.boxes().into_iter();
-        boxes.fold(&self.module, |a, b| if b.depth_m > a.depth_m { b } else { a })
+    /// The box of the deepest module, and its still-water draft where its kind has one `[m]`.
+    pub fn deepest(&self) -> (&ModuleDesign, Option<f64>) {
+        let kinds = self.row.iter().flat_map(ModuleRow::kinds_in_row);
+        let each = kinds.map(|kind| (&kind.module, kind.draft_m));
+        each.fold((&self.module, self.draft_m), |a, b| {
+            if b.0.depth_m > a.0.depth_m { b } else { a }
+        })
     }
 
     /// Place of each position along the bridge `[m]`: the left end of each module and the right end of the last. Modules of one

@@ -43,7 +43,7 @@ impl Pictures {
         Self {
             mesh: mesh(ready),
             joints: joints(ready, DRAWN * design.shortest_module_m()),
-            depth_m: design.deepest().depth_m,
+            depth_m: design.deepest().0.depth_m,
         }
     }
 

@@ -150,16 +150,17 @@ pub struct BridgeNote {
 impl BridgeNote {
     fn of(job: &Job) -> Self {
         let design = &job.bridge.design;
+        let (deepest, draft_m) = design.deepest();
         Self {
             modules: design.modules,
             module_length_m: design.shortest_module_m(),
             breadth_m: design.module.breadth_m,
-            depth_m: design.deepest().depth_m,
+            depth_m: deepest.depth_m,
             module_depth_m: match &design.row {
                 Some(_) => design.boxes().iter().map(|module| module.depth_m).collect(),
                 None => Vec::new(),
             },
-            draft_m: design.draft_m,
+            draft_m,
             position_x_m: (1..=design.positions())
                 .map(|position| design.position_x_m(position))
                 .collect(),
