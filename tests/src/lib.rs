@@ -90,6 +90,7 @@ pub fn condensed(design: &BridgeDesign, fixed_master_modes: usize, bottom_master
         d.condensation = Condensation {
             fixed_master_modes,
             bottom_masters,
+            ..d.condensation
         };
     })
 }

@@ -125,6 +125,10 @@ pub struct Condensation {
     /// Whether z of all bottom nodes, which carry the water, are masters too.
     #[serde(default)]
     pub bottom_masters: bool,
+    /// Whether x of the bottom at the connectors' places of both ends are masters, as in every row of unlike depths, whose
+    /// connectors reach below a deck.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub end_masters: bool,
 }
 
 fn default_fixed_master_modes() -> usize {
@@ -136,6 +140,7 @@ impl Default for Condensation {
         Self {
             fixed_master_modes: default_fixed_master_modes(),
             bottom_masters: false,
+            end_masters: false,
         }
     }
 }

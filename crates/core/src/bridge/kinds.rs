@@ -189,6 +189,8 @@ impl ModuleRow {
     /// The variants of the row of `design`.
     pub(super) fn variants(&self, design: &BridgeDesign) -> Variants {
         let joint_lines_y_m = design.joint_lines_y_m();
+        let depth_m = design.module.depth_m;
+        let unlike_depths = self.kinds.values().any(|kind| kind.module.depth_m != depth_m);
         let mut variants = Variants {
             designs: Vec::new(),
             of_module: Vec::with_capacity(design.modules),
@@ -199,6 +201,7 @@ impl ModuleRow {
                 continue;
             };
             let mut of_kind = design.of_kind(kind);
+            of_kind.condensation.end_masters |= unlike_depths;
             let module = &mut of_kind.module;
             module.lines_y_m.extend(self.lines_of_others(kind, &joint_lines_y_m));
             if let Some(mirrored) = module.mirrored().filter(|_| run.mirrored) {

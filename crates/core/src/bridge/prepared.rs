@@ -360,6 +360,9 @@ fn masters(design: &BridgeDesign, grid: &Grid) -> Vec<usize> {
         }
         for iy in design.connectors.y_m.iter().filter_map(|&y| grid.y_line(y)) {
             masters.insert(grid.deck(ix, iy).dof(X));
+            if design.condensation.end_masters {
+                masters.insert(grid.bottom(ix, iy).dof(X));
+            }
         }
     }
     for ix in 0..nx {
