@@ -2,16 +2,22 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
+mod written;
+
 use super::banks::{BankSpec, bank_law, check_banks};
+use super::buoyancy::{DraftBuoyancy, Todd};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
-use super::kinds::{ModuleRow, Variants};
+use super::kinds::{ModuleKind, ModuleRow, key_of};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
-use crate::input::{InvalidInput, Problem, not_negative, positive, within};
+use crate::input::{InvalidInput, Problem, SAME_PLACE_M, not_negative, positive};
 use crate::module::{MeshSize, ModuleDesign, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use written::WrittenBridge;
 
 /// A bridge of modules side by side, as one of the two forms of its file has it: equal modules, or a row of kinds.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,31 +61,19 @@ pub struct BridgeDesign {
     /// The kinds in their row, where modules are not alike.
     pub row: Option<ModuleRow>,
     /// What its file says beside the form that it has chosen; [`BridgeDesign::check`] refuses it.
-    pub(super) fault: Option<Box<InvalidInput>>,
+    fault: Option<Box<InvalidInput>>,
 }
 
-/// Buoyancy of one module against draft.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DraftBuoyancy {
-    /// Drafts, increasing `[m]`.
-    pub draft_m: Vec<f64>,
-    /// Buoyancy of a module at each draft `[N]`.
-    pub buoyancy_n: Vec<f64>,
-    /// The draft at which the unloaded module floats `[m]`.
-    pub still_water_draft_m: f64,
-}
-
-/// Todd's formula, `m_a = 1/2 pi rho_w C J (B/2)^2` per metre.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Todd {
-    /// Density of the water rho_w `[kg/m^3]`.
-    pub water_density_kg_m3: f64,
-    /// Section coefficient C.
-    pub section_coefficient: f64,
-    /// Three-dimensional correction J.
-    pub three_dimensional_correction: f64,
+/// The modules of a row as they are built: what differs stands here once, a mirrored kind apart from the kind unless it is its
+/// own mirror image.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variants {
+    /// The design of a bridge of each variant alone: what [`PreparedModule::new`](super::PreparedModule::new) takes.
+    pub designs: Vec<BridgeDesign>,
+    /// Of each module of the row which variant it is.
+    pub of_module: Vec<usize>,
+    /// What the keys of each variant's kind begin with, see [`BridgeDesign::named_kinds`].
+    pub keys: Vec<String>,
 }
 
 /// A direction of translation.
@@ -142,6 +136,29 @@ impl Default for Condensation {
             bottom_masters: false,
             end_masters: false,
         }
+    }
+}
+
+impl<'de> Deserialize<'de> for BridgeDesign {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let written = WrittenBridge::deserialize(deserializer)?;
+        written.design().map_err(D::Error::missing_field)
+    }
+}
+
+impl Serialize for BridgeDesign {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        WrittenBridge::of(self).serialize(serializer)
+    }
+}
+
+impl JsonSchema for BridgeDesign {
+    fn schema_name() -> Cow<'static, str> {
+        "BridgeDesign".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        WrittenBridge::json_schema(generator)
     }
 }
 
@@ -427,6 +444,114 @@ impl BridgeDesign {
         }
     }
 
+    /// The bridge as one of modules of a kind alone.
+    fn of_kind(&self, kind: &ModuleKind) -> Self {
+        Self {
+            row: None,
+            module: kind.module.clone(),
+            hydrostatic_stiffness_pa_m: kind.hydrostatic_stiffness_pa_m,
+            draft_buoyancy: kind.draft_buoyancy.clone(),
+            added_mass_kg_m: kind.added_mass_kg_m,
+            todd: kind.todd,
+            draft_m: kind.draft_m,
+            freeboard_m: kind.freeboard_m,
+            ..self.clone()
+        }
+    }
+
+    /// What its modules are built as. In a row of unlike depths connectors reach below decks, at nodes that are then masters.
+    pub fn variants(&self) -> Variants {
+        let Some(row) = &self.row else {
+            return Variants {
+                designs: vec![self.clone()],
+                of_module: vec![0; self.modules],
+                keys: vec![String::new()],
+            };
+        };
+        let (built, of_module) = row.built(&self.joint_lines_y_m());
+        let design = |(_, kind): &(&str, ModuleKind)| {
+            let mut design = self.of_kind(kind);
+            design.condensation.end_masters |= row.has_unlike_depths();
+            design
+        };
+        Variants {
+            designs: built.iter().map(design).collect(),
+            of_module,
+            keys: built.iter().map(|(name, _)| key_of(name)).collect(),
+        }
+    }
+
+    /// Each kind with what its keys begin with: `module_kinds.ramp` of a named kind, nothing of the only one.
+    pub fn named_kinds(&self) -> Vec<(String, Self)> {
+        let Some(row) = &self.row else {
+            return vec![(String::new(), self.clone())];
+        };
+        let kinds = row.kinds.iter();
+        kinds.map(|(name, kind)| (key_of(name), self.of_kind(kind))).collect()
+    }
+
+    /// The box of each module from left to right; of a mirrored one as its kind has it.
+    pub fn boxes(&self) -> Vec<&ModuleDesign> {
+        match &self.row {
+            Some(row) => row.kinds_in_row().map(|kind| &kind.module).collect(),
+            None => vec![&self.module; self.modules],
+        }
+    }
+
+    /// Refuses connectors above a hinge at a joint of unlike depths, where they would act on the hinge itself.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with the key's path.
+    fn check_unlike_depths(&self) -> Result<(), InvalidInput> {
+        let boxes = self.boxes();
+        let unlike = (2..=self.modules).filter(|joint| boxes[joint - 2].depth_m != boxes[joint - 1].depth_m);
+        for joint in unlike {
+            let hinges = &self.hinges_of(joint).y_m;
+            let above = |y_m: &f64| hinges.iter().any(|hinge| (hinge - y_m).abs() <= SAME_PLACE_M);
+            if let Some(i) = self.connectors.y_m.iter().position(above) {
+                let allowed = format!("a place without a hinge: the depths at joint {joint} are not alike");
+                let refused = InvalidInput::new(format!("connectors.y_m[{i}]"), self.connectors.y_m[i], allowed);
+                return Err(refused.because(Problem::Conflict));
+            }
+        }
+        Ok(())
+    }
+
+    /// Length of the shortest module `[m]`.
+    pub fn shortest_module_m(&self) -> f64 {
+        match &self.row {
+            None => self.module.length_m,
+            Some(row) => {
+                let lengths = row.kinds_in_row().map(|kind| kind.module.length_m);
+                lengths.fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
+    /// The box of the deepest module, and its still-water draft where its kind has one `[m]`.
+    pub fn deepest(&self) -> (&ModuleDesign, Option<f64>) {
+        let kinds = self.row.iter().flat_map(ModuleRow::kinds_in_row);
+        let each = kinds.map(|kind| (&kind.module, kind.draft_m));
+        each.fold((&self.module, self.draft_m), |a, b| {
+            if b.0.depth_m > a.0.depth_m { b } else { a }
+        })
+    }
+
+    /// Place of each position along the bridge `[m]`: the left end of each module and the right end of the last. Modules of one
+    /// length side by side are multiplied, not added.
+    pub fn positions_m(&self) -> Vec<f64> {
+        let lengths: Vec<f64> = self.boxes().iter().map(|module| module.length_m).collect();
+        let (mut places, mut first, mut from_m) = (vec![0.0], 0, 0.0);
+        for (j, &length_m) in lengths.iter().enumerate() {
+            if length_m.to_bits() != lengths[first].to_bits() {
+                from_m += (j - first) as f64 * lengths[first];
+                first = j;
+            }
+            places.push(from_m + (j + 1 - first) as f64 * length_m);
+        }
+        places
+    }
+
     /// Mass of one module's plates and beams `[kg]`, of a row of kinds the first one's: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
     /// Verified by `tests/solvers/superelement.rs`.
     pub fn structural_mass_kg(&self) -> f64 {
@@ -455,70 +580,6 @@ impl BridgeDesign {
 /// A length to the millimetre, for a message.
 fn metres(length_m: f64) -> f64 {
     (length_m * 1e3).round() / 1e3
-}
-
-impl DraftBuoyancy {
-    fn check(&self) -> Result<(), InvalidInput> {
-        if self.draft_m.len() < 2 {
-            return Err(InvalidInput::new(
-                "draft_m",
-                format!("{} entries", self.draft_m.len()),
-                "at least two drafts",
-            ));
-        }
-        if self.buoyancy_n.len() != self.draft_m.len() {
-            return Err(InvalidInput::new(
-                "buoyancy_n",
-                format!("{} entries", self.buoyancy_n.len()),
-                format!("{} entries, one a draft", self.draft_m.len()),
-            ));
-        }
-        for (key, list) in [("draft_m", &self.draft_m), ("buoyancy_n", &self.buoyancy_n)] {
-            for (i, w) in list.windows(2).enumerate() {
-                not_negative(&format!("{key}[{i}]"), w[0])?;
-                if !(w[1].is_finite() && w[1] > w[0]) {
-                    return Err(InvalidInput::new(
-                        format!("{key}[{}]", i + 1),
-                        w[1],
-                        format!("above {}", w[0]),
-                    ));
-                }
-            }
-        }
-        let last = self.draft_m[self.draft_m.len() - 1];
-        within("still_water_draft_m", self.still_water_draft_m, self.draft_m[0], last).map(|_| ())
-    }
-
-    /// Slope of the table at the still-water draft `[N/m]`: of the segment that holds it, of the two neighbours' mean
-    /// on a table point.
-    pub(crate) fn slope_n_m(&self) -> f64 {
-        let slope = |i: usize| (self.buoyancy_n[i + 1] - self.buoyancy_n[i]) / (self.draft_m[i + 1] - self.draft_m[i]);
-        let at = self.still_water_draft_m;
-        let segments: Vec<f64> = (0..self.draft_m.len() - 1)
-            .filter(|&i| self.draft_m[i] <= at && at <= self.draft_m[i + 1])
-            .map(slope)
-            .collect();
-        segments.iter().sum::<f64>() / segments.len() as f64
-    }
-}
-
-impl Todd {
-    fn check(&self) -> Result<(), InvalidInput> {
-        positive("water_density_kg_m3", self.water_density_kg_m3)?;
-        positive("section_coefficient", self.section_coefficient)?;
-        positive("three_dimensional_correction", self.three_dimensional_correction)?;
-        Ok(())
-    }
-
-    /// `m_a = 1/2 pi rho_w C J (B/2)^2` `[kg/m]`.
-    /// Equation (W1).
-    pub fn added_mass_kg_m(&self, breadth_m: f64) -> f64 {
-        0.5 * std::f64::consts::PI
-            * self.water_density_kg_m3
-            * self.section_coefficient
-            * self.three_dimensional_correction
-            * (0.5 * breadth_m).powi(2)
-    }
 }
 
 /// What is wrong where exactly one of two keys is needed and both or neither are given.

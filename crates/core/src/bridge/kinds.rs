@@ -1,9 +1,8 @@
 //! Modules that are not alike: kinds by name, and the row in which they stand.
 //!
-//! Knows which kind stands at each place of the row and how a kind becomes the design of a bridge of its like. Does not know
-//! matrices.
+//! Knows which kind stands at each place of the row, and which ends can be joined. Does not know the rest of a bridge.
 
-use super::{BridgeDesign, DraftBuoyancy, Todd};
+use super::buoyancy::{DraftBuoyancy, Todd};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M};
 use crate::module::ModuleDesign;
 use schemars::JsonSchema;
@@ -67,18 +66,6 @@ pub struct ModuleRow {
     pub kinds: BTreeMap<String, ModuleKind>,
     /// The modules from left to right.
     pub runs: Vec<ModuleRun>,
-}
-
-/// The modules of a row as they are built: what differs stands here once, a mirrored kind apart from the kind unless it is its
-/// own mirror image.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Variants {
-    /// The design of a bridge of each variant alone: what [`PreparedModule::new`](super::PreparedModule::new) takes.
-    pub designs: Vec<BridgeDesign>,
-    /// Of each module of the row which variant it is.
-    pub of_module: Vec<usize>,
-    /// What the keys of each variant's kind begin with, see [`BridgeDesign::named_kinds`].
-    pub keys: Vec<String>,
 }
 
 impl ModuleRow {
@@ -186,36 +173,33 @@ impl ModuleRow {
         known.split_off(own)
     }
 
-    /// The variants of the row of `design`.
-    pub(super) fn variants(&self, design: &BridgeDesign) -> Variants {
-        let joint_lines_y_m = design.joint_lines_y_m();
-        let depth_m = design.module.depth_m;
-        let unlike_depths = self.kinds.values().any(|kind| kind.module.depth_m != depth_m);
-        let mut variants = Variants {
-            designs: Vec::new(),
-            of_module: Vec::with_capacity(design.modules),
-            keys: Vec::new(),
-        };
+    /// What the row is built of, each with the name of its kind, and of each module which it is: what differs stands there once, a
+    /// mirrored kind apart from the kind unless it is its own mirror image.
+    pub(super) fn built(&self, joint_lines_y_m: &[f64]) -> (Vec<(&str, ModuleKind)>, Vec<usize>) {
+        let (mut built, mut of_module): (Vec<(&str, ModuleKind)>, _) = (Vec::new(), Vec::new());
         for run in &self.runs {
             let Some(kind) = self.kinds.get(&run.kind) else {
                 continue;
             };
-            let mut of_kind = design.of_kind(kind);
-            of_kind.condensation.end_masters |= unlike_depths;
-            let module = &mut of_kind.module;
-            module.lines_y_m.extend(self.lines_of_others(kind, &joint_lines_y_m));
-            if let Some(mirrored) = module.mirrored().filter(|_| run.mirrored) {
-                *module = mirrored;
+            let mut own = kind.clone();
+            own.module.lines_y_m.extend(self.lines_of_others(kind, joint_lines_y_m));
+            if let Some(mirrored) = own.module.mirrored().filter(|_| run.mirrored) {
+                own.module = mirrored;
             }
-            let known = variants.designs.iter().position(|design| *design == of_kind);
-            let number = known.unwrap_or(variants.designs.len());
+            let known = built.iter().position(|(_, kind)| *kind == own);
+            let number = known.unwrap_or(built.len());
             if known.is_none() {
-                variants.designs.push(of_kind);
-                variants.keys.push(key_of(&run.kind));
+                built.push((run.kind.as_str(), own));
             }
-            variants.of_module.extend(std::iter::repeat_n(number, run.count));
+            of_module.extend(std::iter::repeat_n(number, run.count));
         }
-        variants
+        (built, of_module)
+    }
+
+    /// Whether some kinds have other depths than others.
+    pub(super) fn has_unlike_depths(&self) -> bool {
+        let depths: Vec<f64> = self.kinds.values().map(|kind| kind.module.depth_m).collect();
+        depths.windows(2).any(|pair| pair[0] != pair[1])
     }
 }
 
@@ -228,104 +212,4 @@ pub(super) fn key_of(name: &str) -> String {
 fn is_word(name: &str) -> bool {
     let of_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(of_word)
-}
-
-impl BridgeDesign {
-    /// The bridge as one of modules of a kind alone.
-    pub(super) fn of_kind(&self, kind: &ModuleKind) -> Self {
-        Self {
-            row: None,
-            module: kind.module.clone(),
-            hydrostatic_stiffness_pa_m: kind.hydrostatic_stiffness_pa_m,
-            draft_buoyancy: kind.draft_buoyancy.clone(),
-            added_mass_kg_m: kind.added_mass_kg_m,
-            todd: kind.todd,
-            draft_m: kind.draft_m,
-            freeboard_m: kind.freeboard_m,
-            ..self.clone()
-        }
-    }
-
-    /// What its modules are built as.
-    pub fn variants(&self) -> Variants {
-        match &self.row {
-            Some(row) => row.variants(self),
-            None => Variants {
-                designs: vec![self.clone()],
-                of_module: vec![0; self.modules],
-                keys: vec![String::new()],
-            },
-        }
-    }
-
-    /// Each kind with what its keys begin with: `module_kinds.ramp` of a named kind, nothing of the only one.
-    pub fn named_kinds(&self) -> Vec<(String, Self)> {
-        let Some(row) = &self.row else {
-            return vec![(String::new(), self.clone())];
-        };
-        let kinds = row.kinds.iter();
-        kinds.map(|(name, kind)| (key_of(name), self.of_kind(kind))).collect()
-    }
-
-    /// The box of each module from left to right; of a mirrored one as its kind has it.
-    pub fn boxes(&self) -> Vec<&ModuleDesign> {
-        match &self.row {
-            Some(row) => row.kinds_in_row().map(|kind| &kind.module).collect(),
-            None => vec![&self.module; self.modules],
-        }
-    }
-
-    /// Refuses connectors above a hinge at a joint of unlike depths, where they would act on the hinge itself.
-    ///
-    /// # Errors
-    /// [`InvalidInput`] with the key's path.
-    pub(super) fn check_unlike_depths(&self) -> Result<(), InvalidInput> {
-        let boxes = self.boxes();
-        let unlike = (2..=self.modules).filter(|joint| boxes[joint - 2].depth_m != boxes[joint - 1].depth_m);
-        for joint in unlike {
-            let hinges = &self.hinges_of(joint).y_m;
-            let above = |y_m: &f64| hinges.iter().any(|hinge| (hinge - y_m).abs() <= SAME_PLACE_M);
-            if let Some(i) = self.connectors.y_m.iter().position(above) {
-                let allowed = format!("a place without a hinge: the depths at joint {joint} are not alike");
-                let refused = InvalidInput::new(format!("connectors.y_m[{i}]"), self.connectors.y_m[i], allowed);
-                return Err(refused.because(Problem::Conflict));
-            }
-        }
-        Ok(())
-    }
-
-    /// Length of the shortest module `[m]`.
-    pub fn shortest_module_m(&self) -> f64 {
-        match &self.row {
-            None => self.module.length_m,
-            Some(row) => {
-                let lengths = row.kinds_in_row().map(|kind| kind.module.length_m);
-                lengths.fold(f64::INFINITY, f64::min)
-            }
-        }
-    }
-
-    /// The box of the deepest module, and its still-water draft where its kind has one `[m]`.
-    pub fn deepest(&self) -> (&ModuleDesign, Option<f64>) {
-        let kinds = self.row.iter().flat_map(ModuleRow::kinds_in_row);
-        let each = kinds.map(|kind| (&kind.module, kind.draft_m));
-        each.fold((&self.module, self.draft_m), |a, b| {
-            if b.0.depth_m > a.0.depth_m { b } else { a }
-        })
-    }
-
-    /// Place of each position along the bridge `[m]`: the left end of each module and the right end of the last. Modules of one
-    /// length side by side are multiplied, not added.
-    pub fn positions_m(&self) -> Vec<f64> {
-        let lengths: Vec<f64> = self.boxes().iter().map(|module| module.length_m).collect();
-        let (mut places, mut first, mut from_m) = (vec![0.0], 0, 0.0);
-        for (j, &length_m) in lengths.iter().enumerate() {
-            if length_m.to_bits() != lengths[first].to_bits() {
-                from_m += (j - first) as f64 * lengths[first];
-                first = j;
-            }
-            places.push(from_m + (j + 1 - first) as f64 * length_m);
-        }
-        places
-    }
 }

@@ -4,6 +4,7 @@
 
 mod assembly;
 mod banks;
+mod buoyancy;
 mod design;
 mod fit;
 mod joints;
@@ -19,14 +20,14 @@ mod provenance;
 mod row;
 mod stresses;
 mod track;
-mod written;
 
 pub(crate) use assembly::ModulePlace;
 pub use assembly::{Bridge, ConnectorPlace};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
-pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports, Todd};
+pub use buoyancy::{DraftBuoyancy, Todd};
+pub use design::{BridgeDesign, Condensation, Direction, Supports, Variants};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
-pub use kinds::{ModuleKind, ModuleRow, ModuleRun, Variants};
+pub use kinds::{ModuleKind, ModuleRow, ModuleRun};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 #[cfg(test)]

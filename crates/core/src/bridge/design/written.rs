@@ -3,17 +3,19 @@
 //! Knows how a number with one module and a list with kinds become one design, and how a design is written again. Does not
 //! know whether the numbers are a bridge's.
 
-use super::banks::BankSpec;
-use super::joints::{Connectors, Hinges, Joints};
-use super::kinds::{ModuleKind, ModuleRow, ModuleRun};
-use super::{BridgeDesign, Condensation, DraftBuoyancy, Provenance, Supports, Todd};
+use super::{BridgeDesign, Condensation, Supports};
+use crate::bridge::Provenance;
+use crate::bridge::banks::BankSpec;
+use crate::bridge::buoyancy::{DraftBuoyancy, Todd};
+use crate::bridge::joints::{Connectors, Hinges, Joints};
+use crate::bridge::kinds::{ModuleKind, ModuleRow, ModuleRun};
 use crate::input::{InvalidInput, Problem};
 use crate::module::ModuleDesign;
 use crate::water::WaterDistribution;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,7 +24,7 @@ use std::fmt;
 /// `module_kinds`.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "BridgeDesign")]
-struct WrittenBridge {
+pub(super) struct WrittenBridge {
     /// Name of the bridge.
     name: String,
     /// Where the numbers come from.
@@ -156,7 +158,7 @@ impl WrittenBridge {
     ///
     /// # Errors
     /// The key that is missing: of a design without a module nothing can be said.
-    fn design(self) -> Result<BridgeDesign, &'static str> {
+    pub(super) fn design(self) -> Result<BridgeDesign, &'static str> {
         let fault = self.fault().map(Box::new);
         let (modules, row) = match self.modules {
             WrittenModules::Count(count) => (count, None),
@@ -206,7 +208,7 @@ impl WrittenBridge {
     }
 
     /// How a design is written.
-    fn of(design: &BridgeDesign) -> Self {
+    pub(super) fn of(design: &BridgeDesign) -> Self {
         let of = design.clone();
         let plain = Self {
             name: of.name,
@@ -242,28 +244,5 @@ impl WrittenBridge {
             freeboard_m: None,
             ..plain
         }
-    }
-}
-
-impl<'de> Deserialize<'de> for BridgeDesign {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let written = WrittenBridge::deserialize(deserializer)?;
-        written.design().map_err(D::Error::missing_field)
-    }
-}
-
-impl Serialize for BridgeDesign {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        WrittenBridge::of(self).serialize(serializer)
-    }
-}
-
-impl JsonSchema for BridgeDesign {
-    fn schema_name() -> Cow<'static, str> {
-        "BridgeDesign".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        WrittenBridge::json_schema(generator)
     }
 }
