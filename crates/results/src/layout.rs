@@ -70,6 +70,7 @@ impl Layout {
             TableName::Pins => record.pins && loaded,
             TableName::Sections => record.sections && loaded,
             TableName::Places => !record.places_x_m.is_empty() && loaded,
+            TableName::Banks => loaded && jobs.iter().any(|job| !job.bridge.design.banks.is_empty()),
             TableName::AtPeaks => !record.at_peak_of.is_empty() && kind == Kind::Crossing,
             TableName::Joints => study.wear.is_some() && loaded,
         };
@@ -134,6 +135,10 @@ impl Layout {
                 }
                 ColumnSource::AtPeak(of) => {
                     let rows = rows(records, |record| &record.at_peaks);
+                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                }
+                ColumnSource::Bank(of) => {
+                    let rows = rows(records, |record| &record.banks);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
                 }
                 ColumnSource::Joint(of) => {

@@ -266,9 +266,13 @@ impl BridgeDesign {
         }
         let Supports { left, right } = &self.supports;
         for (direction, word) in [(Direction::X, "x"), (Direction::Y, "y")] {
-            if !(left.contains(&direction) || right.contains(&direction)) {
+            let on_spring = self
+                .banks
+                .iter()
+                .any(|bank| !bank.one_sided && bank.direction == direction);
+            if !(left.contains(&direction) || right.contains(&direction) || on_spring) {
                 let found = format!("no end that holds {word}");
-                let allowed = "x and y held at an end at least in a static case";
+                let allowed = "x and y held at an end at least, or by a bank both ways, in a static case";
                 return Err(InvalidInput::new("supports", found, allowed).because(Problem::Missing));
             }
         }

@@ -5,7 +5,7 @@
 use super::COLUMNS;
 use crate::arrays::CellKind;
 use crate::record::{
-    AtPeakRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
+    AtPeakRow, BankRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
 };
 use crate::table::TableName;
 use pontoon_plan::input::Cell;
@@ -73,6 +73,8 @@ pub(crate) enum ColumnSource {
     Place(fn(&RowOf<'_, PlaceRow>) -> Cell<'static>),
     /// A number at a peak.
     AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>),
+    /// A bank.
+    Bank(fn(&RowOf<'_, BankRow>) -> Cell<'static>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -373,6 +375,15 @@ pub(super) const fn at_peak(
     of: for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>,
 ) -> Column {
     column(TableName::AtPeaks, (name, cells), names, ColumnSource::AtPeak(of))
+}
+
+pub(super) const fn of_bank(
+    name: &'static str,
+    cells: CellKind,
+    names: NameAndLabel,
+    of: fn(&RowOf<'_, BankRow>) -> Cell<'static>,
+) -> Column {
+    column(TableName::Banks, (name, cells), names, ColumnSource::Bank(of))
 }
 
 pub(super) const fn of_joint(

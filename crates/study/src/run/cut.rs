@@ -63,5 +63,10 @@ fn rows(study: &Study, job: &Job) -> usize {
     // at a peak all of it and each direction of a pin
     let at_peaks = record.at_peak_of.len() * (design.positions() + places + (of_joint + 3 * pins + sections) * joints);
     let series = record.histories.series(design) * job.steps();
-    1 + positions + places + (of_joint + pins + sections) * joints + at_peaks + series
+    let banks = design
+        .banks
+        .iter()
+        .map(|bank| 2 + bank.y_m.as_ref().map_or(16, Vec::len))
+        .sum::<usize>();
+    1 + positions + places + banks + (of_joint + pins + sections) * joints + at_peaks + series
 }
