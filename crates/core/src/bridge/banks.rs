@@ -148,8 +148,8 @@ impl BankSpec {
         }
     }
 
-    /// Its position, from 1.
-    fn position(&self, modules: usize) -> usize {
+    /// Its position on a bridge of so many modules, from 1.
+    pub fn position(&self, modules: usize) -> usize {
         match self.at {
             BankPlace::End(BridgeEnd::Left) => 1,
             BankPlace::End(BridgeEnd::Right) => modules + 1,
