@@ -110,7 +110,7 @@ impl Bridge {
         let mut connectors = places.connectors();
         let joint_connectors = connectors.len();
         let springs = match ends {
-            Ends::Supported => bank_springs(design, &module.grid.y),
+            Ends::Supported => bank_springs(&design.banks, design.modules, [&design.hinges.y_m, &module.grid.y]),
             Ends::Free => Vec::new(),
         };
         let (one_sided, held): (Vec<_>, Vec<_>) = springs.into_iter().partition(|spring| spring.one_sided);

@@ -2,8 +2,9 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
-use super::banks::{BankSpec, bank_law, check_banks};
+use super::banks::{BankRoom, BankSpec, bank_law, check_banks};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
+use super::supports::{Direction, Supports};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
 use crate::input::{InvalidInput, Problem, not_negative, positive, within};
@@ -91,38 +92,6 @@ pub struct Todd {
     pub three_dimensional_correction: f64,
 }
 
-/// A direction of translation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Direction {
-    /// Along the bridge.
-    X,
-    /// Across the bridge.
-    Y,
-    /// Up.
-    Z,
-}
-
-/// Directions held at the two ends: z at all nodes of the bottom edge, x and y at its hinge places.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Supports {
-    /// At the left end.
-    pub left: Vec<Direction>,
-    /// At the right end.
-    pub right: Vec<Direction>,
-}
-
-impl Default for Supports {
-    /// The paper's: all three translations at the left end, y and z at the right.
-    fn default() -> Self {
-        Self {
-            left: vec![Direction::X, Direction::Y, Direction::Z],
-            right: vec![Direction::Y, Direction::Z],
-        }
-    }
-}
-
 /// Masters and modes of the super-element. Hinges, connectors, the deck's z and the ends' bottom edges are always
 /// masters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -182,7 +151,16 @@ impl BridgeDesign {
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
         self.joints.check(self.modules, half, &self.connectors)?;
-        check_banks(self)?;
+        check_banks(
+            &self.banks,
+            &BankRoom {
+                modules: self.modules,
+                supports: &self.supports,
+                hinges_y_m: self.hinge_lines_y_m(),
+                connectors_y_m: &self.connectors.y_m,
+                half_breadth_m: half,
+            },
+        )?;
         for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
             if let Some(value) = value {
                 positive(key, value)?;

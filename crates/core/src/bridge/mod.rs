@@ -16,11 +16,12 @@ mod product;
 mod provenance;
 mod row;
 mod stresses;
+mod supports;
 mod track;
 
 pub use assembly::{Bridge, ConnectorPlace};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
-pub use design::{BridgeDesign, Condensation, Direction, DraftBuoyancy, Supports, Todd};
+pub use design::{BridgeDesign, Condensation, DraftBuoyancy, Todd};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
@@ -33,6 +34,7 @@ pub use prepared::PreparedModule;
 pub(crate) use prepared::Side;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 pub use stresses::{BridgeStresses, StressRecovery};
+pub use supports::{Direction, Supports};
 use thiserror::Error;
 pub use track::Track;
 
