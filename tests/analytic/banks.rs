@@ -285,10 +285,10 @@ fn a_rigid_raft_turns_about_its_bank() {
     }
 }
 
-/// Largest force of the left bank `[N]` while 230.3 kN cross eight modules of the plane chain at 3 m/s, on banks of 1e9 N/m.
+/// Largest force of the left bank `[N]` while 230.3 kN cross six modules of the plane chain at 3 m/s, on banks of 1e9 N/m.
 fn hammered_n(damping_n_s_m: f64, time_step_s: f64) -> f64 {
     let bank = |end: &str| json!({ "at": end, "direction": "z", "stiffness_n_m": 1e9, "damping_n_s_m": damping_n_s_m });
-    let asked = json!({ "modules": 8, "banks": [bank("left"), bank("right")], "speed_m_s": 3,
+    let asked = json!({ "modules": 6, "banks": [bank("left"), bank("right")], "speed_m_s": 3,
                         "analysis": { "time_step_s": time_step_s, "tail_s": 0 } });
     let document = Document::of_canonical(asked.to_string());
     let scenario = ChainScenario::of(Path::new("scenario.json"), &document, None).expect("a scenario");
@@ -296,13 +296,15 @@ fn hammered_n(damping_n_s_m: f64, time_step_s: f64) -> f64 {
     answer["banks"][0]["peak_toward_n"].as_f64().expect("a force")
 }
 
-/// A stiff bank is hammered, with a dashpot and without. The free end of a half-endless beam answers a force of frequency omega with
-/// the dynamic stiffness `EI kappa^3 (i - 1) / 2`, `kappa = (mu omega^2 / EI)^(1/4)`: with a mass `m = mu / 2 kappa`, and with waves that
-/// it sends away. On the bank this mass has `kappa = (2 k_b / EI)^(1/3)` and `omega = kappa^2 sqrt(EI / mu)`, so that a contact lasts
-/// `pi / omega` = 8.0 ms. The dashpot is a fifth of the critical `2 sqrt(k_b m)`; from a half on its jump at the touch would be the largest
-/// force. 1 % between steps of a sixth and a twelfth of a contact: six steps cut the top of an arc by `(pi/12)^2 / 2` = 3.4 % at worst, by a
-/// third of that on average. Twin: steps of 5 and 2.5 ms, which do not resolve the contact. The dashpot lowers the force, and what it
-/// changes by from 5 to 1.25 ms.
+/// A stiff bank is hammered, with a dashpot and without. The free end of a half-endless beam answers a force of frequency omega
+/// with the dynamic stiffness `EI kappa^3 (i - 1) / 2`, `kappa = (mu omega^2 / EI)^(1/4)`: with a mass `m = mu / 2 kappa`, and with
+/// waves that it sends away. On the bank this mass has `kappa = (2 k_b / EI)^(1/3)` and `omega = kappa^2 sqrt(EI / mu)`, so that a
+/// contact lasts `pi / omega` = 8.0 ms. The dashpot is a fifth of the critical `2 sqrt(k_b m)`; from a half on its jump at the touch
+/// would be the largest force.
+///
+/// 1 % between steps of a sixth and a twelfth of a contact: six steps cut the top of an arc by `(pi/12)^2 / 2` = 3.4 % at worst, by
+/// a third of that on average. Twin: steps of 5 and 2.5 ms, which do not resolve the contact. The dashpot lowers the force by more
+/// than a tenth.
 #[test]
 fn the_force_of_a_hammered_bank_converges_once_steps_resolve_a_contact() {
     let (ei, mu, k_b) = (2.4e9_f64, 1013.0 + 11_135.0, 1e9_f64);
@@ -317,18 +319,7 @@ fn the_force_of_a_hammered_bank_converges_once_steps_resolve_a_contact() {
         println!("{c:.0} N s/m, steps of 5 to 0.625 ms: {forces:.0?} N");
         let what = format!("a sixth of a contact, {c:.0} N s/m");
         held(&what, 1e-2, miss(forces[2], forces[3]), miss(forces[0], forces[1]));
-        (forces[3], forces[2] - forces[0])
+        forces[3]
     });
-    assert!(
-        damped.0 < 0.9 * bare.0,
-        "the dashpot leaves {} of {} N",
-        damped.0,
-        bare.0
-    );
-    assert!(
-        damped.1 < 0.8 * bare.1,
-        "with the dashpot steps change {} N, without {} N",
-        damped.1,
-        bare.1
-    );
+    assert!(damped < 0.9 * bare, "the dashpot leaves {damped} of {bare} N");
 }
