@@ -244,15 +244,20 @@ pub struct BankRow {
     pub away: Extreme,
 }
 
-/// The rows of the banks of a job that failed: of each bank's sum.
+/// The rows of the banks of a job that failed.
 fn bank_rows_of_none(job: &Job) -> Vec<BankRow> {
-    let row = |bank: usize| BankRow {
+    let design = &job.bridge.design;
+    let row = |bank: usize, y_m: Option<f64>| BankRow {
         bank,
-        y_m: None,
+        y_m,
         toward: Extreme::default(),
         away: Extreme::default(),
     };
-    (0..job.bridge.design.banks.len()).map(row).collect()
+    let of_bank = |(bank, spec)| {
+        let places = design.bank_places_y_m(spec).into_iter().map(Some);
+        std::iter::once(None).chain(places).map(move |y_m| row(bank, y_m))
+    };
+    design.banks.iter().enumerate().flat_map(of_bank).collect()
 }
 
 /// Where and what a recorded number is.

@@ -139,12 +139,12 @@ impl BankSpec {
         of
     }
 
-    /// At how many places across it acts, on a bottom edge of so many lines and a bridge of so many hinge places.
-    pub(super) fn places(&self, edge_lines: usize, hinges: usize) -> usize {
+    /// Places across of its springs `[m]`, on a bridge with such hinge places; `edge_y_m` gives the lines of a bottom edge.
+    pub(super) fn places_y_m(&self, hinges_y_m: &[f64], edge_y_m: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
         match (&self.y_m, self.direction) {
-            (Some(y_m), _) => y_m.len(),
-            (None, Direction::Z) => edge_lines,
-            (None, _) => hinges,
+            (Some(y_m), _) => y_m.clone(),
+            (None, Direction::Z) => edge_y_m(),
+            (None, _) => hinges_y_m.to_vec(),
         }
     }
 
@@ -259,15 +259,14 @@ pub(super) fn check_banks(banks: &[BankSpec], room: &BankRoom<'_>) -> Result<(),
     Ok(())
 }
 
-/// The springs of all banks of a bridge of so many modules, bank after bank; `hinges_y_m` are its hinge places, `edge_y_m` the
-/// lines across of a module's bottom edge.
-pub(super) fn bank_springs(banks: &[BankSpec], modules: usize, [hinges_y_m, edge_y_m]: [&[f64]; 2]) -> Vec<BankSpring> {
+/// The springs of all banks of a bridge of so many modules, bank after bank, at the places across that `places_y_m` gives `[m]`.
+pub(super) fn bank_springs(
+    banks: &[BankSpec],
+    modules: usize,
+    places_y_m: impl Fn(&BankSpec) -> Vec<f64>,
+) -> Vec<BankSpring> {
     let of_bank = |(bank, spec): (usize, &BankSpec)| {
-        let places = match (&spec.y_m, spec.direction) {
-            (Some(y_m), _) => y_m.clone(),
-            (None, Direction::Z) => edge_y_m.to_vec(),
-            (None, _) => hinges_y_m.to_vec(),
-        };
+        let places = places_y_m(spec);
         let share = 1.0 / places.len() as f64;
         let spring = |y_m: f64| BankSpring {
             bank,

@@ -8,7 +8,7 @@ use super::supports::{Direction, Supports};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
 use crate::input::{InvalidInput, Problem, not_negative, positive, within};
-use crate::module::{ModuleDesign, mesh_module, mesh_size};
+use crate::module::{ModuleDesign, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -344,14 +344,19 @@ impl BridgeDesign {
         }
         let mut all = laws.to_vec();
         let mut link = (self.modules - 1) * self.connectors.y_m.len();
-        let edge_lines = mesh_size(&self.module, &self.joint_lines_y_m()).lines_across;
         for bank in self.banks.iter().filter(|bank| bank.one_sided) {
-            let places = bank.places(edge_lines, self.hinges.y_m.len());
+            let places = self.bank_places_y_m(bank).len();
             let law = bank_law(bank, 1.0 / places as f64);
             all.extend((link..link + places).map(|link| (link, law)));
             link += places;
         }
         Ok(all.into())
+    }
+
+    /// Places across of the springs of a bank `[m]`: its own, or for z all lines of a module's bottom edge and for x and y the
+    /// hinge places.
+    pub fn bank_places_y_m(&self, bank: &BankSpec) -> Vec<f64> {
+        bank.places_y_m(&self.hinges.y_m, || lines_across(&self.module, &self.joint_lines_y_m()))
     }
 
     /// Length of the bridge `[m]`.

@@ -19,7 +19,7 @@ mod stresses;
 mod supports;
 mod track;
 
-pub use assembly::{Bridge, ConnectorPlace};
+pub use assembly::{Bridge, LinkPlace};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use design::{BridgeDesign, Condensation, DraftBuoyancy, Todd};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
