@@ -23,6 +23,7 @@ use column::{
 };
 use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;
+use pontoon_plan::study_file::PeakColumn;
 use serde_json::{Value, json};
 use std::borrow::Cow;
 
@@ -43,15 +44,6 @@ fn reason(record: &JobRecord) -> Cell<'_> {
         (None, None) => Cell::Nothing,
     }
 }
-
-/// The peaks that the table of what is at peaks may name.
-const PEAKS: [&str; 5] = [
-    "peak_deflection_m",
-    "peak_uplift_m",
-    "peak_compression_n",
-    "peak_tension_n",
-    "peak_pin_n",
-];
 
 /// The columns of all tables in their order; those of the axes stand behind the state of the jobs.
 #[rustfmt::skip]
@@ -185,7 +177,7 @@ pub const COLUMNS: &[Column] = &[
     of_place("deflection_m", Numbers, ("deflection", "deflection of a static case, positive downward"), |r| r.row.static_deflection_m.into()).metres().when(When::Static),
 
     at_peak("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
-    at_peak("at_peak_of", Words(&PEAKS), ("at peak of", "the peak at whose instant the value holds"), |r| r.row.at_peak_of.as_str().into()).role(ColumnRole::Key),
+    at_peak("at_peak_of", Words(&PeakColumn::WORDS), ("at peak of", "the peak at whose instant the value holds"), |r| r.row.at_peak_of.as_str().into()).role(ColumnRole::Key),
     at_peak("peak_at", Counts, ("peak at", "position or joint of that peak where one was named; null where it is the largest of all"), |r| r.row.peak_at.into()).role(ColumnRole::Key),
     at_peak("time_s", Numbers, ("time", "when the value holds; of pins and sections a part of a time step before the others"), |r| r.row.time_s.into()).unit("s"),
     at_peak("quantity", Words(&QUANTITIES), ("quantity", "what the value is, with its unit"), |r| r.row.of.quantity.as_str().into()).role(ColumnRole::Key),

@@ -4,7 +4,7 @@
 //! know what the motion is, nor files.
 
 use super::fit::check_fit;
-use super::prepared::{PreparedModule, Side, X};
+use super::prepared::{PreparedModule, Side};
 use super::row::Row;
 use super::{BridgeDesign, BridgeError, Ends};
 use crate::fem::{DOFS_PER_NODE, SparseRow};
@@ -64,10 +64,6 @@ pub struct MeshedBridge {
     /// The motion of a condensed module's nodes in terms of its dofs: a row a translation, node after node, and below them a
     /// row a rotation.
     condensed: Option<Mat<f64>>,
-    /// Stiffness and mass of a module in the rows of its left end along x, at each place of hinges.
-    hinge_rows: Vec<[SparseRow; 2]>,
-    /// Which of these each joint's hinges are at.
-    hinge_places: Vec<Vec<usize>>,
 }
 
 impl MeshedBridge {
@@ -120,21 +116,6 @@ impl MeshedBridge {
             stations.map(move |(j, ix)| j * own + grid.deck(ix, iy).0)
         });
         let condensed = module.transformation().map(translations_first);
-        let lines: Vec<usize> = design
-            .hinge_lines_y_m()
-            .iter()
-            .filter_map(|&y| grid.y_line(y))
-            .collect();
-        let hinge_places = (2..=design.modules).map(|joint| {
-            let of_joint = design.hinges_of(joint).y_m.iter().filter_map(|&y| grid.y_line(y));
-            of_joint
-                .filter_map(|iy| lines.iter().position(|line| *line == iy))
-                .collect()
-        });
-        let hinge_rows = lines
-            .iter()
-            .filter_map(|&iy| module.dof(grid.bottom(left, iy), X))
-            .map(|dof| [&module.k, &module.m].map(|matrix| SparseRow(matrix.column(dof).collect())));
         Ok(Self {
             nodes_m: nodes_m.collect(),
             shells: shells.collect(),
@@ -144,8 +125,6 @@ impl MeshedBridge {
             deck: deck.collect(),
             map: Row::number(design, module, ends).map,
             condensed,
-            hinge_rows: hinge_rows.collect(),
-            hinge_places: hinge_places.collect(),
         })
     }
 
@@ -194,24 +173,6 @@ impl MeshedBridge {
             let share = |&(column, part): &(usize, f64)| part * displacement_m[self.deck[column]][direction];
             row.0.iter().map(share).sum()
         })
-    }
-
-    /// Force along the bridge in each hinge, tension positive `[N]`: what the module right of it needs at its left end to move
-    /// as it does, `N = -(k (u + a v) + m (u'' + b v))` in the hinge's row. `elastic` is `u + a v`, `inertial` is
-    /// `u'' + b v` or nothing at rest, both of all dofs of the bridge.
-    pub fn hinge_forces_n(&self, elastic: &[f64], inertial: Option<&[f64]>) -> Vec<f64> {
-        let of = |map: &[Option<usize>], row: &SparseRow, x: &[f64]| -> f64 {
-            let term = |&(i, v): &(usize, f64)| map[i].map_or(0.0, |dof| v * x[dof]);
-            row.0.iter().map(term).sum()
-        };
-        let of_module = |(map, places): (&Vec<Option<usize>>, &Vec<usize>)| -> Vec<f64> {
-            let force = |[k, m]: &[SparseRow; 2]| {
-                0.0 - of(map, k, elastic) - inertial.map_or(0.0, |inertial| of(map, m, inertial))
-            };
-            places.iter().map(|&place| force(&self.hinge_rows[place])).collect()
-        };
-        let right_of_joints = self.map.iter().skip(1);
-        right_of_joints.zip(&self.hinge_places).flat_map(of_module).collect()
     }
 }
 

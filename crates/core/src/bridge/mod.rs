@@ -27,7 +27,7 @@ pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
-pub(crate) use pins::{PinPlace, joint_parts};
+pub(crate) use pins::{PinPlace, PinRow, joint_parts};
 pub(crate) use placement::{VehiclePlacement, front_x_m};
 pub use prepared::PreparedModule;
 #[cfg(test)]
