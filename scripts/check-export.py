@@ -232,6 +232,9 @@ def check_joints(grid, bridge, axes):
     else:
         pull, push = axes["gap_tension_m"], axes["gap_compression_m"]
         expected = k * (np.maximum(e - pull, 0) + np.minimum(e + push, 0))
+    near("forces on the left, along", cell["force_on_left_n"][:, 0], force, 0.0)
+    across = cell["force_on_left_n"][connector, 1:]
+    near("connectors act along alone", across, np.zeros_like(across), 0.0)
     near("connector law", force[connector], expected[connector], 1e-6 * k * 1e-3)
     ends = grid.point["displacement"].reshape(-1, 2, 3)
     moved = ends[:, 1, 0] - ends[:, 0, 0]

@@ -1,5 +1,6 @@
 //! Closed forms and published benchmarks, each with its card: source, sketch, parameters, expected value, tolerance.
 
+mod banks;
 mod beam_module;
 mod critical_speed;
 mod fem_eigen;

@@ -219,7 +219,6 @@ fn what_the_chain_cannot_do_is_refused_by_its_key() {
     let wheel = |tracks: Value| json!({ "axles": [{ "behind_front_m": 0, "share": 1, "patch_length_m": 0, "track_y_m": tracks }] });
     let joint = |own: Value| json!({ "7": { "connectors": own } });
     for (path, more) in [
-        ("banks", json!({ "banks": [] })),
         ("dead", json!({ "dead": {} })),
         ("wear", json!({ "wear": {} })),
         ("modules", json!({ "modules": [{ "kind": "ramp" }] })),

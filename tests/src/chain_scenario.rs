@@ -220,7 +220,6 @@ fn filled(mut document: Value, chain: &Chain) -> Value {
     document
 }
 
-/// The chain's bridge with what its joints have of their own, checked as it is written, a joint's stiffness and damping then
 /// The bridge with banks in place of the supports there; a bank stands on the chain's two lines.
 fn with_banks(mut design: BridgeDesign, banks: &[BankSpec]) -> Result<BridgeDesign, InvalidInput> {
     design.banks = banks.to_vec();
@@ -236,6 +235,7 @@ fn with_banks(mut design: BridgeDesign, banks: &[BankSpec]) -> Result<BridgeDesi
     Ok(design)
 }
 
+/// The chain's bridge with what its joints have of their own, checked as it is written, a joint's stiffness and damping then
 /// given to two trusses.
 fn with_joints(mut design: BridgeDesign, joints: &Joints) -> Result<BridgeDesign, InvalidInput> {
     let misplaced = |key: String, found: &str, allowed: &str| {

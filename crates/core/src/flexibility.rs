@@ -31,11 +31,11 @@ impl Flexibility {
     pub(crate) fn new(name: &'static str, a: &SymmetricMatrix, bridge: &Bridge) -> Result<Self, FemError> {
         let factor = Factor::new(name, a)?;
         let track = Track::new(bridge);
-        let connectors = responses(&factor, bridge.connectors.iter().map(|c| &c.row));
+        let connectors = responses(&factor, bridge.links.iter().map(|c| &c.row));
         let nc = connectors.ncols();
         let among = DMatrix::from_fn(nc, nc, |i, j| {
             // always from the later column, so that the matrix is symmetric to the last bit
-            let row = &bridge.connectors[i.min(j)].row;
+            let row = &bridge.links[i.min(j)].row;
             row.0.iter().map(|&(k, v)| v * connectors[(k, i.max(j))]).sum()
         });
         let lines = (0..track.lines()).map(|_| OnceLock::new()).collect();

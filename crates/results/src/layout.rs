@@ -70,6 +70,7 @@ impl Layout {
             TableName::Pins => record.pins && loaded,
             TableName::Sections => record.sections && loaded,
             TableName::Places => !record.places_x_m.is_empty() && loaded,
+            TableName::Banks => loaded && jobs.iter().any(|job| !job.bridge.design.banks.is_empty()),
             TableName::AtPeaks => !record.at_peak_of.is_empty() && kind == Kind::Crossing,
             TableName::Joints => study.wear.is_some() && loaded,
         };
@@ -108,34 +109,16 @@ impl Layout {
         for column in Column::of_table(table).filter(|column| self.has(column)) {
             match column.source {
                 ColumnSource::Job(of) => columns.push(column.name, column.cells, records.iter().map(of)),
-                ColumnSource::Position(of) => {
-                    let rows = rows(records, |record| &record.positions);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
-                }
+                ColumnSource::Position(of) => push(&mut columns, column, rows(records, |record| &record.positions), of),
                 ColumnSource::Connector(of) => {
-                    let rows = rows(records, |record| &record.connectors);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
+                    push(&mut columns, column, rows(records, |record| &record.connectors), of)
                 }
-                ColumnSource::Mode(of) => {
-                    let rows = rows(records, |record| &record.modes);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
-                }
-                ColumnSource::Pin(of) => {
-                    let rows = rows(records, |record| &record.pins);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
-                }
-                ColumnSource::Section(of) => {
-                    let rows = rows(records, |record| &record.sections);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
-                }
-                ColumnSource::Place(of) => {
-                    let rows = rows(records, |record| &record.places);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
-                }
-                ColumnSource::AtPeak(of) => {
-                    let rows = rows(records, |record| &record.at_peaks);
-                    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
-                }
+                ColumnSource::Mode(of) => push(&mut columns, column, rows(records, |record| &record.modes), of),
+                ColumnSource::Pin(of) => push(&mut columns, column, rows(records, |record| &record.pins), of),
+                ColumnSource::Section(of) => push(&mut columns, column, rows(records, |record| &record.sections), of),
+                ColumnSource::Place(of) => push(&mut columns, column, rows(records, |record| &record.places), of),
+                ColumnSource::AtPeak(of) => push(&mut columns, column, rows(records, |record| &record.at_peaks), of),
+                ColumnSource::Bank(of) => push(&mut columns, column, rows(records, |record| &record.banks), of),
                 ColumnSource::Joint(of) => {
                     let rows = jobs.iter().flat_map(worn_joints);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
@@ -171,6 +154,16 @@ impl Layout {
             When::PinHistories => !self.record.histories.pins.is_empty(),
         }
     }
+}
+
+/// Fills a column from rows.
+fn push<'a, R>(
+    columns: &mut Columns<'a>,
+    column: &'static Column,
+    rows: impl Iterator<Item = RowOf<'a, R>>,
+    of: fn(&RowOf<'a, R>) -> Cell<'a>,
+) {
+    columns.push(column.name, column.cells, rows.map(|row| of(&row)));
 }
 
 /// The rows of a table with their jobs.

@@ -55,8 +55,8 @@ pub use parquet::TableProvenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
 pub use quantities::{QUANTITIES, SECTION_QUANTITIES};
 pub use record::{
-    AtPeakRow, ConnectorRow, Extreme, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow,
-    PositionRow, SectionRow, Summary,
+    AtPeakRow, BankRow, ConnectorRow, Extreme, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow,
+    PlaceRow, PositionRow, SectionRow, Summary,
 };
 pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, SpeedFigure, When, registered};
 pub use results::Results;

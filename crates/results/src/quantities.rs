@@ -18,13 +18,8 @@ pub const QUANTITIES: [&str; 12] = [
     "lateral_bending_nm",
 ];
 
-/// The words of [`QUANTITIES`] that are a joint's angle and section forces.
-pub const SECTION_QUANTITIES: [&str; 7] = [
-    "angle_rad",
-    "axial_n",
-    "shear_y_n",
-    "shear_z_n",
-    "torsion_nm",
-    "bending_nm",
-    "lateral_bending_nm",
-];
+/// Those of them that are a joint's angle and section forces.
+pub const SECTION_QUANTITIES: [&str; 7] = {
+    let [_, _, _, _, _, sections @ ..] = QUANTITIES;
+    sections
+};

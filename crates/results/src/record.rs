@@ -36,6 +36,8 @@ pub struct JobRecord {
     pub places: Vec<PlaceRow>,
     /// Its rows of the table of what is at peaks.
     pub at_peaks: Vec<AtPeakRow>,
+    /// Its rows of the table of banks.
+    pub banks: Vec<BankRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
@@ -229,6 +231,35 @@ pub struct PlaceRow {
     pub static_deflection_m: Option<f64>,
 }
 
+/// A row of the table of banks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BankRow {
+    /// The bank, from 0 in the order of the bridge file.
+    pub bank: usize,
+    /// Place across `[m]`; null for the bank's sum.
+    pub y_m: Option<f64>,
+    /// Largest force on the bridge along the bank's sense, and against it `[N]`.
+    pub toward: Extreme,
+    /// Against it: of springs that hold both ways.
+    pub away: Extreme,
+}
+
+/// The rows of the banks of a job that failed.
+fn bank_rows_of_none(job: &Job) -> Vec<BankRow> {
+    let design = &job.bridge.design;
+    let row = |bank: usize, y_m: Option<f64>| BankRow {
+        bank,
+        y_m,
+        toward: Extreme::default(),
+        away: Extreme::default(),
+    };
+    let of_bank = |(bank, spec)| {
+        let places = design.bank_places_y_m(spec).into_iter().map(Some);
+        std::iter::once(None).chain(places).map(move |y_m| row(bank, y_m))
+    };
+    design.banks.iter().enumerate().flat_map(of_bank).collect()
+}
+
 /// Where and what a recorded number is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumberPlace {
@@ -378,6 +409,7 @@ impl JobRecord {
             sections: section_rows_of_none(job),
             places: places.collect(),
             at_peaks: Vec::new(),
+            banks: bank_rows_of_none(job),
         }
     }
 }

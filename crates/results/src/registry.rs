@@ -18,11 +18,12 @@ use crate::quantities::{QUANTITIES, SECTION_QUANTITIES};
 use crate::record::JobRecord;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use column::{
-    at_peak, centimetres, kilonewtons, measure, of_connector, of_job, of_joint, of_mode, of_pin, of_place, of_position,
-    of_record, of_sample, of_section, peak_card, plain_card,
+    at_peak, centimetres, kilonewtons, measure, of_bank, of_connector, of_job, of_joint, of_mode, of_pin, of_place,
+    of_position, of_record, of_sample, of_section, peak_card, plain_card,
 };
 use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;
+use pontoon_plan::study_file::PeakColumn;
 use serde_json::{Value, json};
 use std::borrow::Cow;
 
@@ -43,15 +44,6 @@ fn reason(record: &JobRecord) -> Cell<'_> {
         (None, None) => Cell::Nothing,
     }
 }
-
-/// The peaks that the table of what is at peaks may name.
-const PEAKS: [&str; 5] = [
-    "peak_deflection_m",
-    "peak_uplift_m",
-    "peak_compression_n",
-    "peak_tension_n",
-    "peak_pin_n",
-];
 
 /// The columns of all tables in their order; those of the axes stand behind the state of the jobs.
 #[rustfmt::skip]
@@ -185,7 +177,7 @@ pub const COLUMNS: &[Column] = &[
     of_place("deflection_m", Numbers, ("deflection", "deflection of a static case, positive downward"), |r| r.row.static_deflection_m.into()).metres().when(When::Static),
 
     at_peak("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
-    at_peak("at_peak_of", Words(&PEAKS), ("at peak of", "the peak at whose instant the value holds"), |r| r.row.at_peak_of.as_str().into()).role(ColumnRole::Key),
+    at_peak("at_peak_of", Words(&PeakColumn::WORDS), ("at peak of", "the peak at whose instant the value holds"), |r| r.row.at_peak_of.as_str().into()).role(ColumnRole::Key),
     at_peak("peak_at", Counts, ("peak at", "position or joint of that peak where one was named; null where it is the largest of all"), |r| r.row.peak_at.into()).role(ColumnRole::Key),
     at_peak("time_s", Numbers, ("time", "when the value holds; of pins and sections a part of a time step before the others"), |r| r.row.time_s.into()).unit("s"),
     at_peak("quantity", Words(&QUANTITIES), ("quantity", "what the value is, with its unit"), |r| r.row.of.quantity.as_str().into()).role(ColumnRole::Key),
@@ -193,6 +185,14 @@ pub const COLUMNS: &[Column] = &[
     at_peak("x_m", Numbers, ("x", "place along the bridge, of the deflection of a place"), |r| r.row.of.x_m.into()).unit("m").role(ColumnRole::Key),
     at_peak("y_m", Numbers, ("y", "place across, of the force of a connector or pin"), |r| r.row.of.y_m.into()).unit("m").role(ColumnRole::Key),
     at_peak("value", Numbers, ("value", "the quantity, in its unit"), |r| r.row.value.into()),
+
+    of_bank("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_bank("bank", Counts, ("bank", "number of the bank, from 0 in the order of the bridge file"), |r| r.row.bank.into()).role(ColumnRole::Key),
+    of_bank("y_m", Numbers, ("y", "place across; null in a bank's row, which adds its places"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
+    of_bank("peak_toward_n", Numbers, ("peak reaction", "largest force on the bridge along the bank's sense"), |r| r.row.toward.value.into()).newtons(),
+    of_bank("peak_toward_time_s", Numbers, ("peak reaction time", "its time"), |r| r.row.toward.time_s.into()).unit("s"),
+    of_bank("peak_away_n", Numbers, ("peak reaction, against its sense", "largest force against the bank's sense, of a spring that holds both ways"), |r| r.row.away.value.into()).newtons(),
+    of_bank("peak_away_time_s", Numbers, ("peak reaction, against its sense, time", "its time"), |r| r.row.away.time_s.into()).unit("s"),
 ];
 
 /// The columns of all tables and the axes that have a name of their own, in their order.

@@ -37,11 +37,13 @@ pub enum TableName {
     Places,
     /// One row a number of a job at the instant of a peak.
     AtPeaks,
+    /// One row a bank of a job, or one of its places across.
+    Banks,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
@@ -52,6 +54,7 @@ impl TableName {
         Self::Sections,
         Self::Places,
         Self::AtPeaks,
+        Self::Banks,
     ];
 
     /// Its name as files and references have it.
@@ -67,6 +70,7 @@ impl TableName {
             Self::Sections => "sections",
             Self::Places => "places",
             Self::AtPeaks => "at_peaks",
+            Self::Banks => "banks",
         }
     }
 

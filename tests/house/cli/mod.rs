@@ -1,5 +1,6 @@
 //! The program from outside: words, exit statuses, files.
 
+mod banks;
 mod bounds;
 mod calibrate;
 mod calibrate_input;

@@ -2,6 +2,7 @@
 //!
 //! Knows the questions and puts solver and response together. Does not know studies, files or threads.
 
+use crate::bridge::LinkPlace;
 use thiserror::Error;
 
 pub mod crossing;
@@ -13,18 +14,12 @@ pub mod statics;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AnalysisError {
     /// The contact did not settle at any step size allowed.
-    #[error(
-        "contact not settled at t = {time_s:.6} s in connector {connector} (joint {joint}, y = {y_m} m) after {bisections} bisections"
-    )]
+    #[error("contact not settled at t = {time_s:.6} s in {link} after {bisections} bisections")]
     NotConverged {
         /// Time of the step's end `[s]`.
         time_s: f64,
-        /// Connector number, from 1, joints from left to right.
-        connector: usize,
-        /// Position number of its joint.
-        joint: usize,
-        /// Its place across `[m]`.
-        y_m: f64,
+        /// A link that changes its state without end.
+        link: LinkPlace,
         /// Bisections made.
         bisections: usize,
     },

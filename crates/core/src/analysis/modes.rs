@@ -143,7 +143,7 @@ fn name_unrestored(bridge: &Bridge, pairs: &mut EigenPairs) {
 pub(super) fn linear_stiffness(bridge: &Bridge) -> Result<SymmetricMatrix, AnalysisError> {
     let k = 2.0 * bridge.design().connectors.stiffness_n_m;
     let mut entries: Vec<_> = bridge.k.entries().collect();
-    for connector in bridge.connectors.iter().filter(|link| link.bank.is_none()) {
+    for connector in &bridge.links[..bridge.joint_connectors] {
         for &(i, a) in &connector.row.0 {
             entries.extend(connector.row.0.iter().map(|&(j, b)| (i, j, k * a * b)));
         }

@@ -3,7 +3,7 @@
 //! Knows what moves, what the connectors do and with which force each wheel point stands on the deck. Does not know which
 //! solver found it, nor where nodes are.
 
-use crate::bridge::{Load, Track};
+use crate::bridge::{Bridge, Load, PinRow, Track};
 use crate::connector::State;
 use crate::fem::SparseRow;
 use crate::vehicle::{Inertia, Vehicle};
@@ -23,6 +23,18 @@ pub struct Snapshot {
     pub connectors: Vec<ConnectorNow>,
     /// The vehicle's points, patch after patch.
     pub wheels: Vec<WheelNow>,
+}
+
+impl Snapshot {
+    /// Force of each pin of a bridge on the module left of it, along, across and up, joint after joint `[N]`. At the end of a step of
+    /// a crossing the two sides of a pin differ, as the balance holds before it.
+    /// Equation (J6).
+    pub fn pin_forces_n(&self, bridge: &Bridge) -> Vec<[f64; 3]> {
+        let pressed = |wheel: &WheelNow| Some(SparseRow::combine(&[(wheel.contact_force_n, wheel.row.as_ref()?)]));
+        let down: Vec<SparseRow> = self.wheels.iter().filter_map(pressed).collect();
+        let row = |row: &PinRow| row.force_n(&self.elastic, self.inertial.as_deref(), &down);
+        bridge.pins.iter().map(|pin| pin.rows.each_ref().map(row)).collect()
+    }
 }
 
 /// A connector at one time.

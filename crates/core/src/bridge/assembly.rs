@@ -14,19 +14,45 @@ use crate::module::Grid;
 use crate::response::{BankPart, BankSource};
 use std::borrow::Borrow;
 
-/// One connector: where it is and the row of B that gives its elongation.
+/// One link, a connector or a one-sided spring of a bank: where it is and the row of B that gives its elongation.
 /// Equation (J1).
 #[derive(Debug, Clone)]
-pub struct ConnectorPlace {
-    /// Position number of the joint, 2 to modules; of a bank's spring its position.
-    pub joint: usize,
-    /// Place across `[m]`.
-    pub y_m: f64,
+pub(crate) struct LinkRow {
+    /// Where it is.
+    pub place: LinkPlace,
     /// `e = row . u`: the right deck node's motion along x minus the left one's, between decks of unlike depth at the height of
     /// the lower one; of a bank's spring the motion along its sense.
     pub row: SparseRow,
-    /// The bank that it is a spring of; none of a connector.
-    pub bank: Option<usize>,
+}
+
+/// Where a link is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LinkPlace {
+    /// A connector.
+    Connector {
+        /// Its number, from 1, joints from left to right.
+        number: usize,
+        /// Position number of its joint.
+        joint: usize,
+        /// Place across `[m]`.
+        y_m: f64,
+    },
+    /// A spring of a bank.
+    Bank {
+        /// The bank, from 0 in the order of the bridge file.
+        bank: usize,
+        /// Place across `[m]`.
+        y_m: f64,
+    },
+}
+
+impl std::fmt::Display for LinkPlace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Connector { number, joint, y_m } => write!(f, "connector {number} (joint {joint}, y = {y_m} m)"),
+            Self::Bank { bank, y_m } => write!(f, "bank {bank} (y = {y_m} m)"),
+        }
+    }
 }
 
 /// A spring that holds both ways: its stiffness stands in K.
@@ -55,7 +81,7 @@ pub struct Bridge {
     /// Products with `m`.
     pub(crate) times_m: ModuleProduct,
     /// Connectors, joint after joint, each joint's in the design's order.
-    pub(crate) connectors: Vec<ConnectorPlace>,
+    pub(crate) links: Vec<LinkRow>,
     /// How many of these are connectors of joints; springs of banks stand behind them.
     pub(crate) joint_connectors: usize,
     /// Springs that hold both ways.
@@ -139,14 +165,14 @@ impl Bridge {
             modules: &modules,
             row: &row,
         };
-        let mut connectors = places.connectors();
-        let joint_connectors = connectors.len();
+        let mut links = places.connectors();
+        let joint_connectors = links.len();
         let springs = match ends {
-            Ends::Supported => bank_springs(design, modules.lines_y()),
+            Ends::Supported => bank_springs(&design.banks, design.modules, |bank| design.bank_places_y_m(bank)),
             Ends::Free => Vec::new(),
         };
         let (one_sided, held): (Vec<_>, Vec<_>) = springs.into_iter().partition(|spring| spring.one_sided);
-        connectors.extend(one_sided.iter().map(|spring| places.bank_link(spring)));
+        links.extend(one_sided.iter().map(|spring| places.bank_link(spring)));
         let springs: Vec<SpringPlace> = held.iter().map(|spring| places.spring(spring)).collect();
         let mut k = row.entries(|module| &module.k);
         for SpringPlace { stiffness_n_m, row, .. } in &springs {
@@ -165,7 +191,7 @@ impl Bridge {
             m: SymmetricMatrix::from_entries(row.dofs, &row.entries(|module| &module.m))?,
             times_k: ModuleProduct::new(&modules, &row, |module| &module.k).with_springs(in_k),
             times_m: ModuleProduct::new(&modules, &row, |module| &module.m),
-            connectors,
+            links,
             joint_connectors,
             springs,
             positions: places.positions(),
@@ -237,13 +263,14 @@ impl Bridge {
 
     /// The springs of all banks, bank after bank.
     pub(crate) fn bank_parts(&self) -> Vec<BankPart> {
-        let links = self.connectors.iter().enumerate();
-        let links = links.filter_map(|(link, place)| {
-            Some(BankPart {
-                bank: place.bank?,
-                y_m: place.y_m,
+        let links = self.links.iter().enumerate();
+        let links = links.filter_map(|(link, of)| match of.place {
+            LinkPlace::Connector { .. } => None,
+            LinkPlace::Bank { bank, y_m } => Some(BankPart {
+                bank,
+                y_m,
                 source: BankSource::Link(link),
-            })
+            }),
         });
         let springs = self.springs.iter().enumerate();
         let springs = springs.map(|(index, spring)| BankPart {
@@ -332,7 +359,7 @@ impl Places<'_> {
     }
 
     /// Makes the connectors, joint after joint.
-    fn connectors(&self) -> Vec<ConnectorPlace> {
+    fn connectors(&self) -> Vec<LinkRow> {
         let mut connectors = Vec::new();
         for j in 1..self.modules.len() {
             let [left, right] = [j - 1, j].map(|j| self.modules.grid(j));
@@ -341,11 +368,13 @@ impl Places<'_> {
                 if let (Some(left_iy), Some(right_iy)) = (left.y_line(y_m), right.y_line(y_m)) {
                     let left = self.at_height(j - 1, (left.x.len() - 1, left_iy), height_m);
                     let right = self.at_height(j, (0, right_iy), height_m);
-                    connectors.push(ConnectorPlace {
-                        joint: j + 1,
-                        y_m,
+                    connectors.push(LinkRow {
+                        place: LinkPlace::Connector {
+                            number: connectors.len() + 1,
+                            joint: j + 1,
+                            y_m,
+                        },
                         row: SparseRow::combine(&[(-1.0, &left), (1.0, &right)]),
-                        bank: None,
                     });
                 }
             }
@@ -386,12 +415,13 @@ impl Places<'_> {
     }
 
     /// Makes the link of a spring that acts in one sense alone.
-    fn bank_link(&self, spring: &BankSpring) -> ConnectorPlace {
-        ConnectorPlace {
-            joint: spring.position,
-            y_m: spring.y_m,
+    fn bank_link(&self, spring: &BankSpring) -> LinkRow {
+        LinkRow {
+            place: LinkPlace::Bank {
+                bank: spring.bank,
+                y_m: spring.y_m,
+            },
             row: self.bank_row(spring),
-            bank: Some(spring.bank),
         }
     }
 

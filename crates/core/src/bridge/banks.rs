@@ -2,7 +2,7 @@
 //!
 //! Knows which springs stand at which nodes and what law each has. Does not know contact or time.
 
-use super::{BridgeDesign, Direction};
+use super::supports::{Direction, Supports};
 use crate::connector::{ConnectorLaw, Truss};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M, apart, not_negative, positive};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -139,17 +139,17 @@ impl BankSpec {
         of
     }
 
-    /// At how many places across it acts, on a bottom edge of so many lines and a bridge of so many hinge places.
-    pub(super) fn places(&self, edge_lines: usize, hinges: usize) -> usize {
+    /// Places across of its springs `[m]`, on a bridge with such hinge places; `edge_y_m` gives the lines of a bottom edge.
+    pub(super) fn places_y_m(&self, hinges_y_m: &[f64], edge_y_m: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
         match (&self.y_m, self.direction) {
-            (Some(y_m), _) => y_m.len(),
-            (None, Direction::Z) => edge_lines,
-            (None, _) => hinges,
+            (Some(y_m), _) => y_m.clone(),
+            (None, Direction::Z) => edge_y_m(),
+            (None, _) => hinges_y_m.to_vec(),
         }
     }
 
-    /// Its position, from 1.
-    fn position(&self, modules: usize) -> usize {
+    /// Its position on a bridge of so many modules, from 1.
+    pub fn position(&self, modules: usize) -> usize {
         match self.at {
             BankPlace::End(BridgeEnd::Left) => 1,
             BankPlace::End(BridgeEnd::Right) => modules + 1,
@@ -172,8 +172,8 @@ impl BankSpec {
     }
 
     /// Refuses a bank that a bridge cannot have.
-    fn check(&self, design: &BridgeDesign) -> Result<(), InvalidInput> {
-        let modules = design.modules;
+    fn check(&self, room: &BankRoom<'_>) -> Result<(), InvalidInput> {
+        let modules = room.modules;
         if !(1..=modules + 1).contains(&self.position(modules)) {
             let allowed = format!("\"left\", \"right\" or a position from 1 to {}", modules + 1);
             return Err(InvalidInput::new("at", self.position(modules), allowed));
@@ -193,7 +193,7 @@ impl BankSpec {
             let allowed = "\"+\" or \"-\", as the place does not say which sense it is";
             return Err(InvalidInput::new("toward", "neither", allowed).because(Problem::Missing));
         }
-        let supports = &design.supports;
+        let supports = room.supports;
         let held = match self.position(modules) {
             1 => ("left", supports.left.contains(&self.direction)),
             position if position == modules + 1 => ("right", supports.right.contains(&self.direction)),
@@ -204,17 +204,17 @@ impl BankSpec {
             let allowed = format!("a direction that supports.{} does not hold", held.0);
             return Err(InvalidInput::new("direction", found, allowed).because(Problem::Conflict));
         }
-        self.check_places(design)
+        self.check_places(room)
     }
 
     /// Refuses places across where no node can take the spring.
-    fn check_places(&self, design: &BridgeDesign) -> Result<(), InvalidInput> {
+    fn check_places(&self, room: &BankRoom<'_>) -> Result<(), InvalidInput> {
         let Some(y_m) = &self.y_m else { return Ok(()) };
         if y_m.is_empty() {
             return Err(InvalidInput::new("y_m", "an empty list", "at least one place across"));
         }
         apart("y_m", y_m)?;
-        let known = self.known_places(design);
+        let known = self.known_places(room);
         for (i, y) in y_m.iter().enumerate() {
             if !known.iter().any(|place| (place - y).abs() <= SAME_PLACE_M) {
                 let known = known.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
@@ -225,11 +225,11 @@ impl BankSpec {
         Ok(())
     }
 
-    fn known_places(&self, design: &BridgeDesign) -> Vec<f64> {
-        let mut known = design.hinge_lines_y_m();
+    fn known_places(&self, room: &BankRoom<'_>) -> Vec<f64> {
+        let mut known = room.hinges_y_m.clone();
         if self.direction == Direction::Z {
-            let half = 0.5 * design.module.breadth_m;
-            known.extend(design.connectors.y_m.iter().copied().chain([-half, half]));
+            let half = room.half_breadth_m;
+            known.extend(room.connectors_y_m.iter().copied().chain([-half, half]));
         }
         known.sort_by(f64::total_cmp);
         known.dedup_by(|a, b| (*a - *b).abs() <= SAME_PLACE_M);
@@ -237,38 +237,49 @@ impl BankSpec {
     }
 }
 
+/// What of a bridge decides whether a bank fits it.
+pub(super) struct BankRoom<'a> {
+    pub modules: usize,
+    pub supports: &'a Supports,
+    /// Lines of hinges across, and places of connectors `[m]`.
+    pub hinges_y_m: Vec<f64>,
+    pub connectors_y_m: &'a [f64],
+    /// Half of the modules' breadth `[m]`.
+    pub half_breadth_m: f64,
+}
+
 /// Refuses banks that a bridge cannot have.
 ///
 /// # Errors
 /// [`InvalidInput`] with the key's path.
-pub(super) fn check_banks(design: &BridgeDesign) -> Result<(), InvalidInput> {
-    for (i, bank) in design.banks.iter().enumerate() {
-        bank.check(design).map_err(|e| e.under(&format!("banks[{i}]")))?;
+pub(super) fn check_banks(banks: &[BankSpec], room: &BankRoom<'_>) -> Result<(), InvalidInput> {
+    for (i, bank) in banks.iter().enumerate() {
+        bank.check(room).map_err(|e| e.under(&format!("banks[{i}]")))?;
     }
     Ok(())
 }
 
-/// The springs of all banks, bank after bank; `edge_y_m` are the lines across of a module's bottom edge.
-pub(super) fn bank_springs(design: &BridgeDesign, edge_y_m: &[f64]) -> Vec<BankSpring> {
+/// The springs of all banks of a bridge of so many modules, bank after bank, at the places across that `places_y_m` gives `[m]`.
+pub(super) fn bank_springs(
+    banks: &[BankSpec],
+    modules: usize,
+    places_y_m: impl Fn(&BankSpec) -> Vec<f64>,
+) -> Vec<BankSpring> {
     let of_bank = |(bank, spec): (usize, &BankSpec)| {
-        let places = match (&spec.y_m, spec.direction) {
-            (Some(y_m), _) => y_m.clone(),
-            (None, Direction::Z) => edge_y_m.to_vec(),
-            (None, _) => design.hinges.y_m.clone(),
-        };
+        let places = places_y_m(spec);
         let share = 1.0 / places.len() as f64;
         let spring = |y_m: f64| BankSpring {
             bank,
-            position: spec.position(design.modules),
+            position: spec.position(modules),
             y_m,
             direction: spec.direction,
-            sign: spec.sign(design.modules).unwrap_or(1.0),
+            sign: spec.sign(modules).unwrap_or(1.0),
             stiffness_n_m: share * spec.stiffness_n_m,
             one_sided: spec.one_sided,
         };
         places.into_iter().map(spring).collect::<Vec<_>>()
     };
-    design.banks.iter().enumerate().flat_map(of_bank).collect()
+    banks.iter().enumerate().flat_map(of_bank).collect()
 }
 
 /// The law of a bank's spring: it pushes once the bridge has gone the clearance against its sense. Of a place with so much

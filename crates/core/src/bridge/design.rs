@@ -4,14 +4,15 @@
 
 mod written;
 
-use super::banks::{BankSpec, bank_law, check_banks};
+use super::banks::{BankRoom, BankSpec, bank_law, check_banks};
 use super::buoyancy::{DraftBuoyancy, Todd};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
 use super::kinds::{ModuleKind, ModuleRow, key_of};
+use super::supports::{Direction, Supports};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M, not_negative, positive};
-use crate::module::{MeshSize, ModuleDesign, mesh_module, mesh_size};
+use crate::module::{MeshSize, ModuleDesign, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
@@ -74,38 +75,6 @@ pub struct Variants {
     pub of_module: Vec<usize>,
     /// What the keys of each variant's kind begin with, see [`BridgeDesign::named_kinds`].
     pub keys: Vec<String>,
-}
-
-/// A direction of translation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Direction {
-    /// Along the bridge.
-    X,
-    /// Across the bridge.
-    Y,
-    /// Up.
-    Z,
-}
-
-/// Directions held at the two ends: z at all nodes of the bottom edge, x and y at its hinge places.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Supports {
-    /// At the left end.
-    pub left: Vec<Direction>,
-    /// At the right end.
-    pub right: Vec<Direction>,
-}
-
-impl Default for Supports {
-    /// The paper's: all three translations at the left end, y and z at the right.
-    fn default() -> Self {
-        Self {
-            left: vec![Direction::X, Direction::Y, Direction::Z],
-            right: vec![Direction::Y, Direction::Z],
-        }
-    }
 }
 
 /// Masters and modes of the super-element. Hinges, connectors, the deck's z and the ends' bottom edges are always
@@ -201,7 +170,16 @@ impl BridgeDesign {
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
         self.joints.check(self.modules, half, &self.connectors)?;
         self.check_unlike_depths()?;
-        check_banks(self)?;
+        check_banks(
+            &self.banks,
+            &BankRoom {
+                modules: self.modules,
+                supports: &self.supports,
+                hinges_y_m: self.hinge_lines_y_m(),
+                connectors_y_m: &self.connectors.y_m,
+                half_breadth_m: half,
+            },
+        )?;
         if self.condensation.fixed_master_modes > 400 {
             return Err(InvalidInput::new(
                 "condensation.fixed_master_modes",
@@ -297,9 +275,13 @@ impl BridgeDesign {
         }
         let Supports { left, right } = &self.supports;
         for (direction, word) in [(Direction::X, "x"), (Direction::Y, "y")] {
-            if !(left.contains(&direction) || right.contains(&direction)) {
+            let on_spring = self
+                .banks
+                .iter()
+                .any(|bank| !bank.one_sided && bank.direction == direction);
+            if !(left.contains(&direction) || right.contains(&direction) || on_spring) {
                 let found = format!("no end that holds {word}");
-                let allowed = "x and y held at an end at least in a static case";
+                let allowed = "x and y held at an end at least, or by a bank both ways, in a static case";
                 return Err(InvalidInput::new("supports", found, allowed).because(Problem::Missing));
             }
         }
@@ -403,18 +385,24 @@ impl BridgeDesign {
         }
         let mut all = laws.to_vec();
         let mut link = (self.modules - 1) * self.connectors.y_m.len();
-        // lines across are those of all modules
-        let edge_lines = match &self.variants().designs[..] {
-            [first, ..] => mesh_size(&first.module, &self.joint_lines_y_m()).lines_across,
-            [] => 0,
-        };
         for bank in self.banks.iter().filter(|bank| bank.one_sided) {
-            let places = bank.places(edge_lines, self.hinges.y_m.len());
+            let places = self.bank_places_y_m(bank).len();
             let law = bank_law(bank, 1.0 / places as f64);
             all.extend((link..link + places).map(|link| (link, law)));
             link += places;
         }
         Ok(all.into())
+    }
+
+    /// Places across of the springs of a bank `[m]`: its own, or for z all lines of a module's bottom edge and for x and y the
+    /// hinge places.
+    pub fn bank_places_y_m(&self, bank: &BankSpec) -> Vec<f64> {
+        // a row's variants share their lines across
+        let lines = || match &self.variants().designs[..] {
+            [first, ..] => lines_across(&first.module, &self.joint_lines_y_m()),
+            [] => Vec::new(),
+        };
+        bank.places_y_m(&self.hinges.y_m, lines)
     }
 
     /// Length of the bridge `[m]`.

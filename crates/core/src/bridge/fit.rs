@@ -22,10 +22,13 @@ pub(super) fn check_fit(design: &BridgeDesign, grid: &Grid) -> Result<(), Invali
             ));
         }
     }
-    for (key, places) in [
-        ("hinges.y_m", &design.hinge_lines_y_m()),
-        ("connectors.y_m", &design.connectors.y_m),
-    ] {
+    let banks = design.banks.iter().enumerate();
+    let banks = banks.map(|(i, bank)| (format!("banks[{i}].y_m"), design.bank_places_y_m(bank)));
+    let joints = [
+        ("hinges.y_m".to_owned(), design.hinge_lines_y_m()),
+        ("connectors.y_m".to_owned(), design.connectors.y_m.clone()),
+    ];
+    for (key, places) in joints.into_iter().chain(banks) {
         if let Some(i) = places.iter().position(|&y| grid.y_line(y).is_none()) {
             let allowed = "the place of a line across of the module's mesh";
             return Err(InvalidInput::new(format!("{key}[{i}]"), places[i], allowed));

@@ -4,7 +4,7 @@
 //! know what the motion is, nor files.
 
 use super::modules::Modules;
-use super::prepared::{PreparedModule, Side, X};
+use super::prepared::{PreparedModule, Side};
 use super::row::Row;
 use super::{BridgeDesign, BridgeError, Ends};
 use crate::fem::{DOFS_PER_NODE, NodeId, SparseRow};
@@ -69,9 +69,6 @@ pub struct MeshedBridge {
     /// Of each variant the motion of a condensed module's nodes in terms of its dofs: a row a translation, node after node, and
     /// below them a row a rotation. None where nothing is condensed.
     condensed: Option<Vec<Mat<f64>>>,
-    /// Joint after joint, at each of its hinges, stiffness and mass of the module on the right in the row of its left end along
-    /// x.
-    hinge_rows: Vec<Vec<[SparseRow; 2]>>,
 }
 
 impl MeshedBridge {
@@ -142,13 +139,6 @@ impl MeshedBridge {
             .variants
             .iter()
             .map(|module| module.transformation().map(translations_first));
-        let hinge_rows = (2..=modules.len()).map(|joint| {
-            let module = modules.module(joint - 1);
-            let dofs = design.hinges_of(joint).y_m.iter();
-            let dofs = dofs.filter_map(|&y_m| module.end_dof(Side::Left, y_m, X));
-            dofs.map(|dof| [&module.k, &module.m].map(|matrix| SparseRow(matrix.column(dof).collect())))
-                .collect()
-        });
         Ok(Self {
             nodes_m: nodes_m.collect(),
             shells: shells.collect(),
@@ -161,7 +151,6 @@ impl MeshedBridge {
             map: Row::number(design, &modules, ends).map,
             nodes: modules.variants.iter().map(|module| module.mesh.nodes.len()).collect(),
             condensed: condensed.collect(),
-            hinge_rows: hinge_rows.collect(),
             of_module: modules.of_module.clone(),
         })
     }
@@ -227,24 +216,6 @@ impl MeshedBridge {
             let share = |&(column, part): &(usize, f64)| part * displacement_m[self.deck[column]][direction];
             row.0.iter().map(share).sum()
         })
-    }
-
-    /// Force along the bridge in each hinge, tension positive `[N]`: what the module right of it needs at its left end to move
-    /// as it does, `N = -(k (u + a v) + m (u'' + b v))` in the hinge's row. `elastic` is `u + a v`, `inertial` is
-    /// `u'' + b v` or nothing at rest, both of all dofs of the bridge.
-    pub fn hinge_forces_n(&self, elastic: &[f64], inertial: Option<&[f64]>) -> Vec<f64> {
-        let of = |map: &[Option<usize>], row: &SparseRow, x: &[f64]| -> f64 {
-            let term = |&(i, v): &(usize, f64)| map[i].map_or(0.0, |dof| v * x[dof]);
-            row.0.iter().map(term).sum()
-        };
-        let of_module = |(map, rows): (&Vec<Option<usize>>, &Vec<[SparseRow; 2]>)| -> Vec<f64> {
-            let force = |[k, m]: &[SparseRow; 2]| {
-                0.0 - of(map, k, elastic) - inertial.map_or(0.0, |inertial| of(map, m, inertial))
-            };
-            rows.iter().map(force).collect()
-        };
-        let right_of_joints = self.map.iter().skip(1);
-        right_of_joints.zip(&self.hinge_rows).flat_map(of_module).collect()
     }
 }
 

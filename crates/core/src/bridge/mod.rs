@@ -19,26 +19,28 @@ mod product;
 mod provenance;
 mod row;
 mod stresses;
+mod supports;
 mod track;
 
 pub(crate) use assembly::ModulePlace;
-pub use assembly::{Bridge, ConnectorPlace};
+pub use assembly::{Bridge, LinkPlace};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use buoyancy::{DraftBuoyancy, Todd};
-pub use design::{BridgeDesign, Condensation, Direction, Supports, Variants};
+pub use design::{BridgeDesign, Condensation, Variants};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub use kinds::{ModuleKind, ModuleRow, ModuleRun};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
-pub(crate) use pins::{PinPlace, joint_parts};
+pub(crate) use pins::{PinPlace, PinRow, joint_parts};
 pub(crate) use placement::{VehiclePlacement, front_x_m};
 pub use prepared::PreparedModule;
 #[cfg(test)]
 pub(crate) use prepared::Side;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
 pub use stresses::{BridgeStresses, StressRecovery};
+pub use supports::{Direction, Supports};
 use thiserror::Error;
 pub use track::Track;
 

@@ -45,6 +45,11 @@ pub(crate) fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
     }
 }
 
+/// The lines across of the mesh of [`mesh_module`] `[m]`.
+pub(crate) fn lines_across(design: &ModuleDesign, extra_y: &[f64]) -> Vec<f64> {
+    Builder::new(design, extra_y).y
+}
+
 /// Sorted lines without near-duplicates, each interval divided into `parts(length)` equal parts.
 fn divide(mut lines: Vec<f64>, parts: impl Fn(f64) -> usize) -> Vec<f64> {
     lines.sort_by(f64::total_cmp);

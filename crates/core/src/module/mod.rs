@@ -9,7 +9,7 @@ mod grid;
 mod plates;
 
 pub use box_mesh::mesh_module;
-pub(crate) use box_mesh::{MeshSize, mesh_size};
+pub(crate) use box_mesh::{MeshSize, lines_across, mesh_size};
 pub use design::{LongitudinalWalls, Material, MeshDesign, ModuleDesign, Stiffeners, TransverseWalls};
 pub use grid::{Grid, ModuleMesh};
 pub use plates::Plate;

@@ -198,7 +198,7 @@ impl BridgeOperator {
     ) -> Result<Self, FemError> {
         let (m, design, shapes) = (cutoff.modes, bridge.design(), &pairs.shapes);
         let lambda = &pairs.lambda[..m];
-        let connectors: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
+        let connectors: Vec<SparseRow> = bridge.links.iter().map(|c| c.row.clone()).collect();
         let (rows, observed) = observed(bridge, &followed.places_x_m);
         let of_modules = operated_modules(bridge);
         let inside = inside(bridge, &of_modules);
@@ -426,7 +426,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
 /// Whether counts are those of a bridge.
 fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
     sizes.modules == bridge.design().modules
-        && sizes.connectors == bridge.connectors.len()
+        && sizes.connectors == bridge.links.len()
         && rows.positions == bridge.positions.len()
         && rows.corners == bridge.deck_corners.len()
         && sizes.observed == rows.positions + rows.corners + rows.bottom_corners + rows.places + rows.springs
@@ -519,7 +519,7 @@ fn judge(solver: &ColumnSolver<'_>, rows: &[SparseRow], m: &SymmetricMatrix) -> 
 
 /// Connectors, and the deck's nodes at every other station on edges and centre.
 fn judged_rows(bridge: &Bridge, track: &Track) -> Vec<SparseRow> {
-    let mut rows: Vec<SparseRow> = bridge.connectors.iter().map(|c| c.row.clone()).collect();
+    let mut rows: Vec<SparseRow> = bridge.links.iter().map(|c| c.row.clone()).collect();
     let (lines, stations) = (track.lines(), track.stations());
     for line in [0, lines / 2, lines - 1] {
         let of_line = (0..stations).step_by(2).map(|s| track.dof(line * stations + s));

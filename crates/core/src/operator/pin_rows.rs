@@ -32,7 +32,7 @@ pub(super) fn pin_rows(
     (shapes, connectors): (&Mat<f64>, &ResidualRows<'_>),
     stop: Stop<'_>,
 ) -> Result<(PinRows, Vec<f64>), FemError> {
-    let (m, nc) = (lambda.len(), bridge.connectors.len());
+    let (m, nc) = (lambda.len(), bridge.links.len());
     let each = || bridge.pins.iter().flat_map(|pin| &pin.rows);
     let stiffness: Vec<SparseRow> = each().map(|row| row.stiffness.clone()).collect();
     let count = stiffness.len();

@@ -95,7 +95,8 @@ fn against(table: TableName) -> &'static [Against] {
         | TableName::Pins
         | TableName::Sections
         | TableName::Places
-        | TableName::AtPeaks => &[],
+        | TableName::AtPeaks
+        | TableName::Banks => &[],
     }
 }
 

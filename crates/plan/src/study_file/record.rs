@@ -4,7 +4,6 @@
 
 use crate::input::{FoundValue, Refusal, RefusalKind};
 use pontoon_core::bridge::BridgeDesign;
-use pontoon_core::operator::Followed;
 use pontoon_core::response::{Axis, PeakOf, Record, Section, Subject, WatchedPeak};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
@@ -136,15 +135,18 @@ impl PeakColumn {
         Self::PeakPinN,
     ];
 
+    /// Their names in files and tables, in the order of the list.
+    pub const WORDS: [&'static str; 5] = [
+        "peak_deflection_m",
+        "peak_uplift_m",
+        "peak_compression_n",
+        "peak_tension_n",
+        "peak_pin_n",
+    ];
+
     /// Its name in files and tables.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::PeakDeflectionM => "peak_deflection_m",
-            Self::PeakUpliftM => "peak_uplift_m",
-            Self::PeakCompressionN => "peak_compression_n",
-            Self::PeakTensionN => "peak_tension_n",
-            Self::PeakPinN => "peak_pin_n",
-        }
+        Self::WORDS[self as usize]
     }
 
     /// What the mechanics calls it.
@@ -250,16 +252,6 @@ impl RecordSpec {
         }
     }
 
-    /// What an operator has to follow for it.
-    pub fn followed(&self) -> Followed {
-        let histories = &self.histories;
-        let of_histories = !(histories.pins.is_empty() && histories.sections.is_empty());
-        Followed {
-            pins: self.pins || self.sections || of_histories,
-            places_x_m: self.places_x_m.clone(),
-        }
-    }
-
     /// Refuses what a bridge does not have, and what is asked for twice.
     ///
     /// # Errors
@@ -282,7 +274,7 @@ impl RecordSpec {
             }
         }
         self.check_places(file, design.length_m())?;
-        self.check_peaks(file, modules)
+        self.check_peaks(file, design)
     }
 
     /// Refuses places off the bridge, one twice, and histories of others.
@@ -316,7 +308,8 @@ impl RecordSpec {
     }
 
     /// Refuses peaks of what there is not, one twice, and one of pins that are not recorded.
-    fn check_peaks(&self, file: &Path, modules: usize) -> Result<(), Refusal> {
+    fn check_peaks(&self, file: &Path, design: &BridgeDesign) -> Result<(), Refusal> {
+        let (modules, pins) = (design.modules, self.of_crossing(design).needs_pins());
         for (i, &peak) in self.at_peak_of.iter().enumerate() {
             let key = format!("record.at_peak_of[{i}]");
             let column = match peak {
@@ -338,7 +331,7 @@ impl RecordSpec {
                     at.column
                 }
             };
-            if column == PeakColumn::PeakPinN && !self.followed().pins {
+            if column == PeakColumn::PeakPinN && !pins {
                 let found = FoundValue::value(column.word()).which("without record.pins");
                 let refused = Refusal::new(file, key, found, "record.pins true beside it");
                 return Err(refused.because(RefusalKind::Conflict));
@@ -366,4 +359,17 @@ fn check_number(file: &Path, key: &str, number: usize, (from, to): (usize, usize
         format!("{from} to {to}")
     };
     Err(Refusal::new(file, key, number, allowed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peak_is_written_by_its_word() {
+        for column in PeakColumn::ALL {
+            assert_eq!(serde_json::to_value(column).unwrap(), column.word());
+            assert_eq!(PeakColumn::word_of(column.of()), column.word());
+        }
+    }
 }

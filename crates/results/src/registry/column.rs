@@ -5,7 +5,7 @@
 use super::COLUMNS;
 use crate::arrays::CellKind;
 use crate::record::{
-    AtPeakRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
+    AtPeakRow, BankRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
 };
 use crate::table::TableName;
 use pontoon_plan::input::Cell;
@@ -73,6 +73,8 @@ pub(crate) enum ColumnSource {
     Place(fn(&RowOf<'_, PlaceRow>) -> Cell<'static>),
     /// A number at a peak.
     AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>),
+    /// A bank.
+    Bank(fn(&RowOf<'_, BankRow>) -> Cell<'static>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -312,85 +314,26 @@ pub(super) const fn measure(
     of_job(name, CellKind::Numbers, (label, text), of).role(ColumnRole::Measure)
 }
 
-pub(super) const fn of_position(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: fn(&RowOf<'_, PositionRow>) -> Cell<'static>,
-) -> Column {
-    column(TableName::Positions, (name, cells), names, ColumnSource::Position(of))
+/// How an entry of each other table is written: name, cells, label and text, where its cells come from.
+macro_rules! entries {
+    ($($name:ident: $table:ident, $source:ident($of:ty);)*) => { $(
+        pub(super) const fn $name(name: &'static str, cells: CellKind, names: NameAndLabel, of: $of) -> Column {
+            column(TableName::$table, (name, cells), names, ColumnSource::$source(of))
+        }
+    )* };
 }
 
-pub(super) const fn of_connector(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>,
-) -> Column {
-    column(TableName::Connectors, (name, cells), names, ColumnSource::Connector(of))
-}
-
-pub(super) const fn of_sample(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: for<'a> fn(&HistorySample<'a>) -> Cell<'a>,
-) -> Column {
-    column(TableName::Histories, (name, cells), names, ColumnSource::Sample(of))
-}
-
-pub(super) const fn of_pin(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: fn(&RowOf<'_, PinRow>) -> Cell<'static>,
-) -> Column {
-    column(TableName::Pins, (name, cells), names, ColumnSource::Pin(of))
-}
-
-pub(super) const fn of_section(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: for<'a> fn(&RowOf<'a, SectionRow>) -> Cell<'a>,
-) -> Column {
-    column(TableName::Sections, (name, cells), names, ColumnSource::Section(of))
-}
-
-pub(super) const fn of_place(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: fn(&RowOf<'_, PlaceRow>) -> Cell<'static>,
-) -> Column {
-    column(TableName::Places, (name, cells), names, ColumnSource::Place(of))
-}
-
-pub(super) const fn at_peak(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>,
-) -> Column {
-    column(TableName::AtPeaks, (name, cells), names, ColumnSource::AtPeak(of))
-}
-
-pub(super) const fn of_joint(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: fn(&JointRow) -> Cell<'static>,
-) -> Column {
-    column(TableName::Joints, (name, cells), names, ColumnSource::Joint(of))
-}
-
-pub(super) const fn of_mode(
-    name: &'static str,
-    cells: CellKind,
-    names: NameAndLabel,
-    of: for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>,
-) -> Column {
-    column(TableName::Modes, (name, cells), names, ColumnSource::Mode(of))
+entries! {
+    of_position: Positions, Position(fn(&RowOf<'_, PositionRow>) -> Cell<'static>);
+    of_connector: Connectors, Connector(fn(&RowOf<'_, ConnectorRow>) -> Cell<'static>);
+    of_sample: Histories, Sample(for<'a> fn(&HistorySample<'a>) -> Cell<'a>);
+    of_mode: Modes, Mode(for<'a> fn(&RowOf<'a, ModeRow>) -> Cell<'a>);
+    of_joint: Joints, Joint(fn(&JointRow) -> Cell<'static>);
+    of_pin: Pins, Pin(fn(&RowOf<'_, PinRow>) -> Cell<'static>);
+    of_section: Sections, Section(for<'a> fn(&RowOf<'a, SectionRow>) -> Cell<'a>);
+    of_place: Places, Place(fn(&RowOf<'_, PlaceRow>) -> Cell<'static>);
+    at_peak: AtPeaks, AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>);
+    of_bank: Banks, Bank(fn(&RowOf<'_, BankRow>) -> Cell<'static>);
 }
 
 pub(super) const fn peak_card(

@@ -12,14 +12,15 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::{
-    AtPeak, CrossingResponse, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record, Recorded, Subject,
+    AtPeak, BankPeaks, CrossingResponse, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record, Recorded,
+    Subject,
 };
 use pontoon_core::vehicle::Vehicle;
 use pontoon_plan::job::{CrossingJob, Job};
 use pontoon_plan::study_file::PeakColumn;
 use pontoon_results::{
-    AtPeakRow, ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, HistorySeries, JobRecord, NumberPlace, PinRow,
-    PlaceRow, PositionRow, SectionRow, Summary,
+    AtPeakRow, BankRow, ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, HistorySeries, JobRecord,
+    NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow, Summary,
 };
 
 /// A job's record or why it failed.
@@ -267,6 +268,7 @@ fn rows(job: &Job, mut response: CrossingResponse, static_peaks_m: Option<&[f64]
         positions,
         connectors,
         places: recorded.places.iter().map(place_row).collect(),
+        banks: recorded.banks.iter().map(bank_row).collect(),
         at_peaks: recorded.at_peaks.iter().flat_map(|at| named.at_peak(at)).collect(),
         histories: named.histories(recorded),
         modes: Vec::new(),
@@ -329,6 +331,15 @@ impl Named<'_> {
             value: value + 0.0,
         };
         at.numbers.iter().map(row).collect()
+    }
+}
+
+fn bank_row(peaks: &BankPeaks) -> BankRow {
+    BankRow {
+        bank: peaks.bank,
+        y_m: peaks.y_m,
+        toward: extreme(peaks.force.tension),
+        away: extreme(peaks.force.compression),
     }
 }
 

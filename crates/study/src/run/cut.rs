@@ -3,6 +3,7 @@
 //! Knows how many rows a job leaves. Does not know threads: the cuts depend on the study and its jobs alone, as the row
 //! groups of the tables follow them.
 
+use pontoon_core::bridge::BankSpec;
 use pontoon_core::response::SECTIONS;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::Study;
@@ -63,5 +64,7 @@ fn rows(study: &Study, job: &Job) -> usize {
     // at a peak all of it and each direction of a pin
     let at_peaks = record.at_peak_of.len() * (design.positions() + places + (of_joint + 3 * pins + sections) * joints);
     let series = record.histories.series(design) * job.steps();
-    1 + positions + places + (of_joint + pins + sections) * joints + at_peaks + series
+    let of_bank = |bank: &BankSpec| 1 + design.bank_places_y_m(bank).len();
+    let banks: usize = design.banks.iter().map(of_bank).sum();
+    1 + positions + places + banks + (of_joint + pins + sections) * joints + at_peaks + series
 }

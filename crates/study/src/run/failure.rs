@@ -6,6 +6,7 @@
 use super::retry::half_step_may_help;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::bridge::BridgeError;
+use pontoon_core::bridge::LinkPlace;
 use pontoon_core::fem::FemError;
 use pontoon_core::operator::OperatorError;
 use pontoon_plan::job::TooManySteps;
@@ -111,16 +112,19 @@ fn failure_of(error: &AnalysisError) -> Failure {
     match error {
         AnalysisError::NotConverged {
             time_s,
-            connector,
-            joint,
-            y_m,
+            link,
             bisections,
-        } => of(FailureKind::ContactNotSettled)
-            .with("time_s", *time_s)
-            .with("connector", *connector as f64)
-            .with("joint", *joint as f64)
-            .with("y_m", *y_m)
-            .with("bisections", *bisections as f64),
+        } => {
+            let failure = of(FailureKind::ContactNotSettled).with("time_s", *time_s);
+            let (failure, y_m) = match link {
+                LinkPlace::Connector { number, joint, y_m } => {
+                    let failure = failure.with("connector", *number as f64).with("joint", *joint as f64);
+                    (failure, y_m)
+                }
+                LinkPlace::Bank { bank, y_m } => (failure.with("bank", *bank as f64), y_m),
+            };
+            failure.with("y_m", *y_m).with("bisections", *bisections as f64)
+        }
         AnalysisError::StaticNotConverged { iterations, load_x_m } => of(FailureKind::StaticContactNotSettled)
             .with("iterations", *iterations as f64)
             .with("load_x_m", *load_x_m),

@@ -33,6 +33,15 @@ impl Rounding {
         }
     }
 
+    /// Of one section force; no angle is rounding that a joint has at all.
+    fn of_section(self, of: Section) -> Self {
+        if of == Section::Angle {
+            Self { largest_n: 0.0 }
+        } else {
+            self
+        }
+    }
+
     fn is_rounding(self, value: f64) -> bool {
         value < ROUNDING * self.largest_n
     }
@@ -65,14 +74,12 @@ impl Rounding {
         }
     }
 
-    /// The row of a section force or angle; no angle is rounding that a joint has at all.
+    /// The row of a section force or angle.
     pub(super) fn section_row(self, peaks: &SectionPeaks) -> SectionRow {
-        let of_angle = Self { largest_n: 0.0 };
-        let own = if peaks.of == Section::Angle { of_angle } else { self };
         SectionRow {
             joint: peaks.joint,
             quantity: quantity_word(Quantity::Section(peaks.of)).to_owned(),
-            sides: own.peaks(peaks.peaks),
+            sides: self.of_section(peaks.of).peaks(peaks.peaks),
         }
     }
 
@@ -102,12 +109,7 @@ impl Rounding {
         let row = |joint: usize, (of, value): (Section, f64)| SectionRow {
             joint,
             quantity: quantity_word(Quantity::Section(of)).to_owned(),
-            sides: if of == Section::Angle {
-                Self { largest_n: 0.0 }
-            } else {
-                self
-            }
-            .sides(value),
+            sides: self.of_section(of).sides(value),
         };
         let joints = (2..).zip(sections);
         let of_joint = |(joint, values): (usize, &[f64; SECTIONS])| {

@@ -552,12 +552,13 @@ fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
 }
 
 fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
-    let followed = crossing.job.record.followed();
+    let job = crossing.job;
+    let record = job.record.of_crossing(&job.bridge.design);
     Some(OperatorKey {
         bridge: bridge_key(crossing.job),
         tolerance: crossing.operator_tolerance()?.to_bits(),
-        pins: followed.pins,
-        places: followed.places_x_m.into_iter().map(f64::to_bits).collect(),
+        pins: record.needs_pins(),
+        places: record.places_x_m.into_iter().map(f64::to_bits).collect(),
     })
 }
 

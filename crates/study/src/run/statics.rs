@@ -7,7 +7,7 @@ use super::joint_rows::Rounding;
 use super::shared_models::{SharedModels, static_case};
 use pontoon_core::response::StaticResponse;
 use pontoon_plan::job::{Job, StandingLoad};
-use pontoon_results::{ConnectorRow, Extreme, JobRecord, PlaceRow, PositionRow, Summary};
+use pontoon_results::{BankRow, ConnectorRow, Extreme, JobRecord, PlaceRow, PositionRow, Summary};
 
 /// Solves the static case of a job.
 pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
@@ -66,8 +66,28 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         pins,
         sections,
         places: place_rows(job, &response.places_m),
+        banks: bank_rows(&response.banks),
         ..JobRecord::default()
     }
+}
+
+/// The rows of banks: of each bank's sum, then of each place.
+fn bank_rows(forces: &[(usize, f64, f64)]) -> Vec<BankRow> {
+    let row = |bank: usize, y_m: Option<f64>, force_n: f64| {
+        let [away, toward] = sides(force_n);
+        BankRow {
+            bank,
+            y_m,
+            toward,
+            away,
+        }
+    };
+    let of_bank = |of: &[(usize, f64, f64)]| {
+        let (bank, sum) = (of[0].0, of.iter().map(|place| place.2).sum());
+        let places = of.iter().map(|(_, y_m, force_n)| row(bank, Some(*y_m), *force_n));
+        std::iter::once(row(bank, None, sum)).chain(places).collect::<Vec<_>>()
+    };
+    forces.chunk_by(|a, b| a.0 == b.0).flat_map(of_bank).collect()
 }
 
 fn place_rows(job: &Job, places_m: &[f64]) -> Vec<PlaceRow> {

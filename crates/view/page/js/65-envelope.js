@@ -1,4 +1,4 @@
-// The envelope along the bridge: the deepest and highest line of all jobs, the picked job's own, the measured profile; the same for the joints' forces.
+// The envelope along the bridge: the deepest and highest line of all jobs, the picked job's own, the measured profile; below it that of the joints' forces.
 (page => {
   'use strict';
   const { data, numbers, array, row } = page,

@@ -25,6 +25,14 @@
     SAID = { uncoupled: 'coupling open: pushes only', lost: 'connectors lost' };
   const mark = (kind, size) => WANTING[kind].replace(/-?\d*\.\d+|-?\d+/g, n => +(n * size).toFixed(2));
 
+  /** A bank that presses upward: a plate where the bridge meets it, a spring, the ground. */
+  const spring = (x, y, bank) =>
+    svg('path', {
+      class: 'spring',
+      'data-bank': bank,
+      d: `M${(x - 6).toFixed(2)} ${y.toFixed(2)}h12m-6 0l4 2l-8 3l8 3l-8 3l4 2m-8 0h16`,
+    });
+
   /** The states that a play has, and the three that any may have; what joints have not got, where one has not. */
   function legend(state, wanting) {
     const shown = state.includes(3) ? STATES : STATES.slice(0, 3);
@@ -77,6 +85,7 @@
     const wanting = bridge.joints.map(joint =>
       bridge.lost_joints?.includes(joint) ? 'lost' : bridge.open_joints?.includes(joint) ? 'uncoupled' : '',
     );
+    const banks = bridge.banks ?? [];
     const w = array(play.deflection_m),
       force = array(play.force_n),
       state = array(play.state),
@@ -163,6 +172,7 @@
           [0, X(0)],
           [X(length), width],
         ].map(([a, b]) => svg('line', { class: 'bank', x1: a, x2: b, y1: base - thick, y2: base - thick })),
+        banks.map(b => spring(X(xs[b.position - 1]), base + b.clearance_m * E * s, b.bank)),
         part.modules,
         part.body,
         part.wheels,

@@ -205,6 +205,23 @@ test('open and lost couplings are marked at their joints and said', () =>
     assert.deepEqual(said.slice(-2), ['coupling open: pushes only', 'connectors lost']);
   }));
 
+test('a bank stands under the end of the bridge that it carries', () =>
+  on(sample('crossing'), {}, async page => {
+    assert.equal(await page.$$eval('.spring', all => all.length), 0, 'a bridge without banks has none');
+    await page.selectOption('#play-job', String(sample('crossing').data.plays[2].job));
+    const { banks, left, base, px, scale } = await page.$eval('svg.bridge', node => ({
+      banks: [...node.querySelectorAll('.spring')].map(b => [Number(b.dataset.bank), b.getAttribute('d')]),
+      left: Number(node.dataset.left),
+      base: Number(node.dataset.base),
+      px: Number(node.dataset.pxM),
+      scale: Number(node.dataset.scale),
+    }));
+    assert.equal(banks.length, 1);
+    const [x, y] = banks[0][1].slice(1).split('h')[0].split(' ').map(Number);
+    assert.ok(Math.abs(x + 6 - left) < 0.02, 'under the left end');
+    assert.ok(Math.abs(y - (base + 0.05 * scale * px)) < 0.02, 'its clearance below the bridge');
+  }));
+
 test('it plays, pauses, steps, runs at the speed that is chosen and ends', () =>
   on(sample('crossing'), {}, async page => {
     const frame = () => page.$eval('svg.bridge', n => Number(n.dataset.frame)),

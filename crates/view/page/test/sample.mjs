@@ -355,7 +355,12 @@ export function crossing() {
     { connection: 'nonlinear', gap_tension_m: 0.028, gap_compression_m: 0.0055, speed_m_s: 6.09, load_n: 132300 },
   ];
   const data = study('crossing', 'fu2005', jobs, CROSSING, PEAKS, { failed: [9] });
-  data.plays[2].bridge = { ...bridge, open_joints: [3, 4], lost_joints: [7] };
+  data.plays[2].bridge = {
+    ...bridge,
+    open_joints: [3, 4],
+    lost_joints: [7],
+    banks: [{ bank: 0, position: 1, clearance_m: 0.05 }],
+  };
   data.notes = ['The reference was measured on a model at 1 : 10.'];
   data.marks = [
     ...speed.map((x, i) => ({

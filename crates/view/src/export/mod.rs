@@ -164,6 +164,7 @@ fn contents(subject: &Subject, parts: &[Part]) -> Value {
             "link": numbered(&pictures::LINKS),
             "state": numbered(&pictures::STATES),
             "force_n": "along the bridge, tension positive [N]",
+            "force_on_left_n": "of a connector or hinge on the module left of it [N]",
             "elongation_m": "of a connector; 0 of a hinge [m]",
             "joint": "its position number, 2 to modules",
             "contact_force_n": "of a point of the vehicle on the deck, weight and inertia, downward [N]",

@@ -78,7 +78,8 @@ impl Pictures {
         fields: Vec<Array>,
     ) -> VtkGrid {
         let meshed = &ready.meshed;
-        let hinges = meshed.hinge_forces_n(&state.elastic, state.inertial.as_deref());
+        let pins = state.pin_forces_n(&ready.bridge);
+        let hinges: Vec<f64> = pins.iter().map(|force| force[0]).collect();
         let sense = |force_n: f64| i32::from(force_n < 0.0) + 2 * i32::from(force_n > 0.0);
         let now = &state.connectors[..meshed.connectors.len()];
         let of_connectors = now.iter().map(|connector| match connector.state {
@@ -89,6 +90,8 @@ impl Pictures {
         });
         let states = of_connectors.chain(hinges.iter().map(|&force_n| sense(force_n)));
         let forces = now.iter().map(|c| c.force_n).chain(hinges.iter().copied());
+        let on_left = now.iter().map(|c| [c.force_n, 0.0, 0.0]).chain(pins.iter().copied());
+        let on_left: Vec<[f64; 3]> = on_left.collect();
         let elongations = now.iter().map(|c| c.elongation_m).chain(hinges.iter().map(|_| 0.0));
         let moved: Vec<[f64; 3]> = links(ready)
             .flat_map(|link| link.nodes)
@@ -100,6 +103,7 @@ impl Pictures {
             Array::new("state", VtkValues::I32(states.collect())),
             Array::new("force_n", VtkValues::F64(forces.collect())),
             Array::new("elongation_m", VtkValues::F64(elongations.collect())),
+            Array::vectors("force_on_left_n", &on_left),
         ]);
         grid.field_data.extend(fields);
         grid

@@ -44,6 +44,7 @@ pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};
 
 use crate::figures::{Chart, ReferenceMark};
+use pontoon_core::bridge::{BankSpec, BridgeDesign, Direction, Toward};
 use pontoon_core::connector::ConnectorLaw;
 use pontoon_judge::compare::Comparison;
 use pontoon_plan::input::Cell;
@@ -145,6 +146,20 @@ pub struct BridgeNote {
     /// Those whose connectors are lost: none pulls or pushes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lost_joints: Vec<usize>,
+    /// Banks that press upward.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub banks: Vec<BankNote>,
+}
+
+/// A bank that presses upward, as a page draws it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BankNote {
+    /// Its number, from 0.
+    pub bank: usize,
+    /// Its position.
+    pub position: usize,
+    /// How far under the bridge it stands `[m]`.
+    pub clearance_m: f64,
 }
 
 impl BridgeNote {
@@ -167,8 +182,24 @@ impl BridgeNote {
             joints: (2..=design.modules).collect(),
             open_joints: joints_whose(job, |[pulls, pushes]| !pulls && pushes),
             lost_joints: joints_whose(job, |[pulls, pushes]| !pulls && !pushes),
+            banks: design
+                .banks
+                .iter()
+                .enumerate()
+                .filter_map(|of| bank_note(design, of))
+                .collect(),
         }
     }
+}
+
+/// A bank as a page draws it; none of one that does not press upward.
+fn bank_note(design: &BridgeDesign, (bank, spec): (usize, &BankSpec)) -> Option<BankNote> {
+    let upward = spec.direction == Direction::Z && spec.toward != Some(Toward::Minus);
+    upward.then(|| BankNote {
+        bank,
+        position: spec.position(design.modules),
+        clearance_m: spec.clearance_m,
+    })
 }
 
 /// The joints of a job of whose connectors it holds whether any pulls and whether any pushes.

@@ -48,7 +48,7 @@ fn vehicle(inertia: Inertia) -> Vehicle {
 /// sides of each joint, along, across and up of each module as a whole. `off` is a share by which the pins are wrong.
 fn left_over(setup: &Setup, bodies: &[Vec<ModuleForces>], connectors_n: &[f64], pins_n: &[[f64; 3]], off: f64) -> f64 {
     let mut pulled: BTreeMap<usize, f64> = BTreeMap::new();
-    for (connector, force) in setup.bridge.connectors.iter().zip(connectors_n) {
+    for (connector, force) in setup.bridge.links.iter().zip(connectors_n) {
         for &(dof, factor) in &connector.row.0 {
             *pulled.entry(dof).or_default() += factor * force;
         }

@@ -137,7 +137,7 @@ impl CrossingSolver {
             load_n: crossing.load_n,
             speed_m_s: crossing.speed_m_s,
             rayleigh: self.settings.rayleigh,
-            laws: crossing.laws(self.bridge.connectors.len()),
+            laws: crossing.laws(self.bridge.links.len()),
             pins: crossing.record.needs_pins(),
             dashpots: crossing.dashpots(),
         };

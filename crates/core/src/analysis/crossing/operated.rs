@@ -5,7 +5,7 @@
 use super::halving::{Halving, halve};
 use super::{Crossing, CrossingSettings, StepSpan};
 use crate::analysis::AnalysisError;
-use crate::bridge::{Bridge, BridgeDesign, joint_parts};
+use crate::bridge::{Bridge, BridgeDesign, LinkPlace, joint_parts};
 use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
@@ -22,8 +22,8 @@ pub struct OperatorSolver {
     least_draft_m: Option<f64>,
     least_freeboard_m: Option<f64>,
     banks: Vec<BankPart>,
-    /// Position number and place across of each link `[m]`.
-    link_places: Vec<(usize, f64)>,
+    /// Where each link is.
+    link_places: Vec<LinkPlace>,
     operator: Arc<BridgeOperator>,
     settings: CrossingSettings,
     constants: Vec<OnceLock<StepConstants>>,
@@ -75,7 +75,7 @@ impl OperatorSolver {
             least_draft_m: bridge.least_draft_m(),
             least_freeboard_m: bridge.least_freeboard_m(),
             banks: bridge.bank_parts(),
-            link_places: bridge.connectors.iter().map(|link| (link.joint, link.y_m)).collect(),
+            link_places: bridge.links.iter().map(|link| link.place).collect(),
             operator: Arc::clone(operator),
             settings: *settings,
             constants: (0..=settings.bisection_limit + REFINEMENTS)
@@ -384,12 +384,9 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
     }
 
     fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
-        let (joint, y_m) = self.crew.solver.link_places[stuck.connector];
         AnalysisError::NotConverged {
             time_s,
-            connector: stuck.connector + 1,
-            joint,
-            y_m,
+            link: self.crew.solver.link_places[stuck.connector],
             bisections,
         }
     }

@@ -112,12 +112,9 @@ impl Halving for CrossingRun<'_> {
     }
 
     fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
-        let place = &self.solver.bridge.connectors[stuck.connector];
         AnalysisError::NotConverged {
             time_s,
-            connector: stuck.connector + 1,
-            joint: place.joint,
-            y_m: place.y_m,
+            link: self.solver.bridge.links[stuck.connector].place,
             bisections,
         }
     }

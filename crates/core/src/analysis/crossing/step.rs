@@ -195,7 +195,7 @@ impl Stepper<'_> {
         for (i, f) in f.iter_mut().enumerate() {
             *f = -a * *f - old.ku[i] - m_v * old.mv[i] - m_a * old.ma[i];
         }
-        for (connector, force) in self.bridge.connectors.iter().zip(&old.forces) {
+        for (connector, force) in self.bridge.links.iter().zip(&old.forces) {
             connector.row.add_to(-s.alpha_f * force, &mut f);
         }
         matrix.flexibility.add_track_force(&old.load.weight, -s.alpha_f, &mut f);
@@ -209,7 +209,7 @@ impl Stepper<'_> {
     /// with `g = r + (2 V c_v/c_a) r_x + (V^2/c_a) r_xx` and `q' = (1 - alpha_m) q`.
     fn contact_problem<'l>(&self, matrix: &'l StepMatrix, old: &Motion, load: &Load, d: &[f64]) -> ContactProblem<'l> {
         let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
-        let connectors = &self.bridge.connectors;
+        let connectors = &self.bridge.links;
         let (nc, nr) = (connectors.len(), load.riders.len());
         let measures: Vec<SparseRow> = load.riders.iter().map(|rider| self.measure(matrix, rider)).collect();
         let mut riders = DMatrix::from_fn(nr, nr, |i, j| {

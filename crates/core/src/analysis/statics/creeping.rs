@@ -57,7 +57,7 @@ impl CreepingLoad {
             places_m,
             unit,
             among: flexibility.among_connectors().clone(),
-            positions: DMatrix::from_row_slice(bridge.positions.len(), bridge.connectors.len(), &seen),
+            positions: DMatrix::from_row_slice(bridge.positions.len(), bridge.links.len(), &seen),
         }
     }
 

@@ -155,7 +155,7 @@ impl StaticSolver {
     /// The load, the connectors' forces and the displacement of a case.
     fn rest(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<(Load, ContactSolution, Vec<f64>), AnalysisError> {
         let load = self.load(vehicle, case, case.load_x_m);
-        let e_free: Vec<f64> = (0..self.bridge.connectors.len())
+        let e_free: Vec<f64> = (0..self.bridge.links.len())
             .map(|i| -self.flexibility.connector_to_track(i, &load.weight))
             .collect();
         let laws = case.laws(e_free.len());
