@@ -232,7 +232,8 @@ def check_joints(grid, bridge, axes):
     else:
         pull, push = axes["gap_tension_m"], axes["gap_compression_m"]
         expected = k * (np.maximum(e - pull, 0) + np.minimum(e + push, 0))
-    near("forces on the left, along", cell["force_on_left_n"][:, 0], force, 0.0)
+    size = np.abs(force).max(initial=1e-6)
+    near("forces on the left, along", cell["force_on_left_n"][:, 0], force, SINGLE * size)
     across = cell["force_on_left_n"][connector, 1:]
     near("connectors act along alone", across, np.zeros_like(across), 0.0)
     near("connector law", force[connector], expected[connector], 1e-6 * k * 1e-3)
