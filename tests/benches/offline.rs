@@ -8,7 +8,6 @@ use divan::Bencher;
 use pontoon_core::analysis::modes::modes;
 use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, Model, PreparedModule};
 use pontoon_core::fem::{MassKind, assemble};
-use pontoon_core::module::mesh_module;
 use pontoon_core::operator::BridgeOperator;
 use pontoon_tests::design;
 use pontoon_tests::scenario::{BRIDGE, OPERATOR_TOLERANCE};
@@ -29,9 +28,7 @@ fn bridge(design: &BridgeDesign, module: &PreparedModule, ends: Ends) -> Bridge 
 #[divan::bench(sample_count = 10)]
 fn module_assembly(bencher: Bencher<'_, '_>) {
     let design = design(BRIDGE);
-    let lines = [&design.hinges.y_m[..], &design.connectors.y_m[..]].concat();
-    bencher
-        .bench_local(|| assemble(&mesh_module(&design.module, &lines).mesh, MassKind::Consistent).expect("matrices"));
+    bencher.bench_local(|| assemble(&design.module_mesh().mesh, MassKind::Consistent).expect("matrices"));
 }
 
 /// The module from its design to its condensed matrices, finite elements included.

@@ -5,7 +5,7 @@
 use pontoon_core::bridge::{Bridge, BridgeDesign, BridgeError, Ends, Model, PreparedModule};
 use pontoon_core::connector::Connection;
 use pontoon_core::fem::NodeId;
-use pontoon_core::module::{Grid, ModuleMesh, mesh_module};
+use pontoon_core::module::{Grid, ModuleMesh};
 use pontoon_core::vehicle::Inertia;
 use pontoon_tests::beams::BeamModule;
 use pontoon_tests::*;
@@ -19,7 +19,7 @@ fn mesh_of_the_box_is_the_box() {
         let ready = match factor {
             None => Ready::new(&d, Model::SuperElement),
             Some(f) => {
-                let mut given = mesh_module(&d.module, &d.joint_lines_y_m());
+                let mut given = d.module_mesh();
                 given.mesh.shells.iter_mut().for_each(|s| s.section.thickness_m *= f);
                 Ready::of(
                     &d,

@@ -52,6 +52,22 @@ fn ramp(water: f64) -> Value {
     kind
 }
 
+/// A ramp that slopes, dry at its left end; at its right end it is as deep as an interior module, its bottom higher than at the
+/// left.
+fn sloping(water: f64) -> Value {
+    let mut kind = ramp(water);
+    kind["module"]["deck_right_m"] = json!(1.2);
+    kind["module"]["bottom_right_m"] = json!(0.13);
+    kind["wet_from_m"] = json!(1.7);
+    for key in ["draft_m", "freeboard_m"] {
+        kind.as_object_mut().expect("an object").remove(key);
+    }
+    kind
+}
+
+/// A kind of ramp by the share of its water.
+type RampOf = fn(f64) -> Value;
+
 /// A bridge of kinds, else smoke's.
 fn bridge(kinds: Value, modules: Value) -> BridgeDesign {
     let mut document = serde_json::to_value(design("smoke")).expect("a document");
@@ -66,8 +82,13 @@ fn bridge(kinds: Value, modules: Value) -> BridgeDesign {
 
 /// Ramps at both ends, the one on the right mirrored, and one more ramp between modules.
 fn unlike(water: f64) -> BridgeDesign {
+    with_ramps(ramp(water))
+}
+
+/// Such a row with another kind of ramp.
+fn with_ramps(ramp: Value) -> BridgeDesign {
     let row = json!([{ "kind": "ramp" }, { "kind": "interior", "count": 2 }, { "kind": "ramp", "mirrored": true }]);
-    bridge(json!({ "interior": interior(1.0), "ramp": ramp(water) }), row)
+    bridge(json!({ "interior": interior(1.0), "ramp": ramp }), row)
 }
 
 /// Ramps at places that are no mirror image of themselves.
@@ -127,6 +148,12 @@ fn kinds_that_hardly_differ_are_equal_modules() {
 /// Twin: 5 % less water under one of the ramps' kind.
 #[test]
 fn a_mirrored_row_gives_mirrored_answers() {
+    for (what, ramp) in [("mirrored row", ramp as RampOf), ("mirrored slope", sloping)] {
+        mirrors(what, ramp);
+    }
+}
+
+fn mirrors(what: &str, ramp: RampOf) {
     let [row, image] = lopsided();
     let of = |row: &Value, water: f64| bridge(json!({ "interior": interior(1.0), "ramp": ramp(water) }), row.clone());
     let mirrored = |water: f64| {
@@ -149,15 +176,24 @@ fn a_mirrored_row_gives_mirrored_answers() {
         };
         miss(0).max(miss(1))
     });
-    held("mirrored row", 1e-7, right, wrong);
+    held(what, 1e-7, right, wrong);
 }
 
 /// Condensed frequencies are upper bounds, by at most 0.1 %. Twin: the full model on 5 % more water under the ramps.
 #[test]
 fn condensed_kinds_keep_the_frequencies_of_the_full_model() {
-    let condensed = Ready::new(&unlike(1.0), Model::SuperElement).modes(16);
+    for (what, ramp) in [
+        ("frequencies of kinds", ramp as RampOf),
+        ("frequencies of slopes", sloping),
+    ] {
+        keeps_frequencies(what, ramp);
+    }
+}
+
+fn keeps_frequencies(what: &str, ramp: RampOf) {
+    let condensed = Ready::new(&with_ramps(ramp(1.0)), Model::SuperElement).modes(16);
     let miss = |water: f64| {
-        let full = Ready::new(&unlike(water), Model::Full).modes(16);
+        let full = Ready::new(&with_ramps(ramp(water)), Model::Full).modes(16);
         let above = |(c, f): (&_, &_)| -> f64 {
             let [c, f]: [&pontoon_core::analysis::modes::Mode; 2] = [c, f];
             let share = c.frequency_hz / f.frequency_hz - 1.0;
@@ -167,14 +203,20 @@ fn condensed_kinds_keep_the_frequencies_of_the_full_model() {
         // surge, sway and yaw have none
         largest(condensed.iter().zip(&full).skip(3).map(above))
     };
-    held("frequencies of kinds", 1e-3, miss(1.0), miss(1.05));
+    held(what, 1e-3, miss(1.0), miss(1.05));
 }
 
 /// Load, water and supports of a static case add up to zero, force and both moments: 1e-8 of the load's. Twin: 5 % more load.
 /// Pins and connectors of a joint pull along the bridge as much as they push: 1e-8 of the largest. Twin: connectors 5 % off.
 #[test]
 fn a_row_of_kinds_is_in_equilibrium() {
-    let ready = Ready::new(&unlike(1.0), Model::SuperElement);
+    for ramp in [ramp as RampOf, sloping] {
+        is_in_equilibrium(&with_ramps(ramp(1.0)));
+    }
+}
+
+fn is_in_equilibrium(design: &BridgeDesign) {
+    let ready = Ready::new(design, Model::SuperElement);
     let vehicle = footprint(&[-0.4, 2.4], Inertia::None);
     for x_m in [2.0, 5.0, 9.0, 20.0] {
         let case = ready.case(gaps(0.002, 0.001), PAPER_LOAD_N, x_m);
@@ -214,13 +256,20 @@ fn pins(r: &CrossingResponse) -> Vec<f64> {
         .collect()
 }
 
-/// The operator beside the reference solver on unlike modules: with every mode 1e-8, with the modes that studies keep 1 %.
+/// The operator beside the reference solver on unlike modules: with every mode 1e-8, with the modes that studies keep 1 %; on slopes
+/// with every mode.
 /// Twin: an operator on 5 % more water under the ramps.
 #[test]
 fn the_operator_of_unlike_modules_is_the_reference_solver() {
+    is_the_reference_solver("unlike modules", ramp, &[(0.0, 1e-8), (6e-4, 1e-2)]);
+    is_the_reference_solver("sloping modules", sloping, &[(0.0, 1e-8)]);
+}
+
+/// Holds the operator of each tolerance to a limit.
+fn is_the_reference_solver(what: &str, ramp: RampOf, limits: &[(f64, f64)]) {
     let (ready, other) = (
-        Ready::new(&unlike(1.0), Model::SuperElement),
-        Ready::new(&unlike(1.3), Model::SuperElement),
+        Ready::new(&with_ramps(ramp(1.0)), Model::SuperElement),
+        Ready::new(&with_ramps(ramp(1.3)), Model::SuperElement),
     );
     let settings = settings(ready.rayleigh(), 0.01, 0.9);
     let crossing = recorded(&ready);
@@ -228,7 +277,7 @@ fn the_operator_of_unlike_modules_is_the_reference_solver() {
         pins: true,
         places_x_m: crossing.record.places_x_m.clone(),
     };
-    for (tolerance, limit) in [(0.0, 1e-8), (6e-4, 1e-2)] {
+    for &(tolerance, limit) in limits {
         let operator = |ready: &Ready| {
             Arc::new(
                 BridgeOperator::new_unless(&ready.bridge, tolerance, &followed, Stop::never()).expect("an operator"),
@@ -249,7 +298,7 @@ fn the_operator_of_unlike_modules_is_the_reference_solver() {
                 peaks.max(apart(&pins(r), &pins(&expected)))
             };
             held(
-                &format!("unlike modules, {inertia:?}, {tolerance:e}"),
+                &format!("{what}, {inertia:?}, {tolerance:e}"),
                 limit,
                 miss(&found),
                 miss(&wrong),
@@ -260,6 +309,46 @@ fn the_operator_of_unlike_modules_is_the_reference_solver() {
             );
         }
     }
+}
+
+/// Bottoms of a row that slopes meet in the hinges in pictures, and the deck of a crossing's wheels lies on the mesh's.
+#[test]
+fn bottoms_of_slopes_meet_in_the_hinges() {
+    let design = with_ramps(sloping(1.0));
+    let modules = PreparedModule::of_kinds(&design, Model::SuperElement).expect("modules");
+    let meshed = MeshedBridge::of_kinds(&design, &modules, Ends::Supported).expect("a mesh");
+    assert_eq!(design.bases_m(), [0.0, 0.13, 0.13, 0.13]);
+    for link in &meshed.hinges {
+        let [a, b] = link.nodes.map(|node| meshed.nodes_m[node]);
+        assert!(largest((0..3).map(|i| (a[i] - b[i]).abs())) < 1e-12, "{link:?}");
+        assert_eq!(b[2], 0.13);
+    }
+    let near = |x_m: f64, z_m: f64| {
+        let miss = |p: &[f64; 3]| (p[0] - x_m).abs().max((p[2] - z_m).abs());
+        meshed.nodes_m.iter().map(miss).fold(f64::INFINITY, f64::min)
+    };
+    let ends = [
+        (0.0, 0.8),
+        (3.0, 1.04),
+        (5.0, 1.2),
+        (11.7, 1.2),
+        (18.4, 1.2),
+        (20.4, 1.04),
+        (23.4, 0.8),
+    ];
+    for (x_m, deck_m) in ends {
+        assert!(
+            (design.deck_m(x_m) - deck_m).abs() < 1e-12,
+            "{x_m}: {}",
+            design.deck_m(x_m)
+        );
+        assert!(near(x_m, deck_m) < 1e-9, "no deck at {x_m}");
+    }
+    let bottom = |x_m: f64, z_m: f64| assert!(near(x_m, z_m) < 1e-9, "no bottom at {x_m}");
+    bottom(0.0, 0.0);
+    bottom(1.7, 0.13 * 1.7 / 5.0);
+    bottom(23.4, 0.0);
+    bottom(23.4 - 1.7, 0.13 * 1.7 / 5.0);
 }
 
 /// In the mesh of a row of kinds hinges of neighbours are at one place and move as one, decks of unlike depth do not meet, and

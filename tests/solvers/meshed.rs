@@ -9,7 +9,6 @@ use pontoon_core::analysis::statics::StaticSolver;
 use pontoon_core::bridge::{Bridge, BridgeDesign, Ends, MeshedBridge, Model, PreparedModule, Track};
 use pontoon_core::connector::{Connection, State};
 use pontoon_core::fem::{DOFS_PER_NODE, MassKind, SparseRow, SymmetricMatrix, assemble};
-use pontoon_core::module::mesh_module;
 use pontoon_core::vehicle::Inertia;
 use pontoon_core::water::spread;
 use pontoon_tests::*;
@@ -105,11 +104,11 @@ fn hinges_balance_connectors_in_a_static_state() {
 /// `omega^2 = (sum u^T k u + sum 2 k_c e^2) / sum u^T m u`, e from the nodes that connectors join.
 fn quotients_hz(design: &BridgeDesign, model: Model, connector_factor: f64) -> Vec<(f64, f64)> {
     let whole = whole(design, model, Ends::Free);
-    let own = mesh_module(&design.module, &design.joint_lines_y_m());
+    let own = design.module_mesh();
     let n = own.mesh.dofs();
     let (k, m) = assemble(&own.mesh, MassKind::Consistent).expect("matrices");
     let water = |per_area: f64| -> SymmetricMatrix {
-        let entries: Vec<_> = spread(&own.grid, per_area, design.water_distribution)
+        let entries: Vec<_> = spread(&own.grid, design.wet_m(), per_area, design.water_distribution)
             .iter()
             .map(|(a, b, v)| (a.dof(2), b.dof(2), *v))
             .collect();

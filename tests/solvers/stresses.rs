@@ -10,7 +10,7 @@ use pontoon_core::bridge::{
     Bridge, BridgeDesign, BridgeStresses, Ends, MeshedBridge, Model, PreparedModule, StressRecovery,
 };
 use pontoon_core::fem::{Beam, Factor, MassKind, NodeId, Shell, ShellStress, SymmetricMatrix, assemble};
-use pontoon_core::module::{ModuleMesh, mesh_module};
+use pontoon_core::module::ModuleMesh;
 use pontoon_core::superelement::SuperElement;
 use pontoon_core::vehicle::Inertia;
 use pontoon_tests::fem_model::part;
@@ -31,7 +31,7 @@ struct Cantilever {
 
 impl Cantilever {
     fn new(design: &BridgeDesign) -> Self {
-        let meshed = mesh_module(&design.module, &design.joint_lines_y_m());
+        let meshed = design.module_mesh();
         let (k, m) = assemble(&meshed.mesh, MassKind::Consistent).expect("matrices");
         let grid = &meshed.grid;
         let (right, ny) = (grid.x.len() - 1, grid.y.len());

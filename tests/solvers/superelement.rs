@@ -14,10 +14,10 @@ use std::f64::consts::PI;
 
 /// Structure and water of one module, as the bridge puts them together.
 fn module_matrices(design: &BridgeDesign) -> (ModuleMesh, SymmetricMatrix, SymmetricMatrix) {
-    let meshed = mesh_module(&design.module, &design.hinges.y_m);
+    let meshed = mesh_module(&design.module, &[], &design.hinges.y_m);
     let (k, m) = assemble(&meshed.mesh, MassKind::Consistent).expect("matrices");
     let water = |per_area: f64| -> SymmetricMatrix {
-        let entries: Vec<_> = spread(&meshed.grid, per_area, design.water_distribution)
+        let entries: Vec<_> = spread(&meshed.grid, design.wet_m(), per_area, design.water_distribution)
             .iter()
             .map(|(a, b, v)| (a.dof(2), b.dof(2), *v))
             .collect();
@@ -199,13 +199,13 @@ fn heave_by_hand_for_both_distributions_of_the_water() {
 #[test]
 fn both_distributions_hold_the_same_water() {
     let d = design("smoke");
-    let meshed = mesh_module(&d.module, &d.hinges.y_m);
+    let meshed = mesh_module(&d.module, &[], &d.hinges.y_m);
     let (l, b) = (d.module.length_m, d.module.breadth_m);
     let total = d.p_b() * l * b;
     for distribution in [WaterDistribution::Lumped, WaterDistribution::Consistent] {
         let resultants = |p_b: f64| {
             let mut sum = [0.0; 3];
-            for (a, c, v) in spread(&meshed.grid, p_b, distribution) {
+            for (a, c, v) in spread(&meshed.grid, d.wet_m(), p_b, distribution) {
                 let (row, place) = (meshed.mesh.nodes[a.dof(0) / 6], meshed.mesh.nodes[c.dof(0) / 6]);
                 assert_eq!(row.z + place.z, 0.0, "the bottom");
                 sum = [sum[0] + v, sum[1] + v * place.x, sum[2] + v * place.y];

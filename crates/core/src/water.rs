@@ -1,6 +1,6 @@
 //! The water: constant hydrostatic stiffness and added mass on the wetted bottom.
 //!
-//! Knows how a quantity per area is shared among the nodes of flat rectangular cells; it acts in z alone. Does not know
+//! Knows how a quantity per area is shared among the nodes of cells that are rectangles in plan; it acts in z alone. Does not know
 //! the structure above.
 
 use crate::fem::NodeId;
@@ -19,15 +19,21 @@ pub enum WaterDistribution {
     Consistent,
 }
 
-/// z of the bottom, as node pairs with their share of a quantity of `per_area` over the whole bottom [11-12, 16-17]:
+/// z of the bottom, as node pairs with their share of a quantity of `per_area` over the bottom between the places
+/// `wet_m` along [11-12, 16-17]:
 /// p_b `[Pa/m]` gives a stiffness `[N/m]`, an added mass per area `[kg/m^2]` a mass `[kg]`.
 ///
 /// Consistent on a rectangle of area A: `A/36` times 4 on the diagonal, 2 between neighbours, 1 across; lumped: `A/4` on
 /// the diagonal.
 /// Equation (W2).
-pub fn spread(grid: &Grid, per_area: f64, distribution: WaterDistribution) -> Vec<(NodeId, NodeId, f64)> {
+pub fn spread(
+    grid: &Grid,
+    wet_m: [f64; 2],
+    per_area: f64,
+    distribution: WaterDistribution,
+) -> Vec<(NodeId, NodeId, f64)> {
     let mut entries = Vec::new();
-    for (nodes, area) in grid.bottom_cells() {
+    for (nodes, area) in grid.bottom_cells(wet_m) {
         let q = per_area * area;
         for a in 0..4 {
             match distribution {

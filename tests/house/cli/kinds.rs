@@ -51,6 +51,19 @@ fn with_ramp() -> Stage {
     stage
 }
 
+/// That stage, its ramp sloping from bottom and deck of the others down to its right end, where it is dry.
+fn with_slope() -> Stage {
+    let mut stage = with_ramp();
+    let ramp = &mut stage.bridge["module_kinds"]["ramp"];
+    ramp["module"]["deck_right_m"] = json!(0.9);
+    ramp["module"]["bottom_right_m"] = json!(0.4);
+    ramp["wet_to_m"] = json!(3.0);
+    for key in ["draft_m", "freeboard_m"] {
+        ramp.as_object_mut().unwrap().remove(key);
+    }
+    stage
+}
+
 const TABLES: [&str; 7] = [
     "jobs",
     "positions",
@@ -136,7 +149,12 @@ fn numbers_of_kinds_are_axes_under_their_paths() {
 
 #[test]
 fn a_row_of_kinds_is_shown_and_exported() {
-    let stage = with_ramp();
+    for (stage, heights) in [(with_ramp(), None), (with_slope(), Some("[0.0,0.4,1.07,0.9]"))] {
+        is_shown(&stage, heights);
+    }
+}
+
+fn is_shown(stage: &Stage, heights: Option<&str>) {
     stage.ran("r");
     for arguments in [
         &["report", "r", "--out", "page.html"][..],
@@ -146,10 +164,130 @@ fn a_row_of_kinds_is_shown_and_exported() {
         let output = stage.pontoon(arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     }
-    assert!(
-        std::fs::read_to_string(stage.path("page.html"))
-            .unwrap()
-            .contains("ramp 5 m")
+    let page = std::fs::read_to_string(stage.path("page.html")).unwrap();
+    assert!(page.contains("ramp 5 m"));
+    assert_eq!(page.contains("\"module_heights_m\":"), heights.is_some());
+    assert!(heights.is_none_or(|heights| page.contains(heights)), "{heights:?}");
+}
+
+#[test]
+fn a_wet_part_that_is_the_whole_changes_nothing() {
+    let mut stage = stage();
+    stage.ran("plain");
+    (stage.bridge["wet_from_m"], stage.bridge["wet_to_m"]) = (json!(0.0), json!(6.7));
+    (
+        stage.bridge["module"]["deck_right_m"],
+        stage.bridge["module"]["bottom_right_m"],
+    ) = (json!(1.07), json!(0.0));
+    stage.ran("whole");
+    for name in &TABLES[1..] {
+        let table = |of: &str| stage.table(&format!("{of}/{name}.parquet"));
+        assert!(table("plain").same_cells(&table("whole")), "{name}");
+    }
+    stage.bridge["wet_to_m"] = json!(6.3);
+    stage.ran("dry in part");
+    let table = |of: &str| stage.table(&format!("{of}/positions.parquet"));
+    assert!(!table("plain").same_cells(&table("dry in part")));
+}
+
+#[test]
+fn slopes_and_wet_parts_that_no_module_can_have_are_refused_at_the_key() {
+    let ramp = |change: &dyn Fn(&mut Value), parts: &[&str]| {
+        let mut stage = with_slope();
+        change(&mut stage.bridge["module_kinds"]["ramp"]);
+        refused(stage.write(), &[&["bridge.json: module_kinds.ramp."], parts].concat());
+    };
+    ramp(
+        &|r| r["wet_from_m"] = json!(-1),
+        &["wet_from_m: found -1, allowed: a number from 0 to 5"],
+    );
+    ramp(
+        &|r| r["wet_from_m"] = json!(3.5),
+        &["wet_to_m: found 3, allowed: a number from 3.5 to 5"],
+    );
+    ramp(
+        &|r| r["wet_to_m"] = json!(5.1),
+        &["wet_to_m: found 5.1, allowed: a number from 0 to 5"],
+    );
+    ramp(
+        &|r| r["wet_to_m"] = json!(0),
+        &[
+            "hydrostatic_stiffness_pa_m: found a value",
+            "nothing: the module is dry",
+        ],
+    );
+    ramp(
+        &|r| {
+            r["wet_to_m"] = json!(0);
+            r["module"]["bottom_right_m"] = json!(0);
+            r["draft_m"] = json!(0.1);
+            let keys = r.as_object_mut().unwrap();
+            keys.remove("hydrostatic_stiffness_pa_m");
+            keys.remove("added_mass_kg_m");
+        },
+        &["draft_m: found 0.1", "nothing: the module is dry"],
+    );
+    ramp(&|r| r["draft_m"] = json!(0.1), &["draft_m: found 0.1", "slopes"]);
+    ramp(
+        &|r| r["freeboard_m"] = json!(0.9),
+        &["freeboard_m: found 0.9", "slopes"],
+    );
+    ramp(
+        &|r| r["module"]["deck_right_m"] = json!(0.4),
+        &["module.deck_right_m: found 0.4, allowed: a number above 0.4, the bottom there"],
+    );
+    ramp(
+        &|r| {
+            r["module"]["bottom_right_m"] = json!(1.2);
+            r["module"].as_object_mut().unwrap().remove("deck_right_m");
+        },
+        &["module.bottom_right_m: found 1.2, allowed: a number below 1.07, the deck there"],
+    );
+    ramp(
+        &|r| r["module"]["bottom_right_m"] = json!(-6),
+        &["module.bottom_right_m: found -6, allowed: a number from -5 to 5"],
+    );
+    ramp(
+        &|r| r["module"]["deck_right_m"] = json!(7),
+        &["module.deck_right_m: found 7, allowed: a number from -3.93 to 6.07"],
+    );
+    // dry, and no support at its end
+    let mut stage = with_slope();
+    stage.bridge["supports"] = json!({ "left": ["x", "y", "z"], "right": ["y"] });
+    stage.bridge["module_kinds"]["ramp"]["wet_to_m"] = json!(0);
+    let keys = stage.bridge["module_kinds"]["ramp"].as_object_mut().unwrap();
+    keys.remove("hydrostatic_stiffness_pa_m");
+    keys.remove("added_mass_kg_m");
+    stage.ran("its crossings run");
+    stage.study["analysis"] = json!({ "kind": "static" });
+    stage.study["record"] = json!({});
+    stage.study["design"] = json!([{ "cases": [{ "connection": "linear", "load_n": 3e5, "load_x_m": 7.0 }] }]);
+    refused(
+        stage.write(),
+        &[
+            "modules: found module 3, which is dry, free at position 4",
+            "held in z at both ends",
+        ],
+    );
+    stage.bridge["banks"] = json!([{ "at": "right", "direction": "z", "stiffness_n_m": 1e8, "one_sided": false }]);
+    stage.ran("held");
+    // a deck as high as the others', but on a bottom that is not: connectors would act on the hinge
+    let mut stage = with_slope();
+    stage.bridge["hinges"]["y_m"][0] = json!(-2.02);
+    stage.bridge["module_kinds"]["ramp"]["module"]["depth_m"] = json!(1.0);
+    refused(
+        stage.write(),
+        &["connectors.y_m[0]: found -2.02", "the depths at joint 3"],
+    );
+    // beside a list
+    let mut stage = with_slope();
+    stage.bridge["wet_from_m"] = json!(1.0);
+    refused(
+        stage.write(),
+        &[
+            "bridge.json: wet_from_m: found a value",
+            "nothing beside a list of modules",
+        ],
     );
 }
 

@@ -264,10 +264,10 @@ impl ShapeMotion {
         let (mut x, mut y, mut first) = (Vec::new(), Vec::new(), 0);
         for (ends, module) in hinges {
             let last = first + module.lines_x.len() - 1;
-            for ((place, along, across), station) in ends.iter().zip([first, last]) {
+            for (((place, along, across), station), depth_m) in ends.iter().zip([first, last]).zip(module.depths_m) {
                 // the roll there takes the lateral motion from the hinges to mid-depth
                 let roll = roll[station].1;
-                y.push((*place, across.dot(shape) - 0.5 * module.depth_m * roll));
+                y.push((*place, across.dot(shape) - 0.5 * depth_m * roll));
                 x.push((*place, along.dot(shape)));
             }
             first = last + 1;

@@ -10,6 +10,7 @@ use super::product::ModuleProduct;
 use super::row::{HeldDof, Row};
 use super::{BridgeDesign, BridgeError, Direction, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
+use crate::input::SAME_PLACE_M;
 use crate::module::Grid;
 use crate::response::{BankPart, BankSource};
 use std::borrow::Borrow;
@@ -94,7 +95,7 @@ pub struct Bridge {
     pub(crate) edges: Vec<SparseRow>,
     /// z of the deck's corners.
     pub(crate) deck_corners: Vec<SparseRow>,
-    /// z of the bottom's corners.
+    /// z of the corners of the bottoms' wet parts.
     pub(crate) bottom_corners: Vec<SparseRow>,
     /// Motion along, across and up of each module's eight corners, see [`crate::analysis::modes::shapes`].
     pub(crate) corners: Vec<[SparseRow; 3]>,
@@ -124,9 +125,9 @@ pub struct Bridge {
 pub(crate) struct ModulePlace {
     /// Place of its left end `[m]`.
     pub left_m: f64,
-    /// Length and depth `[m]`.
+    /// Length, and depth at the left and the right end `[m]`.
     pub length_m: f64,
-    pub depth_m: f64,
+    pub depths_m: [f64; 2],
     /// Lines along, from its left end `[m]`.
     pub lines_x: Vec<f64>,
     /// Mass of the structure, the water's added mass and inertia of roll with it, per metre.
@@ -197,8 +198,8 @@ impl Bridge {
             positions: places.positions(),
             centre_line: places.centre_line(),
             edges: places.edges(),
-            deck_corners: places.end_corners(Grid::deck),
-            bottom_corners: places.end_corners(Grid::bottom),
+            deck_corners: places.deck_corners(),
+            bottom_corners: places.wet_corners(),
             corners: places.corners(),
             rolls: places.rolls(),
             sections: places.sections(),
@@ -241,7 +242,7 @@ impl Bridge {
             .reduce(f64::min)
     }
 
-    /// Whether a motion lifts a corner of a module's bottom above the water; none where no module has a draft.
+    /// Whether a motion lifts a corner of the wet part of a module's bottom above the water; none where no module has a draft.
     pub(crate) fn bottom_emerges(&self, u: &[f64]) -> Option<bool> {
         passes(
             &self.modules,
@@ -363,11 +364,12 @@ impl Places<'_> {
         let mut connectors = Vec::new();
         for j in 1..self.modules.len() {
             let [left, right] = [j - 1, j].map(|j| self.modules.grid(j));
-            let height_m = self.modules.depth_m(j - 1).min(self.modules.depth_m(j));
+            let ends_m = [(j - 1, Side::Right), (j, Side::Left)].map(|(j, side)| self.modules.depth_m(j, side));
+            let height_m = ends_m[0].min(ends_m[1]);
             for &y_m in &self.design.connectors.y_m {
                 if let (Some(left_iy), Some(right_iy)) = (left.y_line(y_m), right.y_line(y_m)) {
-                    let left = self.at_height(j - 1, (left.x.len() - 1, left_iy), height_m);
-                    let right = self.at_height(j, (0, right_iy), height_m);
+                    let left = self.at_height(j - 1, (Side::Right, left_iy), height_m);
+                    let right = self.at_height(j, (Side::Left, right_iy), height_m);
                     connectors.push(LinkRow {
                         place: LinkPlace::Connector {
                             number: connectors.len() + 1,
@@ -384,12 +386,14 @@ impl Places<'_> {
 
     /// Gives the motion along the bridge of a module's end at a height: of its deck, or lower down linear between bottom and
     /// deck, so that two ends that turn together have no elongation between them.
-    fn at_height(&self, j: usize, (ix, iy): (usize, usize), height_m: f64) -> SparseRow {
-        let (grid, share) = (self.modules.grid(j), height_m / self.modules.depth_m(j));
+    fn at_height(&self, j: usize, (side, iy): (Side, usize), height_m: f64) -> SparseRow {
+        let (grid, ix) = (self.modules.grid(j), self.modules.module(j).end_line(side));
+        let depth_m = self.modules.depth_m(j, side);
         let deck = self.of(j, grid.deck(ix, iy), X);
-        if share >= 1.0 {
+        if depth_m - height_m <= SAME_PLACE_M {
             return deck;
         }
+        let share = height_m / depth_m;
         let bottom = self.of(j, grid.bottom(ix, iy), X);
         SparseRow::combine(&[(share, &deck), (1.0 - share, &bottom)])
     }
@@ -459,11 +463,34 @@ impl Places<'_> {
             .collect()
     }
 
-    /// Makes the rows of z at the corners of the modules' ends; `node` is [`Grid::deck`] or [`Grid::bottom`].
-    fn end_corners(&self, node: fn(&Grid, usize, usize) -> NodeId) -> Vec<SparseRow> {
+    /// Makes the rows of [`Bridge::deck_corners`]: those of a module's left end first.
+    fn deck_corners(&self) -> Vec<SparseRow> {
+        self.edges_at(self.ends(), Grid::deck)
+    }
+
+    /// Makes the rows of [`Bridge::bottom_corners`], those of the wet part's left end first; of a dry module those of its own.
+    fn wet_corners(&self) -> Vec<SparseRow> {
+        let of_module = |j: usize| {
+            let (grid, design) = (self.modules.grid(j), self.modules.design(j));
+            let ends = if design.is_dry() {
+                [Some(0), None]
+            } else {
+                design.wet_m().map(|x_m| grid.x_line(x_m))
+            };
+            [(j, ends[0].unwrap_or(0)), (j, ends[1].unwrap_or(grid.x.len() - 1))]
+        };
+        self.edges_at((0..self.modules.len()).flat_map(of_module), Grid::bottom)
+    }
+
+    /// Makes the rows of z at both edges of stations; `node` is [`Grid::deck`] or [`Grid::bottom`].
+    fn edges_at(
+        &self,
+        stations: impl Iterator<Item = (usize, usize)>,
+        node: fn(&Grid, usize, usize) -> NodeId,
+    ) -> Vec<SparseRow> {
         let last = self.modules.lines_y().len() - 1;
-        self.ends()
-            .flat_map(|end| [(end, 0), (end, last)])
+        stations
+            .flat_map(|station| [(station, 0), (station, last)])
             .map(|((j, ix), iy)| self.of(j, node(self.modules.grid(j), ix, iy), Z))
             .collect()
     }
@@ -547,10 +574,10 @@ impl Places<'_> {
             ModulePlace {
                 left_m: self.modules.left_m(j),
                 length_m,
-                depth_m: design.module.depth_m,
+                depths_m: design.module.outline().depths_m(),
                 lines_x: module.grid.x.clone(),
                 structural_mass_kg_m: module.structural_mass_kg() / length_m,
-                added_mass_kg_m: design.m_a(),
+                added_mass_kg_m: design.m_a() * design.wet_share(),
                 roll_inertia_kg_m: module.roll_inertia_kg_m2() / length_m,
                 draft_m: design.draft_m,
                 freeboard_m: design.freeboard_m,

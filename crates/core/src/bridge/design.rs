@@ -2,6 +2,8 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
+mod heights;
+mod wet;
 mod written;
 
 use super::banks::{BankRoom, BankSpec, bank_law, check_banks};
@@ -11,13 +13,14 @@ use super::kinds::{ModuleKind, ModuleRow, key_of};
 use super::supports::{Direction, Supports};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
-use crate::input::{InvalidInput, Problem, SAME_PLACE_M, not_negative, positive};
-use crate::module::{MeshSize, ModuleDesign, lines_across, mesh_module, mesh_size};
+use crate::input::{InvalidInput, Problem, positive};
+use crate::module::{MeshSize, ModuleDesign, ModuleMesh, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
+use wet::OF_DRY;
 use written::WrittenBridge;
 
 /// A bridge of modules side by side, as one of the two forms of its file has it: equal modules, or a row of kinds.
@@ -41,6 +44,10 @@ pub struct BridgeDesign {
     pub added_mass_kg_m: Option<f64>,
     /// Todd's formula for the added mass.
     pub todd: Option<Todd>,
+    /// Where the wet part of the bottom begins, from the module's left end `[m]`; absent: 0.
+    pub wet_from_m: Option<f64>,
+    /// Where it ends `[m]`; absent: the length.
+    pub wet_to_m: Option<f64>,
     /// How both waters are shared among the nodes of the wetted bottom.
     pub water_distribution: WaterDistribution,
     /// Hinges at the bottom of every joint.
@@ -194,10 +201,24 @@ impl BridgeDesign {
     fn check_kind(&self) -> Result<(), InvalidInput> {
         self.module.check().map_err(|e| e.under("module"))?;
         self.check_water()?;
-        for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
-            if let Some(value) = value {
-                positive(key, value)?;
+        let [bottom_m, deck_m] = {
+            let outline = self.module.outline();
+            [outline.bottom_m, outline.deck_m]
+        };
+        for (key, value, heights_m) in [
+            ("draft_m", self.draft_m, bottom_m),
+            ("freeboard_m", self.freeboard_m, deck_m),
+        ] {
+            let Some(value) = value else { continue };
+            positive(key, value)?;
+            if heights_m[0] != heights_m[1] {
+                let allowed =
+                    "nothing of a module whose deck or bottom slopes there: it has no one height above the water";
+                return Err(InvalidInput::new(key, value, allowed).because(Problem::Misplaced));
             }
+        }
+        if let Some(draft) = self.draft_m.filter(|_| self.is_dry()) {
+            return Err(InvalidInput::new("draft_m", draft, OF_DRY).because(Problem::Misplaced));
         }
         Ok(())
     }
@@ -227,7 +248,7 @@ impl BridgeDesign {
         let conflict = |key: &str, found: f64, allowed: String| {
             Err(InvalidInput::new(key, found, allowed).because(Problem::Conflict))
         };
-        let depth_m = self.module.depth_m;
+        let depth_m = self.module.outline().largest_depth_m();
         let rounded = ROUNDED_M.max(ROUNDED * depth_m);
         for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
             if let Some(value) = value.filter(|&value| value > depth_m) {
@@ -249,6 +270,10 @@ impl BridgeDesign {
             let allowed = format!("about {still}, the draft of draft_buoyancy.still_water_draft_m");
             return conflict("draft_m", draft, allowed);
         }
+        if self.is_dry_in_part() {
+            // what holds up the rest is not known
+            return Ok(());
+        }
         let mass_kg = self.structural_mass_kg();
         let of_mass = mass_kg / (WATER_KG_M3 * self.module.length_m * self.module.breadth_m);
         if !(of_mass / FULLNESS..=of_mass * FULLNESS).contains(&draft) {
@@ -262,8 +287,8 @@ impl BridgeDesign {
         Ok(())
     }
 
-    /// Refuses a bridge that supports and hinges leave free to move horizontally, against which water does nothing: it
-    /// has no static case, for its stiffness without connectors is singular.
+    /// Refuses a bridge that supports and hinges leave free to move horizontally, against which water does nothing, or whose dry
+    /// modules are free to fall: it has no static case, for its stiffness without connectors is singular.
     ///
     /// # Errors
     /// [`InvalidInput`] with the key's path.
@@ -289,7 +314,7 @@ impl BridgeDesign {
             let allowed = "y held at both ends in a static case of one module with a single hinge place";
             return Err(InvalidInput::new("supports", "y held at one end", allowed).because(Problem::Conflict));
         }
-        Ok(())
+        self.check_dry_held()
     }
 
     /// Refuses a bridge whose dense matrices would take too much memory: the condensation of a module, and what its
@@ -305,7 +330,7 @@ impl BridgeDesign {
         } = self.variants();
         let lines_y_m = self.joint_lines_y_m();
         let needs = designs.iter().map(|design| {
-            let size = mesh_size(&design.module, &lines_y_m);
+            let size = mesh_size(&design.module, &design.lines_along_m(), &lines_y_m);
             let nodes = (size.lines_along * size.lines_across) as f64;
             let (dofs, condensation) = match model {
                 Model::Full => (size.dofs as f64, 0.0),
@@ -334,26 +359,6 @@ impl BridgeDesign {
             return Err(InvalidInput::new("module.mesh", found, allowed).within_kind(&keys[largest]));
         }
         Ok(())
-    }
-
-    fn check_water(&self) -> Result<(), InvalidInput> {
-        match (self.hydrostatic_stiffness_pa_m, &self.draft_buoyancy) {
-            (Some(p_b), None) => positive("hydrostatic_stiffness_pa_m", p_b).map(|_| ())?,
-            (None, Some(table)) => table.check().map_err(|e| e.under("draft_buoyancy"))?,
-            (found, _) => {
-                let (found, problem) = both_or_neither(found.is_some());
-                let refused = InvalidInput::new("hydrostatic_stiffness_pa_m", found, "either this or draft_buoyancy");
-                return Err(refused.because(problem));
-            }
-        }
-        match (self.added_mass_kg_m, &self.todd) {
-            (Some(m_a), None) => not_negative("added_mass_kg_m", m_a).map(|_| ()),
-            (None, Some(todd)) => todd.check().map_err(|e| e.under("todd")),
-            (found, _) => {
-                let (found, problem) = both_or_neither(found.is_some());
-                Err(InvalidInput::new("added_mass_kg_m", found, "either this or todd").because(problem))
-            }
-        }
     }
 
     /// The hinges of a joint: the last of its own, or the bridge's.
@@ -419,6 +424,11 @@ impl BridgeDesign {
             .collect()
     }
 
+    /// The mesh of the module, with the lines that its joints and its water need; of a row of kinds the first one's.
+    pub fn module_mesh(&self) -> ModuleMesh {
+        mesh_module(&self.module, &self.lines_along_m(), &self.joint_lines_y_m())
+    }
+
     /// Number of positions: the module ends.
     pub fn positions(&self) -> usize {
         self.modules + 1
@@ -441,6 +451,8 @@ impl BridgeDesign {
             draft_buoyancy: kind.draft_buoyancy.clone(),
             added_mass_kg_m: kind.added_mass_kg_m,
             todd: kind.todd,
+            wet_from_m: kind.wet_from_m,
+            wet_to_m: kind.wet_to_m,
             draft_m: kind.draft_m,
             freeboard_m: kind.freeboard_m,
             ..self.clone()
@@ -450,16 +462,19 @@ impl BridgeDesign {
     /// What its modules are built as. In a row of unlike depths connectors reach below decks, at nodes that are then masters.
     pub fn variants(&self) -> Variants {
         let Some(row) = &self.row else {
+            let mut design = self.clone();
+            design.condensation.end_masters |= self.has_unlike_depths();
             return Variants {
-                designs: vec![self.clone()],
+                designs: vec![design],
                 of_module: vec![0; self.modules],
                 keys: vec![String::new()],
             };
         };
         let (built, of_module) = row.built(&self.joint_lines_y_m());
+        let unlike = self.has_unlike_depths();
         let design = |(_, kind): &(&str, ModuleKind)| {
             let mut design = self.of_kind(kind);
-            design.condensation.end_masters |= row.has_unlike_depths();
+            design.condensation.end_masters |= unlike;
             design
         };
         Variants {
@@ -486,25 +501,6 @@ impl BridgeDesign {
         }
     }
 
-    /// Refuses connectors above a hinge at a joint of unlike depths, where they would act on the hinge itself.
-    ///
-    /// # Errors
-    /// [`InvalidInput`] with the key's path.
-    fn check_unlike_depths(&self) -> Result<(), InvalidInput> {
-        let boxes = self.boxes();
-        let unlike = (2..=self.modules).filter(|joint| boxes[joint - 2].depth_m != boxes[joint - 1].depth_m);
-        for joint in unlike {
-            let hinges = &self.hinges_of(joint).y_m;
-            let above = |y_m: &f64| hinges.iter().any(|hinge| (hinge - y_m).abs() <= SAME_PLACE_M);
-            if let Some(i) = self.connectors.y_m.iter().position(above) {
-                let allowed = format!("a place without a hinge: the depths at joint {joint} are not alike");
-                let refused = InvalidInput::new(format!("connectors.y_m[{i}]"), self.connectors.y_m[i], allowed);
-                return Err(refused.because(Problem::Conflict));
-            }
-        }
-        Ok(())
-    }
-
     /// Length of the shortest module `[m]`.
     pub fn shortest_module_m(&self) -> f64 {
         match &self.row {
@@ -514,15 +510,6 @@ impl BridgeDesign {
                 lengths.fold(f64::INFINITY, f64::min)
             }
         }
-    }
-
-    /// The box of the deepest module, and its still-water draft where its kind has one `[m]`.
-    pub fn deepest(&self) -> (&ModuleDesign, Option<f64>) {
-        let kinds = self.row.iter().flat_map(ModuleRow::kinds_in_row);
-        let each = kinds.map(|kind| (&kind.module, kind.draft_m));
-        each.fold((&self.module, self.draft_m), |a, b| {
-            if b.0.depth_m > a.0.depth_m { b } else { a }
-        })
     }
 
     /// Place of each position along the bridge `[m]`: the left end of each module and the right end of the last. Modules of one
@@ -543,38 +530,11 @@ impl BridgeDesign {
     /// Mass of one module's plates and beams `[kg]`, of a row of kinds the first one's: the sum of `rho t A` and `rho A L`, which is `r^T M r` of a unit heave.
     /// Verified by `tests/solvers/superelement.rs`.
     pub fn structural_mass_kg(&self) -> f64 {
-        mesh_module(&self.module, &self.joint_lines_y_m()).mesh.mass_kg()
-    }
-
-    /// p_b `[Pa/m]`, from the value or the table.
-    pub fn p_b(&self) -> f64 {
-        match (self.hydrostatic_stiffness_pa_m, &self.draft_buoyancy) {
-            (Some(p_b), _) => p_b,
-            (None, Some(table)) => table.slope_n_m() / (self.module.length_m * self.module.breadth_m),
-            (None, None) => f64::NAN,
-        }
-    }
-
-    /// m_a per metre of bridge `[kg/m]`, from the value or Todd's formula.
-    pub fn m_a(&self) -> f64 {
-        match (self.added_mass_kg_m, &self.todd) {
-            (Some(m_a), _) => m_a,
-            (None, Some(todd)) => todd.added_mass_kg_m(self.module.breadth_m),
-            (None, None) => f64::NAN,
-        }
+        self.module_mesh().mesh.mass_kg()
     }
 }
 
 /// A length to the millimetre, for a message.
 fn metres(length_m: f64) -> f64 {
     (length_m * 1e3).round() / 1e3
-}
-
-/// What is wrong where exactly one of two keys is needed and both or neither are given.
-fn both_or_neither(both: bool) -> (&'static str, Problem) {
-    if both {
-        ("both", Problem::Misplaced)
-    } else {
-        ("neither", Problem::Missing)
-    }
 }

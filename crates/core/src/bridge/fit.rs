@@ -7,7 +7,7 @@ use crate::input::{InvalidInput, SAME_PLACE_M, bound};
 use crate::module::Grid;
 
 /// Refuses a grid that does not span the design's module, from 0 to its length and half its breadth to either side, or has
-/// no line across at a hinge or a connector.
+/// no line along where the wet part begins or ends or no line across at a hinge or a connector.
 pub(super) fn check_fit(design: &BridgeDesign, grid: &Grid) -> Result<(), InvalidInput> {
     let (length, half) = (design.module.length_m, 0.5 * design.module.breadth_m);
     for (key, lines, from, to) in [("grid.x", &grid.x, 0.0, length), ("grid.y", &grid.y, -half, half)] {
@@ -20,6 +20,12 @@ pub(super) fn check_fit(design: &BridgeDesign, grid: &Grid) -> Result<(), Invali
                 found,
                 format!("lines from {} to {}", bound(from), bound(to)),
             ));
+        }
+    }
+    for (key, place) in [("wet_from_m", design.wet_from_m), ("wet_to_m", design.wet_to_m)] {
+        if let Some(x_m) = place.filter(|&x_m| grid.x_line(x_m).is_none()) {
+            let allowed = "the place of a line along of the module's mesh";
+            return Err(InvalidInput::new(key, x_m, allowed));
         }
     }
     let banks = design.banks.iter().enumerate();

@@ -4,7 +4,7 @@
 
 use super::buoyancy::{DraftBuoyancy, Todd};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M};
-use crate::module::ModuleDesign;
+use crate::module::{ModuleDesign, Outline};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -27,6 +27,12 @@ pub struct ModuleKind {
     /// Todd's formula for the added mass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub todd: Option<Todd>,
+    /// Where the wet part of the bottom begins, from its left end `[m]`; absent: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wet_from_m: Option<f64>,
+    /// Where it ends `[m]`; absent: the length. A module whose wet part begins where it ends is dry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wet_to_m: Option<f64>,
     /// Still-water draft `[m]`, for reporting whether the bottom emerged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draft_m: Option<f64>,
@@ -66,6 +72,33 @@ pub struct ModuleRow {
     pub kinds: BTreeMap<String, ModuleKind>,
     /// The modules from left to right.
     pub runs: Vec<ModuleRun>,
+}
+
+impl ModuleKind {
+    /// Its mirror image along x, ends exchanged; none where that is the kind itself.
+    fn mirrored(&self) -> Option<Self> {
+        let length_m = self.module.length_m;
+        let [from_m, to_m] = wet_m(length_m, [self.wet_from_m, self.wet_to_m]);
+        let is_own_image = (from_m - (length_m - to_m)).abs() <= SAME_PLACE_M;
+        let module = self.module.mirrored();
+        if is_own_image && module.is_none() {
+            return None;
+        }
+        let mut mirrored = self.clone();
+        if let Some(module) = module {
+            mirrored.module = module;
+        }
+        if !is_own_image {
+            mirrored.wet_from_m = Some(length_m - to_m);
+            mirrored.wet_to_m = Some(length_m - from_m);
+        }
+        Some(mirrored)
+    }
+}
+
+/// Where the wet part of a bottom begins and ends `[m]`; the whole where nothing is given.
+pub(super) fn wet_m(length_m: f64, [from_m, to_m]: [Option<f64>; 2]) -> [f64; 2] {
+    [from_m.unwrap_or(0.0), to_m.unwrap_or(length_m)]
 }
 
 impl ModuleRow {
@@ -183,8 +216,8 @@ impl ModuleRow {
             };
             let mut own = kind.clone();
             own.module.lines_y_m.extend(self.lines_of_others(kind, joint_lines_y_m));
-            if let Some(mirrored) = own.module.mirrored().filter(|_| run.mirrored) {
-                own.module = mirrored;
+            if let Some(mirrored) = own.mirrored().filter(|_| run.mirrored) {
+                own = mirrored;
             }
             let known = built.iter().position(|(_, kind)| *kind == own);
             let number = known.unwrap_or(built.len());
@@ -196,10 +229,12 @@ impl ModuleRow {
         (built, of_module)
     }
 
-    /// Whether some kinds have other depths than others.
-    pub(super) fn has_unlike_depths(&self) -> bool {
-        let depths: Vec<f64> = self.kinds.values().map(|kind| kind.module.depth_m).collect();
-        depths.windows(2).any(|pair| pair[0] != pair[1])
+    /// The outline of each module as it stands there.
+    pub(super) fn outlines(&self) -> impl Iterator<Item = Outline> {
+        self.each().filter_map(|run| {
+            let outline = self.kinds.get(&run.kind)?.module.outline();
+            Some(if run.mirrored { outline.mirrored() } else { outline })
+        })
     }
 }
 

@@ -48,7 +48,7 @@ pub struct Link {
 /// The mesh of a whole bridge and its motion. Nodes are numbered module after module, each in the order of its mesh.
 #[derive(Debug)]
 pub struct MeshedBridge {
-    /// Places of the nodes `[m]`.
+    /// Places of the nodes `[m]`; heights above the bottom of the bridge's left end, bottoms meeting in the hinges.
     pub nodes_m: Vec<[f64; 3]>,
     /// Shells, module after module.
     pub shells: Vec<ShellCell>,
@@ -96,9 +96,10 @@ impl MeshedBridge {
             Some(*nodes)
         }));
         let each = || modules.each().enumerate();
+        let bases_m = design.bases_m();
         let nodes_m = each().flat_map(|(j, module)| {
-            let left_m = modules.left_m(j);
-            module.mesh.nodes.iter().map(move |p| [p.x + left_m, p.y, p.z])
+            let (left_m, base_m) = (modules.left_m(j), bases_m[j]);
+            module.mesh.nodes.iter().map(move |p| [p.x + left_m, p.y, p.z + base_m])
         });
         let of_node = |j: usize, node: NodeId| first_node[j] + node.0;
         let shells = each().flat_map(|(j, module)| {

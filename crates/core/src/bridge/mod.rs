@@ -6,6 +6,7 @@ mod assembly;
 mod banks;
 mod buoyancy;
 mod design;
+mod dry;
 mod fit;
 mod joints;
 mod kinds;
@@ -17,6 +18,8 @@ mod placement;
 mod prepared;
 mod product;
 mod provenance;
+#[cfg(test)]
+mod ramps;
 mod row;
 mod stresses;
 mod supports;

@@ -4,7 +4,7 @@
 //! bridge.
 
 use super::fit::check_fit;
-use super::prepared::PreparedModule;
+use super::prepared::{PreparedModule, Side};
 use super::{BridgeDesign, BridgeError, Model};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M};
 use crate::module::Grid;
@@ -81,9 +81,9 @@ impl<'a> Modules<'a> {
         self.positions_m[j]
     }
 
-    /// Depth of a module `[m]`.
-    pub(super) fn depth_m(&self, j: usize) -> f64 {
-        self.design(j).module.depth_m
+    /// Depth of a module at an end `[m]`.
+    pub(super) fn depth_m(&self, j: usize, side: Side) -> f64 {
+        self.design(j).module.outline().depths_m()[side as usize]
     }
 
     /// The design of a module.

@@ -98,7 +98,7 @@ pub(super) fn pins(
 
 /// The parts of all joints.
 pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
-    let (mut first_pin, boxes) = (0, design.boxes());
+    let (mut first_pin, outlines) = (0, design.outlines());
     (2..=design.modules)
         .map(|joint| {
             let parts = JointParts {
@@ -107,7 +107,7 @@ pub(crate) fn joint_parts(design: &BridgeDesign) -> Vec<JointParts> {
                 connectors_y_m: design.connectors.y_m.clone(),
                 first_pin,
                 pins_y_m: design.hinges_of(joint).y_m.clone(),
-                depth_m: boxes[joint - 2].depth_m.min(boxes[joint - 1].depth_m),
+                depth_m: outlines[joint - 2].depths_m()[1].min(outlines[joint - 1].depths_m()[0]),
             };
             first_pin += parts.pins_y_m.len();
             parts

@@ -2,10 +2,11 @@
 //!
 //! Knows which nodes carry hinges, connectors, wheels, supports and water. Does not know neighbours.
 
+use super::dry::{dry_weight, resultants};
 use super::fit::check_fit;
 use super::{BridgeDesign, BridgeError, Model};
 use crate::fem::{FemError, MassKind, Mesh, NodeId, SparseRow, SymmetricMatrix, assemble};
-use crate::module::{Grid, ModuleMesh, mesh_module};
+use crate::module::{Grid, ModuleMesh};
 use crate::superelement::SuperElement;
 use crate::water::spread;
 use faer::{Mat, MatRef};
@@ -41,6 +42,9 @@ pub struct PreparedModule {
     /// Resultants of the water's force on the module for unit dofs: up, about x, about y (through the module's left
     /// end, centre line).
     pub(super) water: [SparseRow; 3],
+    /// Weight of the part that no water carries, a load by the dofs (up) `[N]`, see [`PreparedModule::dry_weight`].
+    pub(super) dry_weight: SparseRow,
+    dry_resultants: [f64; 3],
     /// Surge, sway and yaw about the left end's centre: motions against which neither plates nor water do anything.
     pub(super) horizontal_rigid: [Vec<f64>; 3],
     structural_mass_kg: f64,
@@ -55,7 +59,7 @@ impl PreparedModule {
     /// [`BridgeError`].
     pub fn new(design: &BridgeDesign, model: Model) -> Result<Self, BridgeError> {
         design.check()?;
-        Self::from_mesh(design, mesh_module(&design.module, &design.joint_lines_y_m()), model)
+        Self::from_mesh(design, design.module_mesh(), model)
     }
 
     /// Prepares the modules of a bridge, those of each of its [`BridgeDesign::variants`] once.
@@ -78,7 +82,8 @@ impl PreparedModule {
     /// bottom, p_b and m_a the design's), so that beams in place of plates meet the same bridge, statics and crossings. Of
     /// the design's module only length, breadth and depth count here `[m]`, and `mesh.elements_along` for the places of
     /// [`crate::analysis::statics::StaticSolver::creeping_peak_m`]. The grid spans that length and breadth, bottom nodes lie
-    /// at z = 0 and deck nodes at the depth, and a line across is where a hinge or a connector is.
+    /// at the heights of [`Outline`](crate::module::Outline), as deck nodes do, a line along is where the wet part begins or ends, and a
+    /// line across where a hinge or a connector is.
     ///
     /// # Errors
     /// [`BridgeError::Design`] where the design, the grid or their fit is refused, [`BridgeError::Fem`] where an element is
@@ -86,13 +91,14 @@ impl PreparedModule {
     /// `tests/analytic/beam_module.rs`.
     pub fn from_mesh(design: &BridgeDesign, meshed: ModuleMesh, model: Model) -> Result<Self, BridgeError> {
         design.check()?;
-        meshed.check(design.module.depth_m)?;
+        let outline = design.module.outline();
+        meshed.check(&outline)?;
         check_fit(design, &meshed.grid)?;
         let (grid, mesh) = (meshed.grid, meshed.mesh);
         let Afloat { k, m, mass, water } = Afloat::new(design, &grid, &mesh)?;
         let heave = heave(&mesh);
         let structural_mass_kg = mass.form(&heave, &heave);
-        let roll = roll(&mesh, design.module.depth_m);
+        let roll = roll(&mesh, outline.middle_m());
         let roll_inertia_kg_m2 = m.form(&roll, &roll);
         let reduced = match model {
             Model::Full => Reduced::not_at_all(k, m),
@@ -100,6 +106,9 @@ impl PreparedModule {
         };
         let full_dofs = mesh.dofs();
         let water = water.resultants(&mesh).map(|total| reduced.force(total));
+        let weight = dry_weight(design, &mesh)?;
+        let dry_resultants = weight.as_ref().map_or([0.0; 3], |load| resultants(load, &mesh));
+        let dry_weight = weight.map_or_else(SparseRow::default, |load| reduced.force(load));
         let horizontal_rigid = horizontal_rigid(&mesh).map(|motion| reduced.motion(&motion));
         let Reduced {
             k,
@@ -116,6 +125,8 @@ impl PreparedModule {
             direct,
             condensed,
             water,
+            dry_weight,
+            dry_resultants,
             horizontal_rigid,
             structural_mass_kg,
             roll_inertia_kg_m2,
@@ -123,12 +134,24 @@ impl PreparedModule {
         })
     }
 
+    /// Weight of what stands beside the wet part of the bottom, as a load by the dofs, up `[N or N m]`; empty where nothing is
+    /// dry. Verified by `crates/core/src/bridge/ramps.rs`.
+    /// Equation (W3).
+    pub fn dry_weight(&self) -> &SparseRow {
+        &self.dry_weight
+    }
+
+    /// Resultants of that weight about the left end's centre: up `[N]`, about x and about y `[N m]`.
+    pub fn dry_resultants(&self) -> [f64; 3] {
+        self.dry_resultants
+    }
+
     /// `r^T M r` of a unit heave, structure alone `[kg]`.
     pub fn structural_mass_kg(&self) -> f64 {
         self.structural_mass_kg
     }
 
-    /// Inertia of a unit roll about the axis at mid-depth, water included `[kg m^2]`.
+    /// Inertia of a unit roll about the axis at the mean height of its corners, water included `[kg m^2]`.
     pub(crate) fn roll_inertia_kg_m2(&self) -> f64 {
         self.roll_inertia_kg_m2
     }
@@ -227,16 +250,16 @@ struct Water {
 }
 
 impl Water {
-    /// Spreads the design's p_b and m_a over the bottom of a module of `n` dofs.
+    /// Spreads the design's p_b and m_a over the wet part of the bottom of a module of `n` dofs.
     fn under(design: &BridgeDesign, grid: &Grid, n: usize) -> Result<Self, FemError> {
-        let m_a_area = design.m_a() / design.module.breadth_m;
+        let (wet_m, m_a_area) = (design.wet_m(), design.m_a() / design.module.breadth_m);
         let on_z = |entries: Vec<(NodeId, NodeId, f64)>| {
             let entries: Vec<_> = entries.iter().map(|(a, b, v)| (a.dof(Z), b.dof(Z), *v)).collect();
             SymmetricMatrix::from_entries(n, &entries)
         };
         Ok(Self {
-            k: on_z(spread(grid, design.p_b(), design.water_distribution))?,
-            m: on_z(spread(grid, m_a_area, design.water_distribution))?,
+            k: on_z(spread(grid, wet_m, design.p_b(), design.water_distribution))?,
+            m: on_z(spread(grid, wet_m, m_a_area, design.water_distribution))?,
         })
     }
 
@@ -324,12 +347,12 @@ fn heave(mesh: &Mesh) -> Vec<f64> {
     (0..mesh.dofs()).map(|i| if i % 6 == Z { 1.0 } else { 0.0 }).collect()
 }
 
-/// Gives a unit roll of all nodes about the axis at mid-depth.
-fn roll(mesh: &Mesh, depth_m: f64) -> Vec<f64> {
+/// Gives a unit roll of all nodes about the axis at a height `[m]`.
+fn roll(mesh: &Mesh, middle_m: f64) -> Vec<f64> {
     (0..mesh.dofs())
         .map(|i| match (mesh.nodes[i / 6], i % 6) {
             (p, Z) => p.y,
-            (p, Y) => 0.5 * depth_m - p.z,
+            (p, Y) => middle_m - p.z,
             (_, 3) => 1.0,
             _ => 0.0,
         })

@@ -2,16 +2,16 @@
 //!
 //! Knows lines, plates and beams. Every line of a wall, a stiffener or a given extra place is a mesh line.
 
-use super::ModuleDesign;
 use super::grid::{Grid, ModuleMesh, cells, line};
+use super::{ModuleDesign, Outline};
 use crate::fem::{BeamSection, Mesh, NodeId, ShellSection};
 use crate::input::SAME_PLACE_M;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Meshes a checked design, with extra lines across at `extra_y` `[m]`.
-pub fn mesh_module(design: &ModuleDesign, extra_y: &[f64]) -> ModuleMesh {
-    Builder::new(design, extra_y).build()
+/// Meshes a checked design, with extra lines along at `extra_x` and across at `extra_y` `[m]`.
+pub fn mesh_module(design: &ModuleDesign, extra_x: &[f64], extra_y: &[f64]) -> ModuleMesh {
+    Builder::new(design, extra_x, extra_y).build()
 }
 
 /// Size of a mesh that has not been made.
@@ -26,8 +26,8 @@ pub(crate) struct MeshSize {
 }
 
 /// The size of the mesh of [`mesh_module`], counted from its lines.
-pub(crate) fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
-    let Builder { x, y, z, .. } = Builder::new(design, extra_y);
+pub(crate) fn mesh_size(design: &ModuleDesign, extra_x: &[f64], extra_y: &[f64]) -> MeshSize {
+    let Builder { x, y, over, .. } = Builder::new(design, extra_x, extra_y);
     let (nx, ny) = (x.len(), y.len());
     let plates = |lines: &[f64], walls: &[f64]| {
         let at: BTreeSet<usize> = walls.iter().filter_map(|&wall| line(lines, wall)).collect();
@@ -41,13 +41,13 @@ pub(crate) fn mesh_size(design: &ModuleDesign, extra_y: &[f64]) -> MeshSize {
     MeshSize {
         lines_along: nx,
         lines_across: ny,
-        dofs: 6 * (2 * nx * ny + (z.len() - 2) * on_plates),
+        dofs: 6 * (2 * nx * ny + (over - 1) * on_plates),
     }
 }
 
 /// The lines across of the mesh of [`mesh_module`] `[m]`.
 pub(crate) fn lines_across(design: &ModuleDesign, extra_y: &[f64]) -> Vec<f64> {
-    Builder::new(design, extra_y).y
+    Builder::new(design, &[], extra_y).y
 }
 
 /// Sorted lines without near-duplicates, each interval divided into `parts(length)` equal parts.
@@ -67,37 +67,41 @@ struct Builder<'a> {
     design: &'a ModuleDesign,
     x: Vec<f64>,
     y: Vec<f64>,
-    z: Vec<f64>,
+    /// Elements over the depth.
+    over: usize,
+    outline: Outline,
     mesh: Mesh,
     nodes: BTreeMap<(usize, usize, usize), NodeId>,
 }
 
 impl<'a> Builder<'a> {
-    fn new(design: &'a ModuleDesign, extra_y: &[f64]) -> Self {
+    fn new(design: &'a ModuleDesign, extra_x: &[f64], extra_y: &[f64]) -> Self {
         let (l, half) = (design.length_m, 0.5 * design.breadth_m);
         let mut x = vec![0.0, l];
         x.extend(&design.transverse_walls.x_m);
         x.extend(&design.stiffeners.transverse_x_m);
+        x.extend(extra_x);
         let longest = l / design.mesh.elements_along as f64;
         let x = divide(x, |length| (length / longest - 1e-6).ceil() as usize);
         let mut y = vec![-half, half, 0.0];
         y.extend(design.lines_across_m());
         y.extend(extra_y);
         let y = divide(y, |_| design.mesh.elements_between_lines);
-        let over = design.mesh.elements_over_depth;
-        let z = (0..=over).map(|k| design.depth_m * k as f64 / over as f64).collect();
         Self {
             design,
             x,
             y,
-            z,
+            over: design.mesh.elements_over_depth,
+            outline: design.outline(),
             mesh: Mesh::default(),
             nodes: BTreeMap::new(),
         }
     }
 
     fn node(&mut self, ix: usize, iy: usize, iz: usize) -> NodeId {
-        let place = Vector3::new(self.x[ix], self.y[iy], self.z[iz]);
+        let (x, over) = (self.x[ix], self.over as f64);
+        let (bottom, deck) = (self.outline.bottom_at_m(x), self.outline.deck_at_m(x));
+        let place = Vector3::new(x, self.y[iy], bottom + (deck - bottom) * iz as f64 / over);
         let mesh = &mut self.mesh;
         *self.nodes.entry((ix, iy, iz)).or_insert_with(|| mesh.add_node(place))
     }
@@ -113,7 +117,7 @@ impl<'a> Builder<'a> {
     }
 
     fn build(mut self) -> ModuleMesh {
-        let (nx, ny, top) = (self.x.len(), self.y.len(), self.z.len() - 1);
+        let (nx, ny, top) = (self.x.len(), self.y.len(), self.over);
         let level = |b: &mut Self, iz: usize| -> Vec<NodeId> {
             (0..nx)
                 .flat_map(|i| (0..ny).map(move |j| (i, j)))
@@ -155,7 +159,7 @@ impl<'a> Builder<'a> {
         ]);
         for (j, thickness) in plates {
             let section = self.plate(thickness);
-            for (i, k) in cells(self.x.len(), self.z.len()) {
+            for (i, k) in cells(self.x.len(), self.over + 1) {
                 let corners = [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)].map(|(i, k)| self.node(i, j, k));
                 self.mesh.add_shell(corners, section);
             }
@@ -176,7 +180,7 @@ impl<'a> Builder<'a> {
         ]);
         for (i, thickness) in plates {
             let section = self.plate(thickness);
-            for (j, k) in cells(self.y.len(), self.z.len()) {
+            for (j, k) in cells(self.y.len(), self.over + 1) {
                 let corners = [(j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)].map(|(j, k)| self.node(i, j, k));
                 self.mesh.add_shell(corners, section);
             }
@@ -207,7 +211,7 @@ impl<'a> Builder<'a> {
             .iter()
             .filter_map(|&y| line(&self.y, y))
             .collect();
-        let (nx, ny, top) = (self.x.len(), self.y.len(), self.z.len() - 1);
+        let (nx, ny, top) = (self.x.len(), self.y.len(), self.over);
         for iz in [0, top] {
             for &i in &across {
                 for j in 0..ny - 1 {
@@ -245,6 +249,8 @@ mod tests {
             length_m: 6.0,
             breadth_m: 8.0,
             depth_m: 1.0,
+            deck_right_m: None,
+            bottom_right_m: None,
             deck_thickness_m: 0.003,
             bottom_thickness_m: 0.003,
             side_thickness_m: 0.003,
@@ -277,8 +283,8 @@ mod tests {
         for (along, between, over, walls) in [(1, 1, 1, vec![]), (4, 2, 3, vec![0.5, 1.5]), (3, 1, 2, vec![0.0, -4.0])]
         {
             let design = module(along, between, over, &walls);
-            let made = mesh_module(&design, &[1.25]);
-            let size = mesh_size(&design, &[1.25]);
+            let made = mesh_module(&design, &[0.7], &[1.25]);
+            let size = mesh_size(&design, &[0.7], &[1.25]);
             assert_eq!(size.dofs, made.mesh.dofs());
             assert_eq!(
                 (size.lines_along, size.lines_across),

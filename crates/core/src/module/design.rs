@@ -2,12 +2,13 @@
 //!
 //! Knows which numbers describe the box and refuses those that cannot. Does not know water, hinges or connectors.
 
-use crate::input::{InvalidInput, SAME_PLACE_M, apart, not_negative, positive, within};
+use super::Outline;
+use crate::input::{InvalidInput, SAME_PLACE_M, apart, bound, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A closed box of plates with walls and stiffeners; x along the bridge from 0 to `length_m`, y across from the centre
-/// line, z up from the bottom plate.
+/// line, z up from the bottom plate of the left end. Deck and bottom are plane between the ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModuleDesign {
@@ -15,8 +16,14 @@ pub struct ModuleDesign {
     pub length_m: f64,
     /// Breadth across the bridge `[m]`.
     pub breadth_m: f64,
-    /// Depth from bottom plate to deck plate `[m]`.
+    /// Depth from bottom plate to deck plate `[m]`, at the left end.
     pub depth_m: f64,
+    /// Height of the deck at the right end above the bottom of the left end `[m]`; absent: `depth_m`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deck_right_m: Option<f64>,
+    /// Height of the bottom at the right end above that of the left end `[m]`; absent: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bottom_right_m: Option<f64>,
     /// Thickness of the deck plate `[m]`.
     pub deck_thickness_m: f64,
     /// Thickness of the bottom plate `[m]`.
@@ -131,6 +138,7 @@ impl ModuleDesign {
                 ));
             }
         }
+        self.check_right_end()?;
         positive("deck_thickness_m", self.deck_thickness_m)?;
         positive("bottom_thickness_m", self.bottom_thickness_m)?;
         positive("side_thickness_m", self.side_thickness_m)?;
@@ -158,6 +166,36 @@ impl ModuleDesign {
         self.mesh.check().map_err(|e| e.under("mesh"))
     }
 
+    /// Refuses a right end whose deck is not above its bottom, or a slope above one in one.
+    fn check_right_end(&self) -> Result<(), InvalidInput> {
+        let Outline { bottom_m, deck_m, .. } = self.outline();
+        within("bottom_right_m", bottom_m[1], -self.length_m, self.length_m)?;
+        let least = bottom_m[1] + 4.0 * SAME_PLACE_M;
+        let (key, right_m) = ("deck_right_m", deck_m[1]);
+        match self.deck_right_m {
+            Some(_) if right_m > least => within(key, right_m, deck_m[0] - self.length_m, deck_m[0] + self.length_m)?,
+            None if right_m > least => right_m,
+            Some(_) => {
+                let allowed = format!("a number above {}, the bottom there", bound(bottom_m[1]));
+                return Err(InvalidInput::new(key, right_m, allowed));
+            }
+            None => {
+                let allowed = format!("a number below {}, the deck there", bound(right_m));
+                return Err(InvalidInput::new("bottom_right_m", bottom_m[1], allowed));
+            }
+        };
+        Ok(())
+    }
+
+    /// The heights of its deck and its bottom.
+    pub fn outline(&self) -> Outline {
+        Outline {
+            length_m: self.length_m,
+            bottom_m: [0.0, self.bottom_right_m.unwrap_or(0.0)],
+            deck_m: [self.depth_m, self.deck_right_m.unwrap_or(self.depth_m)],
+        }
+    }
+
     /// Lines across of its walls, its stiffeners and its mesh `[m]`; the mesh has more at the edges and the centre.
     pub(crate) fn lines_across_m(&self) -> impl Iterator<Item = f64> {
         let stiffened = self.stiffeners.longitudinal_y_m.iter();
@@ -177,10 +215,17 @@ impl ModuleDesign {
             image(places).iter().all(own)
         };
         let (walls, beams) = (&self.transverse_walls.x_m, &self.stiffeners.transverse_x_m);
-        if is_own_image(walls) && is_own_image(beams) {
+        let outline = self.outline();
+        if is_own_image(walls) && is_own_image(beams) && outline.is_level() {
             return None;
         }
         let mut mirrored = self.clone();
+        if !outline.is_level() {
+            let Outline { bottom_m, deck_m, .. } = outline.mirrored();
+            mirrored.depth_m = deck_m[0];
+            mirrored.deck_right_m = Some(deck_m[1]);
+            mirrored.bottom_right_m = Some(bottom_m[1]);
+        }
         mirrored.transverse_walls.x_m = image(walls);
         mirrored.stiffeners.transverse_x_m = image(beams);
         Some(mirrored)

@@ -2,6 +2,7 @@
 //!
 //! Knows lines along and across and the two nodes at each crossing of them. Does not know what joins the nodes.
 
+use super::Outline;
 use crate::fem::{Mesh, NodeId};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M};
 
@@ -79,6 +80,11 @@ impl Grid {
         line(&self.y, y_m)
     }
 
+    /// Number of the line along at `x_m`, where there is one.
+    pub fn x_line(&self, x_m: f64) -> Option<usize> {
+        line(&self.x, x_m)
+    }
+
     /// The centre line as lines across with their weights: the line at y = 0, or between its two neighbours where there is
     /// none.
     pub(crate) fn centre(&self) -> Vec<(f64, usize)> {
@@ -90,9 +96,12 @@ impl Grid {
         vec![(1.0 - share, right - 1), (share, right)]
     }
 
-    /// Bottom cells: their corner nodes in cyclic order and their area `[m^2]`.
-    pub(crate) fn bottom_cells(&self) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
-        cells(self.x.len(), self.y.len()).map(|(i, j)| {
+    /// Bottom cells between two places along `[m]`, which are lines: their corner nodes in cyclic order and their area in
+    /// plan `[m^2]`.
+    pub(crate) fn bottom_cells(&self, [from_m, to_m]: [f64; 2]) -> impl Iterator<Item = ([NodeId; 4], f64)> + '_ {
+        let middle_m = |i: usize| 0.5 * (self.x[i] + self.x[i + 1]);
+        let within = move |(i, _): &(usize, usize)| middle_m(*i) > from_m && middle_m(*i) < to_m;
+        cells(self.x.len(), self.y.len()).filter(within).map(|(i, j)| {
             let area = (self.x[i + 1] - self.x[i]) * (self.y[j + 1] - self.y[j]);
             (
                 [
@@ -118,11 +127,12 @@ pub struct ModuleMesh {
 
 impl ModuleMesh {
     /// Refuses a mesh whose elements or grid name nodes that it does not have, and a grid that does not stand where its
-    /// nodes are: bottom nodes at `(x[i], y[j], 0)`, deck nodes at `(x[i], y[j], depth_m)`.
+    /// nodes are: bottom nodes at `(x[i], y[j])` at the height that the outline's bottom has there, deck nodes at that of its
+    /// deck.
     ///
     /// # Errors
     /// [`InvalidInput`] with the element or the node.
-    pub(crate) fn check(&self, depth_m: f64) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self, outline: &Outline) -> Result<(), InvalidInput> {
         let Self { mesh, grid } = self;
         grid.check().map_err(|e| e.under("grid"))?;
         let count = mesh.nodes.len();
@@ -144,9 +154,11 @@ impl ModuleMesh {
                 ));
             }
         }
-        for ((key, nodes), z) in levels.iter().zip([depth_m, 0.0]) {
+        let heights: [fn(&Outline, f64) -> f64; 2] = [Outline::deck_at_m, Outline::bottom_at_m];
+        for ((key, nodes), height) in levels.iter().zip(heights) {
             for (i, &node) in nodes.iter().enumerate() {
                 let (x, y) = (grid.x[i / grid.y.len()], grid.y[i % grid.y.len()]);
+                let z = height(outline, x);
                 let place = mesh.place(node);
                 // a place that is not a number is no place either
                 let there = [place.x - x, place.y - y, place.z - z]

@@ -6,10 +6,12 @@
 mod box_mesh;
 mod design;
 mod grid;
+mod outline;
 mod plates;
 
 pub use box_mesh::mesh_module;
 pub(crate) use box_mesh::{MeshSize, lines_across, mesh_size};
 pub use design::{LongitudinalWalls, Material, MeshDesign, ModuleDesign, Stiffeners, TransverseWalls};
 pub use grid::{Grid, ModuleMesh};
+pub use outline::Outline;
 pub use plates::Plate;

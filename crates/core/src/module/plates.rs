@@ -2,7 +2,7 @@
 //!
 //! Knows the box's planes. Does not know how a plate is meshed.
 
-use super::ModuleDesign;
+use super::{ModuleDesign, Outline};
 use crate::input::SAME_PLACE_M;
 use nalgebra::Vector3;
 
@@ -59,13 +59,19 @@ impl Plate {
             same.then_some(at)
         };
         let is = |at: f64, place: f64| (at - place).abs() <= SAME_PLACE_M;
-        match (plane(0), plane(1), plane(2)) {
-            (.., Some(z)) if is(z, 0.0) => Self::Bottom,
-            (.., Some(z)) if is(z, design.depth_m) => Self::Deck,
-            (_, Some(y), _) if is(y.abs(), 0.5 * design.breadth_m) => Self::Side,
-            (_, Some(_), _) => Self::LongitudinalWall,
-            (Some(x), ..) if is(x, 0.0) || is(x, design.length_m) => Self::End,
-            (Some(_), ..) => Self::TransverseWall,
+        let outline = design.outline();
+        let lies = |height: fn(&Outline, f64) -> f64| corners.iter().all(|c| is(c.z, height(&outline, c.x)));
+        if lies(Outline::bottom_at_m) {
+            return Self::Bottom;
+        }
+        if lies(Outline::deck_at_m) {
+            return Self::Deck;
+        }
+        match (plane(0), plane(1)) {
+            (_, Some(y)) if is(y.abs(), 0.5 * design.breadth_m) => Self::Side,
+            (_, Some(_)) => Self::LongitudinalWall,
+            (Some(x), _) if is(x, 0.0) || is(x, design.length_m) => Self::End,
+            (Some(_), _) => Self::TransverseWall,
             _ => Self::Other,
         }
     }

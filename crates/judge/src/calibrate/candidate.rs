@@ -79,7 +79,8 @@ impl Candidate {
             self.design.module.material.density_kg_m3 *= value / mass_kg;
         } else {
             self.design.todd = None;
-            self.design.added_mass_kg_m = Some(value - mass_kg / self.design.module.length_m);
+            self.design.added_mass_kg_m =
+                Some((value - mass_kg / self.design.module.length_m) / self.design.wet_share());
         }
     }
 

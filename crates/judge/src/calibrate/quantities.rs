@@ -21,7 +21,9 @@ pub(super) fn quantity(design: &BridgeDesign, name: &str) -> Option<f64> {
     match name {
         _ if design.row.is_some() => None,
         "structural_mass_kg" => Some(design.structural_mass_kg()),
-        "total_mass_kg_m" => Some(design.structural_mass_kg() / design.module.length_m + design.m_a()),
+        "total_mass_kg_m" => {
+            Some(design.structural_mass_kg() / design.module.length_m + design.m_a() * design.wet_share())
+        }
         _ => None,
     }
 }

@@ -76,7 +76,7 @@ impl Doubts {
                 "below 1000 N, the weight of a person: is it in kN?",
             );
         }
-        let depth_m = job.bridge.design.deepest().0.depth_m;
+        let depth_m = job.bridge.design.deepest_m().0;
         if let Some((tension, compression)) = job.gaps_m() {
             for (key, gap) in [("gap_tension_m", tension), ("gap_compression_m", compression)] {
                 self.note(gap > depth_m, key, gap, "above the depth of a module: is it in mm?");

@@ -94,6 +94,15 @@
       up = w.reduce((a, v) => Math.max(a, -v), 0),
       most = force.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
     const tall = Math.max(1, Math.round((0.024 * length) / bridge.depth_m));
+    // of each module the heights of its bottom at the left and the right end, then of its deck
+    const level = [0, 0, bridge.depth_m, bridge.depth_m],
+      heights = d3.range(P - 1).map(i => bridge.module_heights_m?.[i] ?? level),
+      low = Math.min(0, ...heights.flat()),
+      high = Math.max(...heights.flat());
+    /** Height of the bottom at a position. */
+    const bottomAt = p => (p < P - 1 ? heights[p][0] : heights[p - 1][1]);
+    /** Height of the lower deck at a position. */
+    const deckAt = p => Math.min(p > 0 ? heights[p - 1][3] : Infinity, p < P - 1 ? heights[p][2] : Infinity);
     let part = {},
       width = 0,
       s = 1,
@@ -101,6 +110,7 @@
       left = 0,
       base = 0,
       thick = 0,
+      px = 0,
       bars = 0;
     const X = x => left + x * s,
       names = ['time', 'front axle', 'deepest', 'highest', 'largest compression', 'largest tension'];
@@ -111,10 +121,11 @@
       left = Math.max(30, 0.045 * width);
       s = (width - 2 * left) / length;
       thick = Math.max(7, bridge.depth_m * tall * s);
+      px = thick / bridge.depth_m;
       const head = Math.max(18, 0.03 * width) + 12,
         top = head + up * E * s;
-      base = top + thick;
-      const floor = base + Math.max(down * E * s, 0.03 * width) + 8,
+      base = top + high * px;
+      const floor = base - low * px + Math.max(down * E * s, 0.03 * width) + 8,
         ruler = floor + 14,
         barTop = ruler + 44,
         reach = 34;
@@ -169,10 +180,12 @@
         svg('line', { class: 'waterline', x1: 0, x2: width, y1: water, y2: water }),
         svg('line', { class: 'rest', x1: X(0), x2: X(length), y1: base, y2: base }),
         [
-          [0, X(0)],
-          [X(length), width],
-        ].map(([a, b]) => svg('line', { class: 'bank', x1: a, x2: b, y1: base - thick, y2: base - thick })),
-        banks.map(b => spring(X(xs[b.position - 1]), base + b.clearance_m * E * s, b.bank)),
+          [0, X(0), deckAt(0)],
+          [X(length), width, deckAt(P - 1)],
+        ].map(([a, b, z]) => svg('line', { class: 'bank', x1: a, x2: b, y1: base - z * px, y2: base - z * px })),
+        banks.map(b =>
+          spring(X(xs[b.position - 1]), base - bottomAt(b.position - 1) * px + b.clearance_m * E * s, b.bank),
+        ),
         part.modules,
         part.body,
         part.wheels,
@@ -227,13 +240,15 @@
       part.node = node;
     }
 
-    /** The deck's height above its rest, down positive, under x: the module's own line; nothing off the bridge. */
-    function sink(f, x) {
-      if (x <= xs[0] || x >= length) return 0;
+    /** Where the deck is drawn under x: the module's own line; off the bridge that of its end at rest. */
+    function deckY(f, x) {
+      if (x <= xs[0]) return base - heights[0][2] * px;
+      if (x >= length) return base - heights[P - 2][3] * px;
       let i = 0;
       while (i < P - 2 && xs[i + 1] <= x) i++;
-      const t = (x - xs[i]) / (xs[i + 1] - xs[i]);
-      return between(w, f, i, P) * (1 - t) + between(w, f, i + 1, P) * t;
+      const t = (x - xs[i]) / (xs[i + 1] - xs[i]),
+        sink = between(w, f, i, P) * (1 - t) + between(w, f, i + 1, P) * t;
+      return base - (heights[i][2] * (1 - t) + heights[i][3] * t) * px + sink * E * s;
     }
 
     function draw(f, time) {
@@ -243,14 +258,15 @@
       part.modules.forEach((node, i) => {
         const a = at(i),
           b = at(i + 1),
-          lean = (bridge.depth_m * (b - a)) / (xs[i + 1] - xs[i]);
+          [z0, z1, d0, d1] = heights[i],
+          lean = (b - a) / (xs[i + 1] - xs[i]);
         node.setAttribute(
           'points',
           [
-            [X(xs[i]), a],
-            [X(xs[i + 1]), b],
-            [X(xs[i + 1]) + lean, b - thick],
-            [X(xs[i]) + lean, a - thick],
+            [X(xs[i]) + lean * z0, a - z0 * px],
+            [X(xs[i + 1]) + lean * z1, b - z1 * px],
+            [X(xs[i + 1]) + lean * d1, b - d1 * px],
+            [X(xs[i]) + lean * d0, a - d0 * px],
           ]
             .map(p => p.map(v => v.toFixed(2)).join())
             .join(' '),
@@ -262,7 +278,7 @@
         const p = bridge.joints[j] - 1,
           k = state[whole * J + j] & 3,
           F = between(force, f, j, J),
-          y = at(p) - thick,
+          y = at(p) - deckAt(p) * px,
           pixels = most > 0 ? (Math.abs(F) / most) * part.reach : 0;
         node.setAttribute('class', `joint ${STATES[k]}`);
         node.setAttribute('d', path(k, part.size));
@@ -278,7 +294,7 @@
       });
       for (const { j, node } of part.wanting) {
         const p = bridge.joints[j] - 1;
-        node.setAttribute('transform', `translate(${X(xs[p]).toFixed(2)},${(at(p) - thick).toFixed(2)})`);
+        node.setAttribute('transform', `translate(${X(xs[p]).toFixed(2)},${(at(p) - deckAt(p) * px).toFixed(2)})`);
       }
       let from = Infinity,
         to = -Infinity,
@@ -286,12 +302,12 @@
       play.axles.forEach((axle, i) => {
         const x = x0 - axle.behind_front_m,
           half = axle.patch_length_m / 2,
-          y = base - thick + sink(f, x) * E * s - 2.5;
+          y = deckY(f, x) - 2.5;
         const line = part.wheels[i];
         line.setAttribute('x1', X(x - half).toFixed(2));
         line.setAttribute('x2', Math.max(X(x + half), X(x - half) + 3).toFixed(2));
-        line.setAttribute('y1', (base - thick + sink(f, x - half) * E * s - 2.5).toFixed(2));
-        line.setAttribute('y2', (base - thick + sink(f, x + half) * E * s - 2.5).toFixed(2));
+        line.setAttribute('y1', (deckY(f, x - half) - 2.5).toFixed(2));
+        line.setAttribute('y2', (deckY(f, x + half) - 2.5).toFixed(2));
         from = Math.min(from, X(x - half));
         to = Math.max(to, X(x + half));
         high = Math.max(high, -y);

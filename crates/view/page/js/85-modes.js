@@ -127,23 +127,31 @@
       const xs = bridge.position_x_m;
       return array(mode.motion).length / 24 === xs.length - 1 ? xs[n] : bridge.module_length_m * n;
     };
+    /** Height of a module's corner: bottom at the left and the right end, then deck. */
+    const height = (m, c) => {
+      const right = c % 4 === 1 || c % 4 === 2 ? 1 : 0;
+      return (bridge.module_heights_m?.[m] ?? [0, 0, bridge.depth_m, bridge.depth_m])[(c >= 4 ? 2 : 0) + right];
+    };
     /** The boxes' rest position, right to left and far to near, so that the near ones cover. */
     function build() {
       width = page.dom.room(stage) || 800;
       // A set of modes may be of another bridge of the study: its motion says how many modules it has.
       const modules = array(mode.motion).length / 24,
         L = end(modules),
-        reach = 0.055 * L;
+        reach = 0.055 * L,
+        heights = (bridge.module_heights_m ?? []).flat(),
+        low = Math.min(0, ...heights),
+        high = Math.max(bridge.depth_m, ...heights) - low;
       const s = Math.min(
         (width - 20) / (L + 0.55 * bridge.breadth_m + 2 * reach),
-        300 / (2.1 * reach + 2 * bridge.depth_m + 0.45 * bridge.breadth_m),
+        300 / (2.1 * reach + 2 * high + 0.45 * bridge.breadth_m),
       );
-      const height = (2.1 * reach + bridge.depth_m * 2 + 0.45 * bridge.breadth_m) * s + 20;
+      const tall = (2.1 * reach + high * 2 + 0.45 * bridge.breadth_m) * s + 20;
       view = {
         s,
         reach,
         X: (x, y) => 10 + (reach + x + 0.55 * y) * s,
-        Y: (y, z) => height - 10 - reach * s - (z + 0.45 * y) * s,
+        Y: (y, z) => tall - 10 - reach * s - (z - 1.6 * low + 0.45 * y) * s,
       };
       faces = [];
       const nodes = [];
@@ -167,9 +175,9 @@
           'svg',
           {
             class: 'boxes',
-            viewBox: `0 0 ${width} ${height}`,
+            viewBox: `0 0 ${width} ${tall}`,
             width,
-            height,
+            height: tall,
             role: 'img',
             'aria-label': `Mode shape: ${mode.shape}`,
           },
@@ -189,7 +197,7 @@
         const k = (m * 8 + c) * 3,
           x = end(m + (c % 4 === 1 || c % 4 === 2 ? 1 : 0)),
           y = c % 4 >= 2 ? B : 0,
-          z = c >= 4 ? (bridge.module_depth_m?.[m] ?? bridge.depth_m) * 1.6 : 0;
+          z = height(m, c) * 1.6;
         const px = x + scale * motion[k],
           py = y + scale * motion[k + 1],
           pz = z + scale * motion[k + 2];

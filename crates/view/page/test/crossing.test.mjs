@@ -222,6 +222,25 @@ test('a bank stands under the end of the bridge that it carries', () =>
     assert.ok(Math.abs(y - (base + 0.05 * scale * px)) < 0.02, 'its clearance below the bridge');
   }));
 
+test('modules that slope are drawn with the heights of their corners, and the bank beyond them at their deck', () =>
+  on(sample('crossing'), {}, async page => {
+    await page.selectOption('#play-job', String(sample('crossing').data.plays[1].job));
+    await scrub(page, 0);
+    const now = await drawing(page);
+    const tall = now.modules[0][0][1] - now.modules[0][3][1];
+    const [bottomLeft, bottomRight, deckRight, deckLeft] = now.modules.at(-1).map(([, y]) => (now.rest - y) / tall);
+    for (const [drawn, height] of [
+      [bottomLeft, 0],
+      [bottomRight, -0.4],
+      [deckRight, 0.6],
+      [deckLeft, 1.07],
+    ])
+      assert.ok(Math.abs(drawn - height / 1.07) < 0.01, `${drawn} of ${height}`);
+    const banks = await page.$$eval('.bank', all => all.map(b => Number(b.getAttribute('y1'))));
+    assert.ok(Math.abs((now.rest - banks[0]) / tall - 1) < 0.01);
+    assert.ok(Math.abs((now.rest - banks[1]) / tall - 0.6 / 1.07) < 0.01);
+  }));
+
 test('it plays, pauses, steps, runs at the speed that is chosen and ends', () =>
   on(sample('crossing'), {}, async page => {
     const frame = () => page.$eval('svg.bridge', n => Number(n.dataset.frame)),

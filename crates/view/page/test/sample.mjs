@@ -361,6 +361,13 @@ export function crossing() {
     lost_joints: [7],
     banks: [{ bank: 0, position: 1, clearance_m: 0.05 }],
   };
+  // a ramp that falls to its right end: its bottom as deep as it goes, its deck half as high
+  data.plays[1].bridge = {
+    ...bridge,
+    module_heights_m: bridge.position_x_m
+      .slice(1)
+      .map((_, i) => (i === MODULES - 1 ? [0, -0.4, 1.07, 0.6] : [0, 0, 1.07, 1.07])),
+  };
   data.notes = ['The reference was measured on a model at 1 : 10.'];
   data.marks = [
     ...speed.map((x, i) => ({

@@ -73,7 +73,7 @@ fn grids(pictures: &Pictures, ready: &Ready, state: &Snapshot, stresses: Option<
     [
         pictures.mesh(&displacement_m, stresses, time()),
         pictures.joints(ready, state, &displacement_m, time()),
-        pictures.vehicle(ready, state, &displacement_m, time()),
+        Pictures::vehicle(ready, state, &displacement_m, time()),
     ]
 }
 

@@ -33,7 +33,6 @@ const MOTION: &str = "displacement";
 pub(super) struct Pictures {
     mesh: VtkGrid,
     joints: VtkGrid,
-    depth_m: f64,
 }
 
 impl Pictures {
@@ -43,7 +42,6 @@ impl Pictures {
         Self {
             mesh: mesh(ready),
             joints: joints(ready, DRAWN * design.shortest_module_m()),
-            depth_m: design.deepest().0.depth_m,
         }
     }
 
@@ -110,15 +108,10 @@ impl Pictures {
     }
 
     /// The vehicle's points on the deck, moved with it; off the bridge they stand at its height.
-    pub(super) fn vehicle(
-        &self,
-        ready: &Ready,
-        state: &Snapshot,
-        displacement_m: &[[f64; 3]],
-        fields: Vec<Array>,
-    ) -> VtkGrid {
+    pub(super) fn vehicle(ready: &Ready, state: &Snapshot, displacement_m: &[[f64; 3]], fields: Vec<Array>) -> VtkGrid {
         let wheels = &state.wheels;
-        let places: Vec<[f64; 3]> = wheels.iter().map(|w| [w.x_m, w.y_m, self.depth_m]).collect();
+        let design = ready.bridge.design();
+        let places: Vec<[f64; 3]> = wheels.iter().map(|w| [w.x_m, w.y_m, design.deck_m(w.x_m)]).collect();
         let moved = wheels.iter().map(|wheel| {
             let row = wheel.row.as_ref();
             row.map_or([0.0; 3], |row| ready.meshed.of_deck_m(row, displacement_m))

@@ -46,6 +46,7 @@ pub use verdicts::{Tone, VerdictLine, Verdicts};
 use crate::figures::{Chart, ReferenceMark};
 use pontoon_core::bridge::{BankSpec, BridgeDesign, Direction, Toward};
 use pontoon_core::connector::ConnectorLaw;
+use pontoon_core::module::Outline;
 use pontoon_judge::compare::Comparison;
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
@@ -131,9 +132,10 @@ pub struct BridgeNote {
     pub breadth_m: f64,
     /// Its depth `[m]`, of the deepest where they are not alike.
     pub depth_m: f64,
-    /// Depth of each module `[m]`, where they are not alike.
+    /// Heights of each module's bottom at its left and right end, then of its deck, above the bottom of the bridge's left end
+    /// `[m]`, where modules are not alike or slope.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub module_depth_m: Vec<f64>,
+    pub module_heights_m: Vec<[f64; 4]>,
     /// How deep it floats `[m]`, where the bridge says so.
     pub draft_m: Option<f64>,
     /// Places of the positions `[m]`.
@@ -165,16 +167,13 @@ pub struct BankNote {
 impl BridgeNote {
     fn of(job: &Job) -> Self {
         let design = &job.bridge.design;
-        let (deepest, draft_m) = design.deepest();
+        let (depth_m, draft_m) = design.deepest_m();
         Self {
             modules: design.modules,
             module_length_m: design.shortest_module_m(),
             breadth_m: design.module.breadth_m,
-            depth_m: deepest.depth_m,
-            module_depth_m: match &design.row {
-                Some(_) => design.boxes().iter().map(|module| module.depth_m).collect(),
-                None => Vec::new(),
-            },
+            depth_m,
+            module_heights_m: heights_m(design),
             draft_m,
             position_x_m: (1..=design.positions())
                 .map(|position| design.position_x_m(position))
@@ -190,6 +189,26 @@ impl BridgeNote {
                 .collect(),
         }
     }
+}
+
+/// Heights of each module's corners above the bottom of the bridge's left end `[m]`: the bottom's, then the deck's; none where all
+/// modules are one box.
+fn heights_m(design: &BridgeDesign) -> Vec<[f64; 4]> {
+    let of_module = |(base_m, outline): (f64, Outline)| {
+        let ([a, b], [c, d]) = (outline.bottom_m, outline.deck_m);
+        [a, b, c, d].map(|height_m| base_m + height_m)
+    };
+    let heights: Vec<_> = design
+        .bases_m()
+        .into_iter()
+        .zip(design.outlines())
+        .map(of_module)
+        .collect();
+    let box_m = [0.0, 0.0, design.module.depth_m, design.module.depth_m];
+    if heights.iter().all(|of| *of == box_m) {
+        return Vec::new();
+    }
+    heights
 }
 
 /// A bank as a page draws it; none of one that does not press upward.

@@ -53,6 +53,12 @@ pub(super) struct WrittenBridge {
     /// Todd's formula for the added mass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     todd: Option<Todd>,
+    /// Where the wet part of the module begins, from its left end `[m]`; absent: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    wet_from_m: Option<f64>,
+    /// Where it ends `[m]`; absent: the length. A module whose wet part begins where it ends is dry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    wet_to_m: Option<f64>,
     /// How both waters are shared among the nodes of the wetted bottom.
     #[serde(default)]
     water_distribution: WaterDistribution,
@@ -145,6 +151,8 @@ impl WrittenBridge {
                 ("draft_buoyancy", self.draft_buoyancy.is_some()),
                 ("added_mass_kg_m", self.added_mass_kg_m.is_some()),
                 ("todd", self.todd.is_some()),
+                ("wet_from_m", self.wet_from_m.is_some()),
+                ("wet_to_m", self.wet_to_m.is_some()),
                 ("draft_m", self.draft_m.is_some()),
                 ("freeboard_m", self.freeboard_m.is_some()),
             ],
@@ -186,6 +194,8 @@ impl WrittenBridge {
             draft_buoyancy: self.draft_buoyancy,
             added_mass_kg_m: self.added_mass_kg_m,
             todd: self.todd,
+            wet_from_m: self.wet_from_m,
+            wet_to_m: self.wet_to_m,
             water_distribution: self.water_distribution,
             hinges: self.hinges,
             connectors: self.connectors,
@@ -221,6 +231,8 @@ impl WrittenBridge {
             draft_buoyancy: of.draft_buoyancy,
             added_mass_kg_m: of.added_mass_kg_m,
             todd: of.todd,
+            wet_from_m: of.wet_from_m,
+            wet_to_m: of.wet_to_m,
             water_distribution: of.water_distribution,
             hinges: of.hinges,
             connectors: of.connectors,
@@ -240,6 +252,8 @@ impl WrittenBridge {
             draft_buoyancy: None,
             added_mass_kg_m: None,
             todd: None,
+            wet_from_m: None,
+            wet_to_m: None,
             draft_m: None,
             freeboard_m: None,
             ..plain
