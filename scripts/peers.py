@@ -441,6 +441,8 @@ def opensees_statics(bridge, shell, connection):
 
 # Stiffness that stands for a hinge where a constraint may not [N/m]: 150 times an element's own.
 HINGE_N_M = 1e12
+# spring in x against drift of the chain afloat [N/m]: 0.003 Hz
+CHAIN_DRIFT_N_M = 1e3
 
 
 def joint_connector(chain, joint):
@@ -453,45 +455,59 @@ def joint_connector(chain, joint):
     return own
 
 
+def chain_module(chain, number):
+    """What the module of a number is and floats on."""
+    if number in chain.get("others", []):
+        return chain["other"]
+    own = {key: chain[key] for key in ("module_length_m", "elements_along_module")}
+    return own | {key: chain["beam"][key] for key in ("second_moment_m4", "density_kg_m3")} | chain["water"]
+
+
 class ChainPeer:
     """The plane chain in OpenSees' domain; dofs x, z, rotation.
 
     Posts are stiff beams on every node of the line. With `"posts": "rigid"` they are rigid links at the module ends
     alone, as somebody would script it; their nodes cannot be tied at the hinges as well, which are stiff springs then.
-    With `"hinges": "springs"` they are so in any case, and tell their forces.
+    With `"hinges": "springs"` they are so in any case, and tell their forces. Modules whose numbers stand in `"others"`
+    are of the file's other kind. Afloat no end is held, but a weak spring holds x.
     """
 
-    def __init__(self, chain, connection):
-        self.parts, self.modules = chain["elements_along_module"], chain["modules"]
-        self.element_m = chain["module_length_m"] / self.parts
-        self.length_m = self.modules * chain["module_length_m"]
-        beam, post, water, depth_m = chain["beam"], chain["post"], chain["water"], chain["depth_m"]
-        mass_kg_m = beam["density_kg_m3"] * beam["area_m2"]
+    def __init__(self, chain, connection, floating=False):
+        self.modules = chain["modules"]
+        kinds = [chain_module(chain, number) for number in range(1, self.modules + 1)]
+        self.parts = [kind["elements_along_module"] for kind in kinds]
+        self.lefts_m = np.cumsum([0.0] + [kind["module_length_m"] for kind in kinds])
+        self.elements_m = np.diff(self.lefts_m) / self.parts
+        self.firsts = np.cumsum([1] + [parts + 1 for parts in self.parts])
+        self.length_m = self.lefts_m[-1]
+        beam, post, depth_m = chain["beam"], chain["post"], chain["depth_m"]
         tops, grounds = 1000, 2000
         ops.wipe()
         ops.model("basic", "-ndm", 2, "-ndf", 3)
         ops.geomTransf("Linear", 1)
         elements = iter(range(1, 10**6))
-        for share in (1, 2):
-            ops.uniaxialMaterial("Elastic", share, 0.5 * share * self.element_m * water["hydrostatic_stiffness_n_m2"])
         ops.uniaxialMaterial("Elastic", 3, HINGE_N_M)
+        for module, kind in enumerate(kinds):
+            for share in (1, 2):
+                stiffness_n_m = 0.5 * share * self.elements_m[module] * kind["hydrostatic_stiffness_n_m2"]
+                ops.uniaxialMaterial("Elastic", self.water(module, share), float(stiffness_n_m))
         for joint in range(2, self.modules + 1):
             own = joint_connector(chain, joint)
             law, *numbers = connector_law(connection, own["stiffness_n_m"], own)
             ops.uniaxialMaterial(law, self.material(joint), *numbers)
         rigid = chain.get("posts") == "rigid"
         springs = rigid or chain.get("hinges") == "springs"
-        for module in range(self.modules):
-            for i in range(self.parts + 1):
-                node, x = self.node(module, i), module * chain["module_length_m"] + i * self.element_m
+        for module, kind in enumerate(kinds):
+            parts, element_m = self.parts[module], self.elements_m[module]
+            for i in range(parts + 1):
+                node, x = self.node(module, i), float(self.lefts_m[module] + i * element_m)
                 ops.node(node, x, 0.0)
                 ops.node(grounds + node, x, 0.0)
                 ops.fix(grounds + node, 1, 1, 1)
-                share = 1 if i in (0, self.parts) else 2
-                ops.mass(node, 0.0, 0.5 * share * self.element_m * water["added_mass_kg_m"], 0.0)
-                ops.element(
-                    "zeroLength", next(elements), grounds + node, node, "-mat", share, "-dir", 2, "-doRayleigh", 1
-                )
+                share = 1 if i in (0, parts) else 2
+                ops.mass(node, 0.0, float(0.5 * share * element_m * kind["added_mass_kg_m"]), 0.0)
+                spring = ("-mat", self.water(module, share), "-dir", 2, "-doRayleigh", 1)
+                ops.element("zeroLength", next(elements), grounds + node, node, *spring)
                 if not rigid:
                     ops.node(tops + node, x, depth_m)
                     ops.element(
@@ -504,7 +520,7 @@ class ChainPeer:
                         post["second_moment_m4"],
                         1,
                     )
-                elif i in (0, self.parts):
+                elif i in (0, parts):
                     ops.node(tops + node, x, depth_m)
                     ops.rigidLink("beam", node, tops + node)
                 if i:
@@ -515,15 +531,15 @@ class ChainPeer:
                         node,
                         beam["area_m2"],
                         beam["youngs_modulus_pa"],
-                        beam["second_moment_m4"],
+                        kind["second_moment_m4"],
                         1,
                         "-mass",
-                        mass_kg_m,
+                        kind["density_kg_m3"] * beam["area_m2"],
                         "-cMass",
                     )
         self.connectors, self.hinges = [], []
         for module in range(1, self.modules):
-            left, right = self.node(module - 1, self.parts), self.node(module, 0)
+            left, right = self.node(module - 1, self.parts[module - 1]), self.node(module, 0)
             if springs:
                 self.hinges.append(next(elements))
                 ops.element("zeroLength", self.hinges[-1], left, right, "-mat", 3, 3, "-dir", 1, 2)
@@ -533,7 +549,12 @@ class ChainPeer:
             law = self.material(module + 1)
             ops.element("zeroLength", self.connectors[-1], tops + left, tops + right, "-mat", law, "-dir", 1)
         self.banks = []
-        for end, (node, along) in enumerate(((self.node(0, 0), 1), (self.node(self.modules - 1, self.parts), 0))):
+        first, last = self.node(0, 0), self.positions()[-1]
+        if floating:
+            ops.uniaxialMaterial("Elastic", 4, CHAIN_DRIFT_N_M)
+            ops.element("zeroLength", next(elements), grounds + first, first, "-mat", 4, "-dir", 1)
+            return
+        for end, (node, along) in enumerate(((first, 1), (last, 0))):
             bank_n_m = chain.get("bank_stiffness_n_m")
             ops.fix(node, along, 0 if bank_n_m else 1, 0)
             if bank_n_m:
@@ -545,7 +566,12 @@ class ChainPeer:
 
     def node(self, module, i):
         """Number of a node of the line."""
-        return 1 + module * (self.parts + 1) + i
+        return int(self.firsts[module]) + i
+
+    @staticmethod
+    def water(module, share):
+        """Number of the water of so many half elements of a module."""
+        return 1000 + 2 * module + share
 
     @staticmethod
     def material(joint):
@@ -554,15 +580,17 @@ class ChainPeer:
 
     def positions(self):
         """Nodes of the module ends."""
-        return [self.node(m, 0) for m in range(self.modules)] + [self.node(self.modules - 1, self.parts)]
+        return [self.node(m, 0) for m in range(self.modules)] + [int(self.firsts[-1]) - 1]
 
     def shares(self, x_m):
         """For each place of a point that moves, its shares on the line's nodes; none off the bridge."""
-        shares = np.zeros((len(x_m), self.modules * (self.parts + 1)))
+        shares = np.zeros((len(x_m), int(self.firsts[-1]) - 1))
         steps = np.flatnonzero((x_m >= 0.0) & (x_m <= self.length_m))
-        element = np.minimum((x_m[steps] / self.element_m).astype(int), self.modules * self.parts - 1)
-        ahead = x_m[steps] / self.element_m - element
-        node = element + element // self.parts
+        module = np.searchsorted(self.lefts_m[1:-1], x_m[steps], side="right")
+        elements = (x_m[steps] - self.lefts_m[module]) / self.elements_m[module]
+        element = np.minimum(elements.astype(int), np.array(self.parts)[module] - 1)
+        ahead = elements - element
+        node = self.firsts[module] - 1 + element
         shares[steps, node] = 1.0 - ahead
         shares[steps, node + 1] = ahead
         return shares
@@ -625,6 +653,15 @@ def opensees_crossing(chain, crossing, time_step_s):
         "peak_compression_n": np.maximum(-force_n, 0.0).max(axis=0),
         "peak_tension_n": np.maximum(force_n, 0.0).max(axis=0),
     }
+
+
+def opensees_chain_modes(chain, count):
+    """The lowest frequencies [Hz] of the chain afloat, without that of the drift."""
+    ChainPeer(chain, "linear", floating=True)
+    ops.constraints("Transformation")
+    ops.numberer("RCM")
+    ops.system("BandGeneral")
+    return np.sqrt(ops.eigen("-genBandArpack", count + 1))[1:] / (2.0 * np.pi)
 
 
 def opensees_chain_statics(chain, connection, centre_m):
@@ -746,6 +783,46 @@ def compare_joints(table):
             table.row("largest tension, of the compression", "N", most["peak_tension_n"], max(pull), of=max(n))
 
 
+# modules of the other kind, longer and of other stiffness, mass and water: at both ends and inside
+OTHERS = [1, 2, 6, 15]
+OTHERS_MODES = 12
+
+
+def compare_kinds(table):
+    """The chain of two kinds of modules: frequencies afloat, loads that stand, a crossing."""
+    chain = json.loads(CHAIN.read_text()) | {"others": OTHERS}
+    ours, ours_s = timed(pontoon_chain, {"others": OTHERS, "analysis": {"kind": "modes"}})
+    theirs, theirs_s = timed(opensees_chain_modes, chain, OTHERS_MODES)
+    table.head("chain of two kinds, natural frequencies", ours_s, theirs_s)
+    vertical = [mode["frequency_hz"] for mode in ours["modes"] if mode["vertical_share"] > 0.5]
+    for number, (a, b) in enumerate(zip(vertical, theirs, strict=False), 1):
+        table.row(f"vertical mode {number}", "Hz", a, b, 0.5)
+    for connection in ("linear", "nonlinear"):
+        still = {
+            "others": OTHERS,
+            "connection": connection,
+            "analysis": {"kind": "static"},
+            "load_position": LOAD_POSITION,
+        }
+        ours, ours_s = timed(pontoon_chain, still)
+        centre_m = ours["load_x_m"]
+        (w, n, _), theirs_s = timed(opensees_chain_statics, chain, connection, centre_m)
+        table.head(f"chain of two kinds, static, {connection}", ours_s, theirs_s)
+        for position in (5, 6, 7, 8):
+            deflection_m = ours["positions"][position - 1]["deflection_m"]
+            table.row(f"deflection at {position}", "m", deflection_m, w[position - 1], 0.5)
+        for joint in (6, 7, 8):
+            table.row(f"force of joint {joint}", "N", ours["joints"][joint - 2]["force_n"], n[joint - 2], 0.5)
+    crossing = {"connection": "nonlinear", "speed_m_s": 3.0}
+    ours, ours_s = timed(pontoon_chain, {"others": OTHERS} | crossing)
+    theirs, theirs_s = timed(opensees_crossing, chain, crossing, CHAIN_TIME_STEP_S)
+    table.head("chain of two kinds, 3 m/s", ours_s, theirs_s)
+    most, w, n = ours["largest"], theirs["peak_deflection_m"], theirs["peak_compression_n"]
+    table.row("largest deflection", "m", most["peak_deflection_m"], max(w), 0.5)
+    table.row("deflection at 7", "m", ours["positions"][6]["peak_deflection_m"], w[6], 0.5)
+    table.row("largest compression of a joint", "N", most["peak_compression_n"], max(n), 2.0)
+
+
 # places of the load's centre [m]: on a position, and half a module beyond it
 PINS_CENTRES_M = (40.2, 43.55)
 
@@ -837,6 +914,7 @@ def main():
         if options.part in ("chain", "all"):
             compare_chain(table)
             compare_joints(table)
+            compare_kinds(table)
             compare_pins(table)
             compare_banks(table)
     print(f"\n{time.perf_counter() - start:.0f} s; beyond what is asked: {len(table.beyond)}")

@@ -5,7 +5,7 @@
 //!
 //! A scenario has the words of studies and bridge files; what it leaves out is chain.json's:
 //!
-//!     { "modules": 15,
+//!     { "modules": 15, "others": [1, 2, 9],
 //!       "joints": { "8": { "connectors": { "gap_compression_m": 0.020 } }, "2..6": { "connectors": { "tension": false } } },
 //!       "connection": "nonlinear", "gap_tension_m": 0.028, "gap_compression_m": 0.0055,
 //!       "analysis": { "kind": "crossing", "time_step_s": 0.0025, "tail_s": 2, "spectral_radius": 0.9 },
@@ -14,7 +14,8 @@
 //!
 //! A joint of the chain has one connector: `stiffness_n_m` in `joints` is the joint's, as `stiffness_of_a_joint_n_m` is in
 //! chain.json. Tracks are the chain's two lines and `inertia` is `none` where a vehicle does not say otherwise. Of the kind
-//! `static`, `"load_x_m"` or `"load_position"` takes the place of the speed. `"traffic": [ { "vehicle": ..., "load_n": ...,
+//! `static`, `"load_x_m"` or `"load_position"` takes the place of the speed. `others` are the modules that are of the other kind
+//! of chain.json. Of the kind `modes` the bridge floats free, with the linear connection, and nothing loads it. `"traffic": [ { "vehicle": ..., "load_n": ...,
 //! "speed_m_s": ... } ]` is another way to write the one vehicle. The time step of the command line counts in place of the
 //! file's; a static case has none. What the chain does not know is refused with its key: exit status 2.
 //!
@@ -26,7 +27,7 @@
 //!       "largest": { "peak_deflection_m", "peak_deflection_position", "peak_deflection_time_s", "peak_uplift_m", ...,
 //!                    "peak_compression_n", "peak_compression_joint", ..., "min_contact_force_n" } }
 //!
-//! Times count from the front at x = 0; a peak of 0 has no time. `min_contact_force_n` is that of a vehicle with inertia.
+//! The answer of `modes` is a list of `frequency_hz`, `shape` and `vertical_share`. Times count from the front at x = 0; a peak of 0 has no time. `min_contact_force_n` is that of a vehicle with inertia.
 //!
 //! Knows its arguments and exit statuses. Does not know what other codes answer.
 

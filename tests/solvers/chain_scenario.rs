@@ -201,7 +201,7 @@ fn the_nearer_time_step_counts() {
             assert!(matches!(crossing.connection, Connection::Nonlinear { .. }));
             time_step_s
         }
-        ChainTask::Static(_) => 0.0,
+        ChainTask::Static(_) | ChainTask::Modes => 0.0,
     };
     let (plain, own) = (
         json!({ "speed_m_s": 3 }),

@@ -6,7 +6,7 @@ use crate::beams::BeamModule;
 use crate::{Ready, gaps, settings, with};
 use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::modes::Rayleigh;
-use pontoon_core::bridge::{BridgeDesign, Direction, Model};
+use pontoon_core::bridge::{BridgeDesign, Direction, Model, ModuleKind, ModuleRow, ModuleRun, PreparedModule};
 use pontoon_core::connector::Connection;
 use pontoon_core::response::CrossingResponse;
 use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
@@ -21,6 +21,10 @@ pub struct Chain {
     pub modules: usize,
     /// A module.
     pub module: BeamModule,
+    /// A module of another kind, its water with it.
+    pub other: OtherModule,
+    /// Numbers of the modules that are of it, from 1; none in the file.
+    pub others: Vec<usize>,
     /// Hydrostatic stiffness a metre of bridge `[N/m^2]`.
     pub hydrostatic_stiffness_n_m2: f64,
     /// Added mass a metre of bridge `[kg/m]`.
@@ -45,9 +49,35 @@ pub struct Chain {
     pub tail_s: f64,
 }
 
+/// A module of the chain of another kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherModule {
+    /// The module.
+    pub module: BeamModule,
+    /// Hydrostatic stiffness a metre of it `[N/m^2]`.
+    pub hydrostatic_stiffness_n_m2: f64,
+    /// Added mass a metre of it `[kg/m]`.
+    pub added_mass_kg_m: f64,
+}
+
 /// Young's modulus in the file is that of the sections it stands with.
 fn product(of: &Value, key: &str) -> f64 {
     number(of, "youngs_modulus_pa") * number(of, key)
+}
+
+/// The kind that a design's only module is.
+fn kind(of: &BridgeDesign) -> ModuleKind {
+    ModuleKind {
+        module: of.module.clone(),
+        hydrostatic_stiffness_pa_m: of.hydrostatic_stiffness_pa_m,
+        draft_buoyancy: None,
+        added_mass_kg_m: of.added_mass_kg_m,
+        todd: None,
+        wet_from_m: None,
+        wet_to_m: None,
+        draft_m: None,
+        freeboard_m: None,
+    }
 }
 
 fn number(of: &Value, key: &str) -> f64 {
@@ -74,18 +104,32 @@ impl Chain {
             Some("nonlinear") => (false, number(c, "speed_m_s")),
             other => panic!("no connection {other:?}"),
         };
+        let module = BeamModule {
+            length_m: number(&all, "module_length_m"),
+            breadth_m: 2.0,
+            depth_m: number(&all, "depth_m"),
+            elements: count(&all, "elements_along_module"),
+            bending_stiffness_n_m2: product(beam, "second_moment_m4"),
+            axial_stiffness_n: product(beam, "area_m2"),
+            mass_kg_m: number(beam, "density_kg_m3") * number(beam, "area_m2"),
+            posts: (product(post, "second_moment_m4"), product(post, "area_m2")),
+        };
+        let other = &all["other"];
         Self {
             modules: count(&all, "modules"),
-            module: BeamModule {
-                length_m: number(&all, "module_length_m"),
-                breadth_m: 2.0,
-                depth_m: number(&all, "depth_m"),
-                elements: count(&all, "elements_along_module"),
-                bending_stiffness_n_m2: product(beam, "second_moment_m4"),
-                axial_stiffness_n: product(beam, "area_m2"),
-                mass_kg_m: number(beam, "density_kg_m3") * number(beam, "area_m2"),
-                posts: (product(post, "second_moment_m4"), product(post, "area_m2")),
+            other: OtherModule {
+                module: BeamModule {
+                    length_m: number(other, "module_length_m"),
+                    elements: count(other, "elements_along_module"),
+                    bending_stiffness_n_m2: number(beam, "youngs_modulus_pa") * number(other, "second_moment_m4"),
+                    mass_kg_m: number(other, "density_kg_m3") * number(beam, "area_m2"),
+                    ..module.clone()
+                },
+                hydrostatic_stiffness_n_m2: number(other, "hydrostatic_stiffness_n_m2"),
+                added_mass_kg_m: number(other, "added_mass_kg_m"),
             },
+            others: Vec::new(),
+            module,
             hydrostatic_stiffness_n_m2: number(&all["water"], "hydrostatic_stiffness_n_m2"),
             added_mass_kg_m: number(&all["water"], "added_mass_kg_m"),
             joint_stiffness_n_m: number(&all["connectors"], "stiffness_of_a_joint_n_m"),
@@ -115,16 +159,59 @@ impl Chain {
             self.added_mass_kg_m,
             0.5 * self.joint_stiffness_n_m,
         );
-        with(&self.module.design(self.modules, k, m_a, truss), |d| {
-            d.water_distribution = WaterDistribution::Lumped;
-            d.supports.left = vec![Direction::X, Direction::Y, Direction::Z];
-            d.supports.right = vec![Direction::Y, Direction::Z];
-        })
+        let alike = |module: &BeamModule, k: f64, m_a: f64| {
+            with(&module.design(self.modules, k, m_a, truss), |d| {
+                d.water_distribution = WaterDistribution::Lumped;
+                d.supports.left = vec![Direction::X, Direction::Y, Direction::Z];
+                d.supports.right = vec![Direction::Y, Direction::Z];
+                (d.draft_m, d.freeboard_m) = (None, None);
+            })
+        };
+        let plain = alike(&self.module, k, m_a);
+        if self.others.is_empty() {
+            return plain;
+        }
+        let OtherModule {
+            module,
+            hydrostatic_stiffness_n_m2,
+            added_mass_kg_m,
+        } = &self.other;
+        let other = alike(module, *hydrostatic_stiffness_n_m2, *added_mass_kg_m);
+        let is_other = |number: usize| self.others.contains(&number);
+        let kinds = [("plain", kind(&plain)), ("other", kind(&other))].map(|(name, of)| (name.to_owned(), of));
+        let run = |number: usize| ModuleRun {
+            kind: (if is_other(number) { "other" } else { "plain" }).to_owned(),
+            count: 1,
+            mirrored: false,
+        };
+        let row = ModuleRow {
+            kinds: kinds.into(),
+            runs: (1..=self.modules).map(run).collect(),
+        };
+        let first = if is_other(1) { other } else { plain };
+        with(&first, |d| d.row = Some(row))
     }
 
     /// The bridge, every degree of freedom kept.
     pub fn ready(&self) -> Ready {
-        self.module.ready(&self.design(), Model::Full)
+        self.ready_of(&self.design())
+    }
+
+    /// A bridge of the chain's modules, every degree of freedom kept.
+    ///
+    /// # Panics
+    /// Where a module or the bridge is refused.
+    pub fn ready_of(&self, design: &BridgeDesign) -> Ready {
+        let other = &self.other.module;
+        let prepare = |of: &BridgeDesign| {
+            let module = if of.module.length_m == other.length_m {
+                other
+            } else {
+                &self.module
+            };
+            PreparedModule::from_mesh(of, module.mesh(), Model::Full).expect("a module")
+        };
+        Ready::of_kinds(design, design.variants().designs.iter().map(prepare).collect())
     }
 
     /// The moving force, half on each line.

@@ -6,8 +6,8 @@ use crate::chain_scenario::{ChainScenario, ChainTask};
 use crate::settings;
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::CrossingSolver;
+use pontoon_core::analysis::modes::Mode;
 use pontoon_core::analysis::statics::StaticCase;
-use pontoon_core::bridge::Model;
 use pontoon_core::response::{CrossingResponse, Peak, Section, StaticResponse};
 use pontoon_core::vehicle::Inertia;
 use serde_json::{Map, Value, json};
@@ -17,8 +17,9 @@ use serde_json::{Map, Value, json};
 /// # Errors
 /// The solver's.
 pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
-    let ready = scenario.chain.module.ready(&scenario.design, Model::Full);
+    let ready = scenario.chain.ready_of(&scenario.design);
     match &scenario.task {
+        ChainTask::Modes => Ok(of_modes(&ready.modes(MODES))),
         ChainTask::Static(case) => {
             let response = ready.statics(&scenario.vehicle).solve(case)?;
             Ok(of_static(scenario, case, &response))
@@ -33,6 +34,14 @@ pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
             Ok(of_crossing(scenario, *time_step_s, &response))
         }
     }
+}
+
+/// How many modes are told.
+const MODES: usize = 30;
+
+fn of_modes(modes: &[Mode]) -> Value {
+    let of_mode = |mode: &Mode| json!({ "frequency_hz": mode.frequency_hz, "shape": mode.name, "vertical_share": mode.vertical_share });
+    json!({ "kind": "modes", "modes": modes.iter().map(of_mode).collect::<Vec<_>>() })
 }
 
 fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingResponse) -> Value {

@@ -23,6 +23,8 @@ use std::path::Path;
 struct ScenarioSpec {
     modules: Option<usize>,
     #[serde(default)]
+    others: Vec<usize>,
+    #[serde(default)]
     joints: Joints,
     #[serde(default)]
     banks: Vec<BankSpec>,
@@ -73,6 +75,7 @@ enum Kind {
     #[default]
     Crossing,
     Static,
+    Modes,
 }
 
 /// A checked question to the chain.
@@ -102,6 +105,8 @@ pub enum ChainTask {
     },
     /// It stands.
     Static(StaticCase),
+    /// There is none: the bridge floats free and vibrates.
+    Modes,
 }
 
 /// The time step where none is given `[s]`: half of it moves no largest peak by more than 0.1 %.
@@ -131,6 +136,13 @@ impl ChainScenario {
 
     fn checked(mut chain: Chain, spec: &ScenarioSpec, time_step_s: Option<f64>) -> Result<Self, InvalidInput> {
         chain.modules = spec.modules.unwrap_or(chain.modules);
+        for (i, &number) in spec.others.iter().enumerate() {
+            if !(1..=chain.modules).contains(&number) {
+                let allowed = format!("a module, from 1 to {}", chain.modules);
+                return Err(InvalidInput::new(format!("others[{i}]"), number, allowed));
+            }
+        }
+        chain.others.clone_from(&spec.others);
         let design = with_banks(with_joints(chain.design(), &spec.joints)?, &spec.banks)?;
         let connection = spec.connection(&chain)?;
         let own_laws = design.own_laws(connection, None)?;
@@ -166,6 +178,7 @@ impl ChainScenario {
                     crossing,
                 }
             }
+            Kind::Modes => ChainTask::Modes,
             Kind::Static => {
                 let moves = loaded.speed_m_s.map(|_| format!("{under}speed_m_s"));
                 ChainTask::Static(StaticCase {
@@ -304,7 +317,7 @@ fn time_step(
 ) -> Result<f64, InvalidInput> {
     let key = "analysis.time_step_s";
     let step = positive(key, asked_s.unwrap_or(TIME_STEP_S))?;
-    let passage = design.module.length_m / crossing.speed_m_s;
+    let passage = design.shortest_module_m() / crossing.speed_m_s;
     if step > passage {
         let allowed = format!("at most {}, the passage of one module", bound(passage));
         return Err(InvalidInput::new(key, step, allowed).because(Problem::Conflict));

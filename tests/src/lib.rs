@@ -118,7 +118,8 @@ impl Ready {
         Self::of_kinds(design, vec![module])
     }
 
-    fn of_kinds(design: &BridgeDesign, mut modules: Vec<PreparedModule>) -> Self {
+    /// Prepares a design with modules that were made otherwise, one of each of its variants.
+    pub fn of_kinds(design: &BridgeDesign, mut modules: Vec<PreparedModule>) -> Self {
         let bridge = |ends| Arc::new(Bridge::of_kinds(design, &modules, ends).expect("a bridge"));
         let [free, bridge] = [Ends::Free, Ends::Supported].map(bridge);
         Self {
