@@ -351,7 +351,6 @@ mod tests {
         let right = miss(&bridge);
         bridge.modules[0].wet_m = None;
         let wrong = miss(&bridge);
-        println!("vertical share: {right:.1e} <= 4e-2 < {wrong:.1e}");
         assert!(right <= 4e-2 && wrong > 4e-2, "{right:e} {wrong:e}");
     }
 

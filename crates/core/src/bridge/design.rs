@@ -9,18 +9,18 @@ mod written;
 use super::banks::{BankRoom, BankSpec, bank_law, check_banks};
 use super::buoyancy::{DraftBuoyancy, Todd};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
-use super::kinds::{ModuleKind, ModuleRow, key_of};
+use super::kinds::{ModuleKind, ModuleRow, key_of, wet_m};
 use super::supports::{Direction, Supports};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
-use crate::input::{InvalidInput, Problem, positive};
-use crate::module::{MeshSize, ModuleDesign, ModuleMesh, lines_across, mesh_module, mesh_size};
+use crate::input::{InvalidInput, Problem, SAME_PLACE_M, positive};
+use crate::module::{MeshSize, ModuleDesign, ModuleMesh, Outline, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
-use wet::OF_DRY;
+use wet::{OF_DRY, check_dry_held, check_own_water_line, check_water};
 use written::WrittenBridge;
 
 /// A bridge of modules side by side, as one of the two forms of its file has it: equal modules, or a row of kinds.
@@ -138,17 +138,6 @@ impl JsonSchema for BridgeDesign {
     }
 }
 
-/// How far the sum of a draft and a freeboard may be off the depth, as both are rounded `[m]`, and as a share of it.
-const ROUNDED_M: f64 = 0.010_001;
-const ROUNDED: f64 = 0.01;
-
-/// Density of fresh water `[kg/m^3]`, by which a mass gives a draft.
-const WATER_KG_M3: f64 = 1000.0;
-
-/// How often a draft may be that of the box with the model's mass, or that one it: a hull is no box, and a model may leave
-/// out what a deck carries.
-const FULLNESS: f64 = 2.0;
-
 /// Most memory that the dense matrices of one bridge may take `[GiB]`.
 const MOST_GIB: f64 = 4.0;
 
@@ -176,7 +165,7 @@ impl BridgeDesign {
         places("hinges.y_m", &self.hinges.y_m, half)?;
         self.connectors.check(half).map_err(|e| e.under("connectors"))?;
         self.joints.check(self.modules, half, &self.connectors)?;
-        self.check_unlike_depths()?;
+        heights::check_unlike_depths(self)?;
         check_banks(
             &self.banks,
             &BankRoom {
@@ -200,7 +189,7 @@ impl BridgeDesign {
     /// Refuses numbers that describe no module of the only kind.
     fn check_kind(&self) -> Result<(), InvalidInput> {
         self.module.check().map_err(|e| e.under("module"))?;
-        self.check_water()?;
+        check_water(self)?;
         let [bottom_m, deck_m] = {
             let outline = self.module.outline();
             [outline.bottom_m, outline.deck_m]
@@ -241,50 +230,7 @@ impl BridgeDesign {
     /// [`InvalidInput`] with the key's path.
     pub fn check_water_line(&self) -> Result<(), InvalidInput> {
         let mut kinds = self.named_kinds().into_iter();
-        kinds.try_for_each(|(key, kind)| kind.check_own_water_line().map_err(|e| e.within_kind(&key)))
-    }
-
-    fn check_own_water_line(&self) -> Result<(), InvalidInput> {
-        let conflict = |key: &str, found: f64, allowed: String| {
-            Err(InvalidInput::new(key, found, allowed).because(Problem::Conflict))
-        };
-        let depth_m = self.module.outline().largest_depth_m();
-        let rounded = ROUNDED_M.max(ROUNDED * depth_m);
-        for (key, value) in [("draft_m", self.draft_m), ("freeboard_m", self.freeboard_m)] {
-            if let Some(value) = value.filter(|&value| value > depth_m) {
-                return conflict(key, value, format!("at most {depth_m}, the depth of the module"));
-            }
-        }
-        if let (Some(draft), Some(freeboard)) = (self.draft_m, self.freeboard_m)
-            && (draft + freeboard - depth_m).abs() > rounded
-        {
-            let rest = metres(depth_m - draft);
-            let allowed = format!("about {rest}, what the depth of {depth_m} leaves above the draft of {draft}");
-            return conflict("freeboard_m", freeboard, allowed);
-        }
-        let Some(draft) = self.draft_m else { return Ok(()) };
-        if let Some(table) = &self.draft_buoyancy
-            && (draft - table.still_water_draft_m).abs() > rounded
-        {
-            let still = table.still_water_draft_m;
-            let allowed = format!("about {still}, the draft of draft_buoyancy.still_water_draft_m");
-            return conflict("draft_m", draft, allowed);
-        }
-        if self.is_dry_in_part() {
-            // what holds up the rest is not known
-            return Ok(());
-        }
-        let mass_kg = self.structural_mass_kg();
-        let of_mass = mass_kg / (WATER_KG_M3 * self.module.length_m * self.module.breadth_m);
-        if !(of_mass / FULLNESS..=of_mass * FULLNESS).contains(&draft) {
-            let [least, most] = [of_mass / FULLNESS, of_mass * FULLNESS].map(metres);
-            let allowed = format!(
-                "about {}, which the mass of the module gives ({mass_kg:.0} kg), and no less than {least} or more than {most}",
-                metres(of_mass)
-            );
-            return conflict("draft_m", draft, allowed);
-        }
-        Ok(())
+        kinds.try_for_each(|(key, kind)| check_own_water_line(&kind).map_err(|e| e.within_kind(&key)))
     }
 
     /// Refuses a bridge that supports and hinges leave free to move horizontally, against which water does nothing, or whose dry
@@ -314,7 +260,7 @@ impl BridgeDesign {
             let allowed = "y held at both ends in a static case of one module with a single hinge place";
             return Err(InvalidInput::new("supports", "y held at one end", allowed).because(Problem::Conflict));
         }
-        self.check_dry_held()
+        check_dry_held(self)
     }
 
     /// Refuses a bridge whose dense matrices would take too much memory: the condensation of a module, and what its
@@ -429,6 +375,27 @@ impl BridgeDesign {
         mesh_module(&self.module, &self.lines_along_m(), &self.joint_lines_y_m())
     }
 
+    /// Lines along that a module's mesh has for its water: where its wet part begins and ends, where the file says so `[m]`.
+    pub fn lines_along_m(&self) -> Vec<f64> {
+        self.wet_from_m.into_iter().chain(self.wet_to_m).collect()
+    }
+
+    /// Where the wet part of the module's bottom begins and ends, from its left end `[m]`.
+    pub fn wet_m(&self) -> [f64; 2] {
+        wet_m(self.module.length_m, [self.wet_from_m, self.wet_to_m])
+    }
+
+    /// Length of the module's wet part `[m]`.
+    pub(crate) fn wet_length_m(&self) -> f64 {
+        let [from_m, to_m] = self.wet_m();
+        to_m - from_m
+    }
+
+    /// Share of the module's length that is wet.
+    pub fn wet_share(&self) -> f64 {
+        self.wet_length_m() / self.module.length_m
+    }
+
     /// Number of positions: the module ends.
     pub fn positions(&self) -> usize {
         self.modules + 1
@@ -463,7 +430,7 @@ impl BridgeDesign {
     pub fn variants(&self) -> Variants {
         let Some(row) = &self.row else {
             let mut design = self.clone();
-            design.condensation.end_masters |= self.has_unlike_depths();
+            design.condensation.end_masters |= heights::has_unlike_depths(self);
             return Variants {
                 designs: vec![design],
                 of_module: vec![0; self.modules],
@@ -471,7 +438,7 @@ impl BridgeDesign {
             };
         };
         let (built, of_module) = row.built(&self.joint_lines_y_m());
-        let unlike = self.has_unlike_depths();
+        let unlike = heights::has_unlike_depths(self);
         let design = |(_, kind): &(&str, ModuleKind)| {
             let mut design = self.of_kind(kind);
             design.condensation.end_masters |= unlike;
@@ -499,6 +466,26 @@ impl BridgeDesign {
             Some(row) => row.kinds_in_row().map(|kind| &kind.module).collect(),
             None => vec![&self.module; self.modules],
         }
+    }
+
+    /// The outline of each module from left to right as it stands there.
+    pub fn outlines(&self) -> Vec<Outline> {
+        heights::outlines(self)
+    }
+
+    /// Height of each module's bottom at its left end above that of the first module, as bottoms meet in the hinges `[m]`.
+    pub fn bases_m(&self) -> Vec<f64> {
+        heights::bases_m(self)
+    }
+
+    /// Height of the deck at a place along the bridge above the bottom of its left end `[m]`; beyond an end that of the end.
+    pub fn deck_m(&self, x_m: f64) -> f64 {
+        heights::deck_m(self, x_m)
+    }
+
+    /// Depth of the deepest module, and its still-water draft where its kind has one `[m]`.
+    pub fn deepest_m(&self) -> (f64, Option<f64>) {
+        heights::deepest_m(self)
     }
 
     /// Length of the shortest module `[m]`.
@@ -532,9 +519,34 @@ impl BridgeDesign {
     pub fn structural_mass_kg(&self) -> f64 {
         self.module_mesh().mesh.mass_kg()
     }
-}
 
-/// A length to the millimetre, for a message.
-fn metres(length_m: f64) -> f64 {
-    (length_m * 1e3).round() / 1e3
+    /// Whether no water is under the module.
+    pub(crate) fn is_dry(&self) -> bool {
+        self.wet_length_m() <= SAME_PLACE_M
+    }
+
+    /// Whether some of the module's bottom is dry.
+    pub(crate) fn is_dry_in_part(&self) -> bool {
+        self.module.length_m - self.wet_length_m() > SAME_PLACE_M
+    }
+
+    /// p_b `[Pa/m]`, from the value or the table, whose slope is that of the wet part; 0 of a dry module.
+    pub fn p_b(&self) -> f64 {
+        match (self.hydrostatic_stiffness_pa_m, &self.draft_buoyancy) {
+            (Some(p_b), _) => p_b,
+            (None, Some(table)) => table.slope_n_m() / (self.wet_length_m() * self.module.breadth_m),
+            (None, None) if self.is_dry() => 0.0,
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// m_a per metre of the wet part `[kg/m]`, from the value or Todd's formula; 0 of a dry module.
+    pub fn m_a(&self) -> f64 {
+        match (self.added_mass_kg_m, &self.todd) {
+            (Some(m_a), _) => m_a,
+            (None, Some(todd)) => todd.added_mass_kg_m(self.module.breadth_m),
+            (None, None) if self.is_dry() => 0.0,
+            (None, None) => f64::NAN,
+        }
+    }
 }

@@ -12,6 +12,7 @@ mod joints;
 mod kinds;
 mod load;
 mod meshed;
+mod module_place;
 mod modules;
 mod pins;
 mod placement;
@@ -25,7 +26,6 @@ mod stresses;
 mod supports;
 mod track;
 
-pub(crate) use assembly::ModulePlace;
 pub use assembly::{Bridge, LinkPlace};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use buoyancy::{DraftBuoyancy, Todd};
@@ -34,6 +34,7 @@ pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, Joi
 pub use kinds::{ModuleKind, ModuleRow, ModuleRun};
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
+pub(crate) use module_place::ModulePlace;
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
 pub(crate) use pins::{PinPlace, PinRow, joint_parts};

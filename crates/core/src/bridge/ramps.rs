@@ -63,7 +63,6 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// Passes where `right` is within the tolerance and `wrong`, which is 5 % off, is not.
 fn held(what: &str, tolerance: f64, right: f64, wrong: f64) {
-    println!("{what}: {right:.2e} <= {tolerance:.1e} < {wrong:.2e}");
     assert!(right <= tolerance, "{what}: {right:e} is above {tolerance:e}");
     assert!(wrong > tolerance, "{what}: 5 % off passes with {wrong:e}");
 }

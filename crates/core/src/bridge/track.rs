@@ -3,7 +3,7 @@
 //! Knows bilinear deck influence and its slope. Does not know weights or time.
 
 use super::Bridge;
-use super::assembly::ModulePlace;
+use super::module_place::ModulePlace;
 use crate::fem::SparseRow;
 
 /// The deck's nodes as columns, line after line across: column `line * stations + station`, stations from left to right,
