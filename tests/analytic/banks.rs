@@ -14,6 +14,7 @@
 
 #![allow(clippy::expect_used)]
 
+use pontoon_core::analysis::statics::{DeadCase, StaticSolver};
 use pontoon_core::bridge::{BankPlace, BankSpec, BridgeEnd, Direction, Model, Supports, Toward};
 use pontoon_core::connector::Connection;
 use pontoon_core::response::StaticResponse;
@@ -99,16 +100,29 @@ impl OnBank {
                 stiffness_n_m: self.bank_n_m,
                 one_sided: true,
                 toward: Some(self.toward),
-                clearance_m: self.clearance_m,
+                clearance_m: self.clearance_m.max(0.0),
+                // a clearance below 0 is a preload
+                preload_n: (self.clearance_m < 0.0).then_some(-self.clearance_m * self.bank_n_m),
                 damping_n_s_m: 0.0,
                 y_m: Some(module.lines().to_vec()),
             }];
         });
         let ready = module.ready(&design, Model::Full);
         let solver = ready.statics(&module.axle(0.0, 1, Inertia::None));
+        let own_laws = ready.design.own_laws(Connection::Linear, None).expect("laws");
+        let dead = StaticSolver::new(&ready.bridge)
+            .expect("statics")
+            .dead_state(&DeadCase {
+                connection: Connection::Linear,
+                connector_stiffness_n_m: 0.0,
+                own_laws: own_laws.clone(),
+                water_level_m: 0.0,
+            });
+        let dead = dead.expect("a dead state");
         move |a_m: f64| {
             let mut case = ready.case(Connection::Linear, LOAD_N, a_m);
-            case.own_laws = ready.design.own_laws(Connection::Linear, None).expect("laws");
+            case.own_laws = own_laws.clone();
+            case.dead = dead.clone();
             solver.solve(&case).expect("solved")
         }
     }
@@ -127,13 +141,13 @@ fn reaction_n(r: &StaticResponse) -> f64 {
 /// Distances of the load from the end `[m]`; nodes stand there in every mesh.
 const PLACES_M: [f64; 5] = [0.0, 5.0, 10.0, 30.0, 40.0];
 
-/// A bank below the end, at once and 5 mm away: forces under P at five distances, over the largest. 2e-4: water shared by bilinear
+/// A bank below the end, at once, 5 mm away and pressed 10 mm up: forces under P at five distances, over the largest. 2e-4: water shared by bilinear
 /// shapes over elements of `beta h = 0.06` is of order 2 in it and takes 1.0e-4 (below). Twins: p_b, E, bank, and of the bank away
-/// its clearance.
+/// its clearance, of the pressed one its preload.
 #[test]
 fn a_bank_pushes_the_end_of_a_beam_on_water() {
     assert!((BEAM.beta() - 0.0501).abs() < 1e-5, "beta of these numbers");
-    for (clearance_m, changes) in [(0.0, 3), (0.005, 4)] {
+    for (clearance_m, changes) in [(0.0, 3), (0.005, 4), (-0.010, 4)] {
         let beam = OnBank { clearance_m, ..BEAM };
         let found = beam.forces_n(160, &PLACES_M);
         let off = |of: OnBank| apart(&found, &PLACES_M.map(|a| of.by_hand_n(a)));
@@ -145,7 +159,11 @@ fn a_bank_pushes_the_end_of_a_beam_on_water() {
                 off(beam.changed(*change)),
             );
         }
-        assert!(found[4] == 0.0, "a bank that the end has left pushes {} N", found[4]);
+        assert!(
+            clearance_m < 0.0 || found[4] == 0.0,
+            "a bank that the end has left pushes {} N",
+            found[4]
+        );
     }
 }
 

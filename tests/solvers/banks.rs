@@ -23,6 +23,7 @@ fn bank(at: BridgeEnd, direction: Direction, stiffness_n_m: f64) -> BankSpec {
         one_sided: true,
         toward: None,
         clearance_m: 0.0,
+        preload_n: None,
         damping_n_s_m: 0.0,
         y_m: None,
     }

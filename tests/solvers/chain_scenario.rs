@@ -219,7 +219,11 @@ fn what_the_chain_cannot_do_is_refused_by_its_key() {
     let wheel = |tracks: Value| json!({ "axles": [{ "behind_front_m": 0, "share": 1, "patch_length_m": 0, "track_y_m": tracks }] });
     let joint = |own: Value| json!({ "7": { "connectors": own } });
     for (path, more) in [
-        ("dead", json!({ "dead": {} })),
+        (
+            "dead.ballast[0].module",
+            json!({ "dead": { "ballast": [{ "module": 16, "x_m": 1, "y_m": 0, "weight_n": 1e4 }] } }),
+        ),
+        ("water_level_m", json!({ "water_level_m": 200 })),
         ("wear", json!({ "wear": {} })),
         ("modules", json!({ "modules": [{ "kind": "ramp" }] })),
         ("modules", json!({ "modules": 0 })),

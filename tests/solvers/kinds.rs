@@ -403,3 +403,42 @@ fn the_mesh_of_a_row_moves_as_its_bridge() {
         held("bottom of the mesh", 1e-9, right, wrong);
     }
 }
+
+/// What is known of the aluminium bay: its mass, thus its draught, by the sum over its elements to 0.1 %; and its heave afloat, by hand
+/// `sqrt(rho g A / (m + m_a l)) / 2 pi` with the added mass that is assumed, to 0.5 %, for its plates give. Twin: 5 % more mass;
+/// 5 % more water.
+#[test]
+fn the_interior_bay_floats_as_it_is_known_to() {
+    let row = design("interior_bay_692");
+    let of_kind = row.named_kinds().into_iter().find(|(key, _)| key.ends_with("interior"));
+    let bay = with(&of_kind.expect("interior bays").1, |d| {
+        (d.modules, d.row) = (1, None);
+        (d.joints, d.banks) = (pontoon_core::bridge::Joints::default(), Vec::new());
+    });
+    let (length_m, breadth_m) = (bay.module.length_m, bay.module.breadth_m);
+    let ready = Ready::new(&bay, Model::Full);
+    let mass_kg = ready.module.structural_mass_kg();
+    held(
+        "mass of the bay",
+        1e-3,
+        miss(mass_kg, 6350.0),
+        miss(1.05 * mass_kg, 6350.0),
+    );
+    let draught_m = mass_kg / (1000.0 * length_m * breadth_m);
+    let draft_m = bay.draft_m.expect("a draft");
+    assert!(
+        (draught_m - draft_m).abs() < 1e-3,
+        "{draught_m} m, the file has {draft_m} m"
+    );
+    let heave_hz = frequency_hz(&ready.modes(8), "heave");
+    let by_hand = |water: f64| {
+        let stiffness_n_m = water * 9806.65 * length_m * breadth_m;
+        (stiffness_n_m / (mass_kg + bay.m_a() * length_m)).sqrt() / (2.0 * std::f64::consts::PI)
+    };
+    held(
+        "heave of the bay",
+        5e-3,
+        miss(heave_hz, by_hand(1.0)),
+        miss(heave_hz, by_hand(1.05)),
+    );
+}

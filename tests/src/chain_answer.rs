@@ -5,12 +5,15 @@
 use crate::chain_scenario::{ChainScenario, ChainTask};
 use crate::settings;
 use pontoon_core::analysis::AnalysisError;
-use pontoon_core::analysis::crossing::CrossingSolver;
+use pontoon_core::analysis::crossing::{Crossing, CrossingSolver};
 use pontoon_core::analysis::modes::Mode;
-use pontoon_core::analysis::statics::StaticCase;
-use pontoon_core::response::{CrossingResponse, Peak, Section, StaticResponse};
+use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
+use pontoon_core::bridge::Bridge;
+use pontoon_core::connector::{Connection, OwnLaws};
+use pontoon_core::response::{CrossingResponse, DeadState, Peak, Section, StaticResponse};
 use pontoon_core::vehicle::Inertia;
 use serde_json::{Map, Value, json};
+use std::sync::Arc;
 
 /// Solves a scenario, every degree of freedom kept, crossings by the reference solver.
 ///
@@ -21,8 +24,17 @@ pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
     match &scenario.task {
         ChainTask::Modes => Ok(of_modes(&ready.modes(MODES))),
         ChainTask::Static(case) => {
-            let response = ready.statics(&scenario.vehicle).solve(case)?;
-            Ok(of_static(scenario, case, &response))
+            let dead = dead_state(scenario, &ready.bridge, case.connection, &case.own_laws)?;
+            let case = StaticCase {
+                dead: dead.clone(),
+                ..case.clone()
+            };
+            let response = ready.statics(&scenario.vehicle).solve(&case)?;
+            Ok(with_dead(
+                scenario,
+                of_static(scenario, &case, &response),
+                dead.as_deref(),
+            ))
         }
         ChainTask::Crossing {
             crossing,
@@ -30,10 +42,56 @@ pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
             spectral_radius,
         } => {
             let settings = settings(scenario.chain.rayleigh, *time_step_s, *spectral_radius);
-            let response = CrossingSolver::new(&ready.bridge, &settings)?.solve(&scenario.vehicle, crossing)?;
-            Ok(of_crossing(scenario, *time_step_s, &response))
+            let dead = dead_state(scenario, &ready.bridge, crossing.connection, &crossing.own_laws)?;
+            let crossing = Crossing {
+                dead: dead.clone(),
+                ..crossing.clone()
+            };
+            let response = CrossingSolver::new(&ready.bridge, &settings)?.solve(&scenario.vehicle, &crossing)?;
+            let found = of_crossing(scenario, *time_step_s, &response);
+            Ok(with_dead(scenario, found, dead.as_deref()))
         }
     }
+}
+
+/// The dead state of a scenario's bridge; none without a dead load.
+fn dead_state(
+    scenario: &ChainScenario,
+    bridge: &Arc<Bridge>,
+    connection: Connection,
+    own_laws: &OwnLaws,
+) -> Result<Option<Arc<DeadState>>, AnalysisError> {
+    let design = &scenario.design;
+    if !design.has_dead_load() {
+        return Ok(None);
+    }
+    StaticSolver::new(bridge)?.dead_state(&DeadCase::new(design, connection, own_laws.clone()))
+}
+
+/// An answer with what the bridge does at rest.
+fn with_dead(scenario: &ChainScenario, mut found: Value, dead: Option<&DeadState>) -> Value {
+    let Some(dead) = dead else { return found };
+    let positions = (1..).zip(&dead.deflection_m);
+    let positions: Vec<_> = positions
+        .map(|(position, w)| json!({ "position": position, "deflection_m": w }))
+        .collect();
+    let per_joint = scenario.design.connectors.y_m.len();
+    let of_joints = dead.forces_n[..(scenario.design.modules - 1) * per_joint].chunks(per_joint);
+    let joints: Vec<_> = (2..)
+        .zip(of_joints)
+        .map(|(joint, forces)| json!({ "joint": joint, "force_n": forces.iter().sum::<f64>() }))
+        .collect();
+    let of_bank = |bank: usize| {
+        dead.banks
+            .iter()
+            .filter(move |of| of.0 == bank)
+            .map(|of| of.2)
+            .sum::<f64>()
+    };
+    let banks = (0..scenario.design.banks.len()).map(|bank| json!({ "bank": bank, "force_n": of_bank(bank) }));
+    let banks: Vec<_> = banks.collect();
+    found["dead"] = json!({ "positions": positions, "joints": joints, "banks": banks });
+    found
 }
 
 /// How many modes are told.

@@ -6,7 +6,7 @@
 use crate::chain::Chain;
 use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::statics::StaticCase;
-use pontoon_core::bridge::{BankPlace, BankSpec, BridgeDesign, BridgeEnd, Joints, Model};
+use pontoon_core::bridge::{BankPlace, BankSpec, BridgeDesign, BridgeEnd, DeadSpec, Joints, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{Found, InvalidInput, Problem, bound, not_negative, positive, within};
 use pontoon_core::response::Record;
@@ -28,6 +28,9 @@ struct ScenarioSpec {
     joints: Joints,
     #[serde(default)]
     banks: Vec<BankSpec>,
+    #[serde(default)]
+    dead: DeadSpec,
+    water_level_m: Option<f64>,
     #[serde(default)]
     connection: ConnectionSpec,
     gap_tension_m: Option<f64>,
@@ -87,7 +90,7 @@ pub struct ChainScenario {
     pub design: BridgeDesign,
     /// The vehicle.
     pub vehicle: Vehicle,
-    /// What it does.
+    /// What it does, the dead state left out.
     pub task: ChainTask,
 }
 
@@ -143,7 +146,9 @@ impl ChainScenario {
             }
         }
         chain.others.clone_from(&spec.others);
-        let design = with_banks(with_joints(chain.design(), &spec.joints)?, &spec.banks)?;
+        let mut design = with_banks(with_joints(chain.design(), &spec.joints)?, &spec.banks)?;
+        (design.dead, design.water_level_m) = (spec.dead.clone(), spec.water_level_m);
+        design.check()?;
         let connection = spec.connection(&chain)?;
         let own_laws = design.own_laws(connection, None)?;
         let (under, loaded) = spec.loaded()?;
@@ -170,6 +175,7 @@ impl ChainScenario {
                         sections: true,
                         ..Record::default()
                     },
+                    dead: None,
                 };
                 let radius = analysis.spectral_radius.unwrap_or(0.9);
                 ChainTask::Crossing {
@@ -188,6 +194,7 @@ impl ChainScenario {
                     load_n,
                     load_x_m: spec.place(&design, moves)?,
                     places_x_m: Vec::new(),
+                    dead: None,
                 })
             }
         };

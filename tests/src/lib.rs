@@ -160,6 +160,7 @@ impl Ready {
             load_n,
             load_x_m,
             places_x_m: Vec::new(),
+            dead: None,
         }
     }
 
@@ -178,6 +179,7 @@ impl Ready {
             speed_m_s,
             tail_s: 1.0,
             record: Record::default(),
+            dead: None,
         }
     }
 }

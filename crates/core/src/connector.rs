@@ -45,7 +45,7 @@ pub enum ConnectorLaw {
 pub struct Truss {
     /// Stiffness k `[N/m]`; 0 of a truss that is not there, which never works.
     pub stiffness_n_m: f64,
-    /// Gap `[m]`, at least 0.
+    /// Gap `[m]`; below 0 under a preload.
     pub gap_m: f64,
     /// Coefficient c of its dashpot `[N s/m]`; 0 without one, and of a truss that is not there.
     pub damping_n_s_m: f64,

@@ -143,6 +143,29 @@ impl SuperElement {
     }
 }
 
+impl SuperElement {
+    /// What a load moves beyond T by every dof of the full module, at rest and with the masters held:
+    /// `(k22^-1 - Phi Lambda^-1 Phi^T) f_2`. `k` is the stiffness that was condensed.
+    ///
+    /// # Errors
+    /// [`FemError`] as [`Self::condense`].
+    pub fn static_remainder(&self, k: &SymmetricMatrix, load: &[f64]) -> Result<Vec<f64>, FemError> {
+        let parts = Parts::new(k.order(), &self.masters);
+        let own: Vec<f64> = parts.slaves.iter().map(|&dof| load[dof]).collect();
+        let mut moved = own.clone();
+        Factor::new("stiffness of a module's slaves", &parts.among_slaves(k)?)?.solve(&mut moved);
+        let n1 = self.masters.len();
+        for (j, lambda) in (n1..self.k.order()).zip(diagonal(&self.k).skip(n1)) {
+            let phi = || parts.slaves.iter().map(|&dof| self.transformation[(dof, j)]);
+            let amplitude = phi().zip(&own).map(|(phi, f)| phi * f).sum::<f64>() / lambda;
+            moved.iter_mut().zip(phi()).for_each(|(u, phi)| *u -= amplitude * phi);
+        }
+        let mut all = vec![0.0; k.order()];
+        parts.slaves.iter().zip(&moved).for_each(|(&dof, u)| all[dof] = *u);
+        Ok(all)
+    }
+}
+
 /// The dofs of a module in two parts: masters, which are kept, and slaves, which follow them.
 struct Parts<'a> {
     masters: &'a [usize],

@@ -31,6 +31,9 @@ pub enum AnalysisError {
         /// Place of the load's centre `[m]`.
         load_x_m: f64,
     },
+    /// The bridge has no state at rest under its dead load, or none was found.
+    #[error("no dead state: {0}")]
+    NoDeadState(DeadFault),
     /// A number left the finite range.
     #[error("response not finite at t = {time_s:.6} s")]
     NotFinite {
@@ -47,5 +50,27 @@ pub enum AnalysisError {
         name: String,
         /// How many were searched.
         searched: usize,
+    },
+}
+
+/// Why a bridge has no dead state.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum DeadFault {
+    /// The contact did not settle.
+    #[error("contact not settled after {iterations} Newton solutions")]
+    NotSettled {
+        /// Newton solutions made.
+        iterations: usize,
+    },
+    /// No water, support, bank or connector holds a part of the bridge.
+    #[error("nothing holds the bridge where it has gone to")]
+    NotHeld,
+    /// A deck lies under water.
+    #[error("module {module} sinks: a corner of its deck is {under_m:.3} m under water")]
+    Sinks {
+        /// The module, from 1.
+        module: usize,
+        /// Depth of the corner under the water `[m]`.
+        under_m: f64,
     },
 }

@@ -6,7 +6,9 @@
 use crate::bridge::{Bridge, Load, PinRow, Track};
 use crate::connector::State;
 use crate::fem::SparseRow;
+use crate::response::DeadState;
 use crate::vehicle::{Inertia, Vehicle};
+use std::sync::Arc;
 
 /// A bridge under a vehicle at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +25,8 @@ pub struct Snapshot {
     pub connectors: Vec<ConnectorNow>,
     /// The vehicle's points, patch after patch.
     pub wheels: Vec<WheelNow>,
+    /// The dead state, which the motion contains.
+    pub dead: Option<Arc<DeadState>>,
 }
 
 impl Snapshot {
@@ -32,8 +36,22 @@ impl Snapshot {
     pub fn pin_forces_n(&self, bridge: &Bridge) -> Vec<[f64; 3]> {
         let pressed = |wheel: &WheelNow| Some(SparseRow::combine(&[(wheel.contact_force_n, wheel.row.as_ref()?)]));
         let down: Vec<SparseRow> = self.wheels.iter().filter_map(pressed).collect();
-        let row = |row: &PinRow| row.force_n(&self.elastic, self.inertial.as_deref(), &down);
-        bridge.pins.iter().map(|pin| pin.rows.each_ref().map(row)).collect()
+        let mut elastic = self.elastic.clone();
+        if let Some(dead) = &self.dead {
+            elastic
+                .iter_mut()
+                .zip(&dead.displacements)
+                .for_each(|(u, at_rest)| *u -= at_rest);
+        }
+        let row = |row: &PinRow| row.force_n(&elastic, self.inertial.as_deref(), &down);
+        let moved = bridge.pins.iter().map(|pin| pin.rows.each_ref().map(row));
+        match &self.dead {
+            None => moved.collect(),
+            Some(dead) => moved
+                .zip(&dead.pins_n)
+                .map(|(moved, rest)| [0, 1, 2].map(|d| moved[d] + rest[d]))
+                .collect(),
+        }
     }
 }
 

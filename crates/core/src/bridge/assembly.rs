@@ -3,6 +3,8 @@
 //! Knows where everything is along the bridge. Does not know what is done with it.
 
 use super::banks::{BankSpring, bank_springs};
+use super::dead::DeadLoads;
+use super::link_row::{LinkPlace, LinkRow, SpringPlace, UpwardForce};
 use super::module_place::ModulePlace;
 use super::modules::Modules;
 use super::pins::{PinPlace, pins};
@@ -13,62 +15,8 @@ use super::{BridgeDesign, BridgeError, Direction, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 use crate::input::SAME_PLACE_M;
 use crate::module::Grid;
-use crate::response::{BankPart, BankSource};
+use crate::response::{BankPart, BankSource, DeadState};
 use std::borrow::Borrow;
-
-/// One link, a connector or a one-sided spring of a bank: where it is and the row of B that gives its elongation.
-/// Equation (J1).
-#[derive(Debug, Clone)]
-pub(crate) struct LinkRow {
-    /// Where it is.
-    pub place: LinkPlace,
-    /// `e = row . u`: the right deck node's motion along x minus the left one's, between decks of unlike depth at the height of
-    /// the lower one; of a bank's spring the motion along its sense.
-    pub row: SparseRow,
-}
-
-/// Where a link is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LinkPlace {
-    /// A connector.
-    Connector {
-        /// Its number, from 1, joints from left to right.
-        number: usize,
-        /// Position number of its joint.
-        joint: usize,
-        /// Place across `[m]`.
-        y_m: f64,
-    },
-    /// A spring of a bank.
-    Bank {
-        /// The bank, from 0 in the order of the bridge file.
-        bank: usize,
-        /// Place across `[m]`.
-        y_m: f64,
-    },
-}
-
-impl std::fmt::Display for LinkPlace {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Connector { number, joint, y_m } => write!(f, "connector {number} (joint {joint}, y = {y_m} m)"),
-            Self::Bank { bank, y_m } => write!(f, "bank {bank} (y = {y_m} m)"),
-        }
-    }
-}
-
-/// A spring that holds both ways: its stiffness stands in K.
-#[derive(Debug, Clone)]
-pub(crate) struct SpringPlace {
-    /// The bank that it is of.
-    pub bank: usize,
-    /// Place across `[m]`.
-    pub y_m: f64,
-    /// Its stiffness `[N/m]`.
-    pub stiffness_n_m: f64,
-    /// Its motion, `e = row . u`.
-    pub row: SparseRow,
-}
 
 /// An assembled bridge: `K`, `M` with ties and supports exact, connectors apart. Shared read-only between jobs and threads.
 /// Equation (K1).
@@ -110,6 +58,13 @@ pub struct Bridge {
     /// Resultants of the water on the whole bridge.
     pub(crate) water: [SparseRow; 3],
     pub(crate) held: Vec<HeldDof>,
+    /// Upward forces at rest `[N]`: of what lies on the bridge, and of water that has risen by 1 m.
+    pub(crate) dead_n: [SparseRow; 2],
+    /// Resultants of what lies on the bridge, and of water that has risen by 1 m, as of [`Bridge::water`].
+    pub(crate) dead_resultants: [f64; 3],
+    pub(crate) risen_water: [f64; 3],
+    /// Those of water that dry weights bring about beside what the dofs tell.
+    pub(crate) dry_water: [f64; 3],
     /// The pins, joint after joint.
     pub(crate) pins: Vec<PinPlace>,
     /// Surge, sway and yaw of the whole bridge; motions of the bridge where no support holds them.
@@ -163,6 +118,17 @@ impl Bridge {
                 k.extend(row.0.iter().map(|&(j, b)| (i, j, stiffness_n_m * a * b)));
             }
         }
+        let dead = DeadLoads::new(design, &modules, &row);
+        let mut m = row.entries(|module| &module.m);
+        let masses = dead.masses().iter();
+        let masses: Vec<(f64, SparseRow)> = masses
+            .flat_map(|mass| mass.rows.iter().map(|row| (mass.mass_kg, row.clone())))
+            .collect();
+        for (mass_kg, row) in &masses {
+            for &(i, a) in &row.0 {
+                m.extend(row.0.iter().map(|&(j, b)| (i, j, mass_kg * a * b)));
+            }
+        }
         let in_k = springs
             .iter()
             .map(|spring| (spring.stiffness_n_m, spring.row.clone()))
@@ -171,9 +137,9 @@ impl Bridge {
             design: design.clone(),
             model: modules.model(),
             k: SymmetricMatrix::from_entries(row.dofs, &k)?,
-            m: SymmetricMatrix::from_entries(row.dofs, &row.entries(|module| &module.m))?,
-            times_k: ModuleProduct::new(&modules, &row, |module| &module.k).with_springs(in_k),
-            times_m: ModuleProduct::new(&modules, &row, |module| &module.m),
+            m: SymmetricMatrix::from_entries(row.dofs, &m)?,
+            times_k: ModuleProduct::new(&modules, &row, |module| &module.k).with(in_k),
+            times_m: ModuleProduct::new(&modules, &row, |module| &module.m).with(masses),
             links,
             joint_connectors,
             springs,
@@ -187,8 +153,12 @@ impl Bridge {
             sections: places.sections(),
             hinge_lines: places.hinge_lines(),
             water: std::array::from_fn(|which| row.water_resultant(which)),
-            held: row.held(),
-            pins: pins(design, &modules, &row, &places.deck_z()),
+            held: row.held(|module, dof| dead.at(module, dof)),
+            dead_n: dead.on_bridge(&row),
+            dead_resultants: dead.resultants,
+            risen_water: dead.risen_water,
+            dry_water: dead.dry_water,
+            pins: pins(design, &modules, &row, &places.deck_z(), &dead),
             horizontal_rigid: row.horizontal_rigid(),
             deck_z: places.deck_z(),
             lines_y: modules.lines_y().to_vec(),
@@ -224,23 +194,24 @@ impl Bridge {
             .reduce(f64::min)
     }
 
-    /// Whether a motion lifts a corner of the wet part of a module's bottom above the water; none where no module has a draft.
-    pub(crate) fn bottom_emerges(&self, u: &[f64]) -> Option<bool> {
+    /// Whether a motion from a dead state lifts a corner of the wet part of a module's bottom above the water; none where no module
+    /// has a draft.
+    pub(crate) fn bottom_emerges(&self, u: &[f64], dead: Option<&DeadState>) -> Option<bool> {
         passes(
             &self.modules,
             |module| module.draft_m,
             &self.bottom_corners,
-            |row| row.dot(u),
+            |i, row| row.dot(u) + dead.map_or(0.0, |dead| dead.bottom_corners_m[i]),
         )
     }
 
-    /// Whether a motion takes a corner of a module's deck below the water; none where no module has a freeboard.
-    pub(crate) fn deck_submerges(&self, u: &[f64]) -> Option<bool> {
+    /// Whether a motion from a dead state takes a corner of a module's deck below the water; none where no module has a freeboard.
+    pub(crate) fn deck_submerges(&self, u: &[f64], dead: Option<&DeadState>) -> Option<bool> {
         passes(
             &self.modules,
             |module| module.freeboard_m,
             &self.deck_corners,
-            |row| -row.dot(u),
+            |i, row| -row.dot(u) - dead.map_or(0.0, |dead| dead.deck_corners_m[i]),
         )
     }
 
@@ -266,6 +237,23 @@ impl Bridge {
         parts
     }
 
+    /// Where the force of a bank's spring acts upward; none of a bank that holds along or across, and of a connector.
+    pub(crate) fn vertical_bank(&self, place: LinkPlace) -> Option<UpwardForce> {
+        let LinkPlace::Bank { bank, y_m } = place else {
+            return None;
+        };
+        let spec = self
+            .design
+            .banks
+            .get(bank)
+            .filter(|spec| spec.direction == Direction::Z)?;
+        Some(UpwardForce {
+            x_m: self.design.position_x_m(spec.position(self.design.modules)),
+            y_m,
+            sense: spec.sense(self.design.modules),
+        })
+    }
+
     /// z of the bottom's centre line at a place on the bridge, linear between two stations; at a joint that of its position.
     pub(crate) fn place(&self, x_m: f64) -> SparseRow {
         let line = &self.centre_line;
@@ -286,16 +274,17 @@ fn passes(
     modules: &[ModulePlace],
     limit: impl Fn(&ModulePlace) -> Option<f64>,
     corners: &[SparseRow],
-    way: impl Fn(&SparseRow) -> f64,
+    way: impl Fn(usize, &SparseRow) -> f64,
 ) -> Option<bool> {
     let limited = || {
         modules
             .iter()
             .zip(corners.chunks_exact(4))
-            .filter_map(|(m, rows)| Some((limit(m)?, rows)))
+            .enumerate()
+            .filter_map(|(j, (m, rows))| Some((limit(m)?, 4 * j, rows)))
     };
     limited().next()?;
-    Some(limited().any(|(limit_m, rows)| rows.iter().any(|row| way(row) > limit_m)))
+    Some(limited().any(|(limit_m, first, rows)| (first..).zip(rows).any(|(i, row)| way(i, row) > limit_m)))
 }
 
 /// Where a numbered row of modules is loaded and read: makes the rows of the bridge's dofs for places along it.

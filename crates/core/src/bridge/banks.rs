@@ -31,6 +31,9 @@ pub struct BankSpec {
     /// Way of the bridge against that sense before it acts `[m]`: the clearance of a bank, the slack of a cable.
     #[serde(default)]
     pub clearance_m: f64,
+    /// Force with which it presses where the bridge has not moved `[N]`; in place of a clearance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preload_n: Option<f64>,
     /// Coefficient of a dashpot beside it, which acts while it does `[N s/m]`.
     #[serde(default)]
     pub damping_n_s_m: f64,
@@ -134,6 +137,7 @@ impl BankSpec {
         if of.one_sided {
             of.stiffness_n_m = 1.0;
             of.clearance_m = 0.0;
+            of.preload_n = None;
             of.damping_n_s_m = 0.0;
         }
         of
@@ -155,6 +159,11 @@ impl BankSpec {
             BankPlace::End(BridgeEnd::Right) => modules + 1,
             BankPlace::Position(position) => position,
         }
+    }
+
+    /// Sense of its force on the bridge, 1 along its direction and -1 against it.
+    pub(super) fn sense(&self, modules: usize) -> f64 {
+        self.sign(modules).unwrap_or(1.0)
     }
 
     /// Its sense, where it has one.
@@ -181,8 +190,17 @@ impl BankSpec {
         positive("stiffness_n_m", self.stiffness_n_m)?;
         not_negative("clearance_m", self.clearance_m)?;
         not_negative("damping_n_s_m", self.damping_n_s_m)?;
+        let preload_n = not_negative("preload_n", self.preload_n.unwrap_or(0.0))?;
+        if preload_n > 0.0 && self.clearance_m > 0.0 {
+            let allowed = "none beside a clearance";
+            return Err(InvalidInput::new("preload_n", preload_n, allowed).because(Problem::Conflict));
+        }
         if !self.one_sided {
-            for (key, value) in [("clearance_m", self.clearance_m), ("damping_n_s_m", self.damping_n_s_m)] {
+            for (key, value) in [
+                ("clearance_m", self.clearance_m),
+                ("preload_n", preload_n),
+                ("damping_n_s_m", self.damping_n_s_m),
+            ] {
                 if value > 0.0 {
                     let allowed = "0 of a spring that holds both ways";
                     return Err(InvalidInput::new(key, value, allowed).because(Problem::Conflict));
@@ -273,7 +291,7 @@ pub(super) fn bank_springs(
             position: spec.position(modules),
             y_m,
             direction: spec.direction,
-            sign: spec.sign(modules).unwrap_or(1.0),
+            sign: spec.sense(modules),
             stiffness_n_m: share * spec.stiffness_n_m,
             one_sided: spec.one_sided,
         };
@@ -282,8 +300,8 @@ pub(super) fn bank_springs(
     banks.iter().enumerate().flat_map(of_bank).collect()
 }
 
-/// The law of a bank's spring: it pushes once the bridge has gone the clearance against its sense. Of a place with so much
-/// of the bank.
+/// The law of a bank's spring: it pushes once the bridge has gone the clearance against its sense, under a preload before that.
+/// Of a place with so much of the bank.
 /// Equation (J8).
 pub(super) fn bank_law(spec: &BankSpec, share: f64) -> ConnectorLaw {
     let none = Truss {
@@ -296,7 +314,7 @@ pub(super) fn bank_law(spec: &BankSpec, share: f64) -> ConnectorLaw {
         tension: none,
         compression: Truss {
             stiffness_n_m: share * spec.stiffness_n_m,
-            gap_m: spec.clearance_m,
+            gap_m: spec.clearance_m - spec.preload_n.unwrap_or(0.0) / spec.stiffness_n_m,
             damping_n_s_m: share * spec.damping_n_s_m,
             stop: None,
         },

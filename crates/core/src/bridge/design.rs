@@ -6,6 +6,7 @@ mod heights;
 mod wet;
 mod written;
 
+use super::ballast::DeadSpec;
 use super::banks::{BankRoom, BankSpec, bank_law, check_banks};
 use super::buoyancy::{DraftBuoyancy, Todd};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
@@ -13,7 +14,7 @@ use super::kinds::{ModuleKind, ModuleRow, key_of, wet_m};
 use super::supports::{Direction, Supports};
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
-use crate::input::{InvalidInput, Problem, SAME_PLACE_M, positive};
+use crate::input::{InvalidInput, Problem, SAME_PLACE_M, positive, within};
 use crate::module::{MeshSize, ModuleDesign, ModuleMesh, Outline, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -60,6 +61,10 @@ pub struct BridgeDesign {
     pub supports: Supports,
     /// Springs between the bridge and the ground.
     pub banks: Vec<BankSpec>,
+    /// What lies on the bridge at rest.
+    pub dead: DeadSpec,
+    /// How much the river has risen since the bridge was laid on its supports and banks `[m]`, see [`BridgeDesign::risen_m`].
+    pub water_level_m: Option<f64>,
     /// Still-water draft `[m]`, for reporting whether the bottom emerged.
     pub draft_m: Option<f64>,
     /// Height of the deck above the still water `[m]`, for reporting whether the deck was submerged.
@@ -138,6 +143,9 @@ impl JsonSchema for BridgeDesign {
     }
 }
 
+/// Most that a river may rise or fall `[m]`: the water is linear, and its depth not known.
+const MOST_LEVEL_M: f64 = 100.0;
+
 /// Most memory that the dense matrices of one bridge may take `[GiB]`.
 const MOST_GIB: f64 = 4.0;
 
@@ -176,6 +184,9 @@ impl BridgeDesign {
                 half_breadth_m: half,
             },
         )?;
+        let lengths_m: Vec<f64> = self.boxes().iter().map(|module| module.length_m).collect();
+        self.dead.check(&lengths_m, half)?;
+        within("water_level_m", self.risen_m(), -MOST_LEVEL_M, MOST_LEVEL_M)?;
         if self.condensation.fixed_master_modes > 400 {
             return Err(InvalidInput::new(
                 "condensation.fixed_master_modes",
@@ -233,8 +244,8 @@ impl BridgeDesign {
         kinds.try_for_each(|(key, kind)| check_own_water_line(&kind).map_err(|e| e.within_kind(&key)))
     }
 
-    /// Refuses a bridge that supports and hinges leave free to move horizontally, against which water does nothing, or whose dry
-    /// modules are free to fall: it has no static case, for its stiffness without connectors is singular.
+    /// Refuses a bridge that supports, banks and hinges leave free to move horizontally, against which water does nothing, or whose
+    /// dry modules are free to fall: it has no static case and no dead state.
     ///
     /// # Errors
     /// [`InvalidInput`] with the key's path.
@@ -246,13 +257,10 @@ impl BridgeDesign {
         }
         let Supports { left, right } = &self.supports;
         for (direction, word) in [(Direction::X, "x"), (Direction::Y, "y")] {
-            let on_spring = self
-                .banks
-                .iter()
-                .any(|bank| !bank.one_sided && bank.direction == direction);
+            let on_spring = self.banks.iter().any(|bank| bank.direction == direction);
             if !(left.contains(&direction) || right.contains(&direction) || on_spring) {
                 let found = format!("no end that holds {word}");
-                let allowed = "x and y held at an end at least, or by a bank both ways, in a static case";
+                let allowed = "x and y held at an end or by a bank, in a static case and under a dead load";
                 return Err(InvalidInput::new("supports", found, allowed).because(Problem::Missing));
             }
         }
@@ -356,6 +364,27 @@ impl BridgeDesign {
         bank.places_y_m(&self.hinges.y_m, lines)
     }
 
+    /// Freeboard of each module `[m]`; none where its kind has none.
+    pub fn freeboards_m(&self) -> Vec<Option<f64>> {
+        let Variants { designs, of_module, .. } = self.variants();
+        of_module.iter().map(|&of| designs[of].freeboard_m).collect()
+    }
+
+    /// How much the river has risen `[m]`; 0 where the file does not say.
+    pub fn risen_m(&self) -> f64 {
+        self.water_level_m.unwrap_or(0.0)
+    }
+
+    /// Whether the bridge is loaded before any vehicle comes, so that it has a dead state.
+    pub fn has_dead_load(&self) -> bool {
+        let presses = |bank: &BankSpec| bank.preload_n.is_some_and(|n| n > 0.0);
+        let dry = || match &self.row {
+            Some(row) => row.kinds.values().any(ModuleKind::is_dry_in_part),
+            None => self.is_dry_in_part(),
+        };
+        !self.dead.is_empty() || self.risen_m() != 0.0 || self.banks.iter().any(presses) || dry()
+    }
+
     /// Length of the bridge `[m]`.
     pub fn length_m(&self) -> f64 {
         self.position_x_m(self.positions())
@@ -440,7 +469,17 @@ impl BridgeDesign {
         let (built, of_module) = row.built(&self.joint_lines_y_m());
         let unlike = heights::has_unlike_depths(self);
         let design = |(_, kind): &(&str, ModuleKind)| {
-            let mut design = self.of_kind(kind);
+            let mut design = Self {
+                modules: 1,
+                hinges: Hinges {
+                    y_m: self.hinge_lines_y_m(),
+                },
+                joints: Joints::default(),
+                banks: Vec::new(),
+                dead: DeadSpec::default(),
+                water_level_m: None,
+                ..self.of_kind(kind)
+            };
             design.condensation.end_masters |= unlike;
             design
         };

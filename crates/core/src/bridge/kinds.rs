@@ -41,6 +41,14 @@ pub struct ModuleKind {
     pub freeboard_m: Option<f64>,
 }
 
+impl ModuleKind {
+    /// Whether some of its bottom is dry.
+    pub(super) fn is_dry_in_part(&self) -> bool {
+        let [from_m, to_m] = wet_m(self.module.length_m, [self.wet_from_m, self.wet_to_m]);
+        self.module.length_m - (to_m - from_m) > SAME_PLACE_M
+    }
+}
+
 /// Modules of one kind side by side.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -3,13 +3,16 @@
 //! The one place where module, water, connector and vehicle meet. Does not know time, contact or response.
 
 mod assembly;
+mod ballast;
 mod banks;
 mod buoyancy;
+mod dead;
 mod design;
 mod dry;
 mod fit;
 mod joints;
 mod kinds;
+mod link_row;
 mod load;
 mod meshed;
 mod module_place;
@@ -26,12 +29,15 @@ mod stresses;
 mod supports;
 mod track;
 
-pub use assembly::{Bridge, LinkPlace};
+pub use assembly::Bridge;
+pub use ballast::{BallastSpec, DeadSpec};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use buoyancy::{DraftBuoyancy, Todd};
 pub use design::{BridgeDesign, Condensation, Variants};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub use kinds::{ModuleKind, ModuleRow, ModuleRun};
+pub use link_row::LinkPlace;
+pub(crate) use link_row::SpringPlace;
 pub(crate) use load::{Load, Rider};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 pub(crate) use module_place::ModulePlace;
@@ -43,6 +49,7 @@ pub use prepared::PreparedModule;
 #[cfg(test)]
 pub(crate) use prepared::Side;
 pub use provenance::{Provenance, ProvenanceDocument, ProvenanceHeld, ProvenanceParameter};
+pub(crate) use row::HeldDof;
 pub use stresses::{BridgeStresses, StressRecovery};
 pub use supports::{Direction, Supports};
 use thiserror::Error;

@@ -3,6 +3,7 @@
 //! Knows the rows of a module's own matrices at its hinges. Does not know how the motion came about, nor peaks.
 
 use super::BridgeDesign;
+use super::dead::DeadLoads;
 use super::modules::Modules;
 use super::prepared::{Side, X, Y, Z};
 use super::row::Row;
@@ -28,6 +29,8 @@ pub(crate) struct PinRow {
     pub mass: SparseRow,
     /// Columns of the track that lie on the tied freedom and belong to this module, where the deck ends in the hinges.
     pub columns: Vec<usize>,
+    /// Dead load on the module there, in the direction `[N]`: what lies on it, and of water that has risen by 1 m.
+    pub dead_n: [f64; 2],
 }
 
 impl PinRow {
@@ -55,6 +58,7 @@ pub(super) fn pins(
     modules: &Modules<'_>,
     row: &Row<'_>,
     deck_z: &[Vec<Vec<usize>>],
+    dead: &DeadLoads,
 ) -> Vec<PinPlace> {
     let (lines, stations) = (modules.lines_y().len(), deck_z.iter().map(Vec::len).sum::<usize>());
     let columns = |j: usize, dof: usize| -> Vec<usize> {
@@ -70,7 +74,8 @@ pub(super) fn pins(
             let of = |matrix: &SymmetricMatrix| row.global(j, &SparseRow(matrix.column(dof).collect()));
             Some(PinRow {
                 stiffness: of(&module.k),
-                mass: of(&module.m),
+                mass: SparseRow::combine(&[(1.0, &of(&module.m)), (1.0, &dead.mass_row(j, dof))]),
+                dead_n: dead.at(j, dof),
                 columns: match (direction, row.map[j][dof]) {
                     (Z, Some(tied)) => columns(j, tied),
                     _ => Vec::new(),

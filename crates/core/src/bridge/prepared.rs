@@ -42,9 +42,13 @@ pub struct PreparedModule {
     /// Resultants of the water's force on the module for unit dofs: up, about x, about y (through the module's left
     /// end, centre line).
     pub(super) water: [SparseRow; 3],
+    /// Where it goes when the water rises by 1 m: a unit heave.
+    pub(super) afloat: Vec<f64>,
     /// Weight of the part that no water carries, a load by the dofs (up) `[N]`, see [`PreparedModule::dry_weight`].
     pub(super) dry_weight: SparseRow,
     dry_resultants: [f64; 3],
+    /// Resultants of the water that this weight brings about beside what the kept dofs tell.
+    pub(super) dry_water: [f64; 3],
     /// Surge, sway and yaw about the left end's centre: motions against which neither plates nor water do anything.
     pub(super) horizontal_rigid: [Vec<f64>; 3],
     structural_mass_kg: f64,
@@ -105,8 +109,18 @@ impl PreparedModule {
             Model::SuperElement => Reduced::to_masters(design, &grid, &k, &m)?,
         };
         let full_dofs = mesh.dofs();
-        let water = water.resultants(&mesh).map(|total| reduced.force(total));
+        let totals = water.resultants(&mesh);
+        let water = totals.clone().map(|total| reduced.force(total));
+        let afloat = reduced.afloat(&heave, &water[0]);
         let weight = dry_weight(design, &mesh)?;
+        let dry_water = match (&reduced.condensed, &weight) {
+            (Some(condensed), Some(load)) => {
+                let Afloat { k, .. } = Afloat::new(design, &grid, &mesh)?;
+                let moved = condensed.static_remainder(&k, load)?;
+                totals.map(|total| total.iter().zip(&moved).map(|(force, u)| force * u).sum())
+            }
+            _ => [0.0; 3],
+        };
         let dry_resultants = weight.as_ref().map_or([0.0; 3], |load| resultants(load, &mesh));
         let dry_weight = weight.map_or_else(SparseRow::default, |load| reduced.force(load));
         let horizontal_rigid = horizontal_rigid(&mesh).map(|motion| reduced.motion(&motion));
@@ -125,8 +139,10 @@ impl PreparedModule {
             direct,
             condensed,
             water,
+            afloat,
             dry_weight,
             dry_resultants,
+            dry_water,
             horizontal_rigid,
             structural_mass_kg,
             roll_inertia_kg_m2,
@@ -328,6 +344,24 @@ impl Reduced {
                 SparseRow((0..t.ncols()).map(|j| (j, column(j))).collect())
             }
         }
+    }
+
+    /// Takes the heave by which the module follows a rise of the water of 1 m over to the dofs that are kept; `water` is its
+    /// resultant upward. The forces on inner nodes move the fixed-master modes.
+    fn afloat(&self, heave: &[f64], water: &SparseRow) -> Vec<f64> {
+        let mut own = self.motion(heave);
+        if let Some(condensed) = &self.condensed {
+            for &(mode, force) in water.0.iter().filter(|(dof, _)| *dof >= condensed.masters.len()) {
+                let stiffness = self
+                    .k
+                    .column(mode)
+                    .filter(|(i, _)| *i == mode)
+                    .map(|(_, k)| k)
+                    .sum::<f64>();
+                own[mode] = -force / stiffness;
+            }
+        }
+        own
     }
 
     /// Takes a motion of the full module over to the dofs that are kept; fixed-master modes rest.

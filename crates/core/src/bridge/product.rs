@@ -15,8 +15,8 @@ pub(crate) struct ModuleProduct {
     dofs: usize,
     /// Modules by their matrix.
     groups: Vec<Group>,
-    /// Springs beside the modules: stiffness and row.
-    springs: Vec<(f64, SparseRow)>,
+    /// Springs or masses beside the modules: stiffness or mass, and row.
+    beside: Vec<(f64, SparseRow)>,
 }
 
 /// Modules of one matrix.
@@ -67,13 +67,13 @@ impl ModuleProduct {
         Self {
             dofs,
             groups: modules.variants.iter().enumerate().map(group).collect(),
-            springs: Vec::new(),
+            beside: Vec::new(),
         }
     }
 
-    /// With springs beside the modules: stiffness and row of each.
-    pub(super) fn with_springs(self, springs: Vec<(f64, SparseRow)>) -> Self {
-        Self { springs, ..self }
+    /// With springs or masses beside the modules: stiffness or mass, and row of each.
+    pub(super) fn with(self, beside: Vec<(f64, SparseRow)>) -> Self {
+        Self { beside, ..self }
     }
 
     /// `y = A x` of the bridge.
@@ -82,8 +82,8 @@ impl ModuleProduct {
         for group in &self.groups {
             group.add(self.dofs, x, y);
         }
-        for (stiffness, row) in &self.springs {
-            row.add_to(stiffness * row.dot(x), y);
+        for (factor, row) in &self.beside {
+            row.add_to(factor * row.dot(x), y);
         }
     }
 }

@@ -7,13 +7,15 @@ use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::{BridgeDesign, Direction, Ends};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
 
-/// A held dof: where it is and the reaction it gives, `row . u`.
+/// A held dof: where it is and the reaction it gives, `row . u` less the dead load there.
 #[derive(Debug, Clone)]
 pub(crate) struct HeldDof {
     pub x_m: f64,
     pub y_m: f64,
     pub vertical: bool,
     pub row: SparseRow,
+    /// Upward dead load on it `[N]`: what lies there, and of water that has risen by 1 m.
+    pub dead_n: [f64; 2],
 }
 
 /// The numbering of a row of modules.
@@ -135,8 +137,9 @@ impl<'a> Row<'a> {
         motions
     }
 
-    /// The held dofs of the bridge, each with the row of the stiffness that gives its reaction.
-    pub(super) fn held(&self) -> Vec<HeldDof> {
+    /// The held dofs of the bridge, each with the row of the stiffness that gives its reaction; `dead_n` is the dead load on a dof
+    /// of a module.
+    pub(super) fn held(&self, dead_n: impl Fn(usize, usize) -> [f64; 2]) -> Vec<HeldDof> {
         let mut held = Vec::new();
         for (j, (map, module)) in self.map.iter().zip(self.modules.each()).enumerate() {
             let grid = &module.grid;
@@ -156,6 +159,7 @@ impl<'a> Row<'a> {
                             y_m: grid.y[iy],
                             vertical: direction == Z,
                             row,
+                            dead_n: dead_n(j, dof),
                         });
                     }
                 }

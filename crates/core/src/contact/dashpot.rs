@@ -8,6 +8,7 @@
 
 use super::link::{Branch, LinkLaw};
 use crate::connector::{OwnLaws, State};
+use crate::response::DeadState;
 use std::borrow::Cow;
 
 /// The rate at a step's end by the differences over it and over the step before (C3):
@@ -49,12 +50,12 @@ pub(crate) struct Dashpot {
 }
 
 impl Dashpot {
-    /// The dashpots of connectors.
-    pub(crate) fn of_connectors(own: &OwnLaws) -> Vec<Self> {
+    /// The dashpots of connectors whose elongations count from a dead state on.
+    pub(crate) fn of_connectors(own: &OwnLaws, dead: Option<&DeadState>) -> Vec<Self> {
         let damped = own.iter().filter(|(_, law)| law.dampings_n_s_m() != [0.0; 2]);
         let dashpot = |(link, law): &(usize, _)| Self {
             link: *link,
-            law: LinkLaw::new(law),
+            law: LinkLaw::new(law).counted_from(dead.map_or(0.0, |dead| dead.elongations_m[*link])),
             damping: law.dampings_n_s_m(),
         };
         damped.map(dashpot).collect()
@@ -239,7 +240,7 @@ mod tests {
             compression: truss(damping_n_s_m, Some(stop)),
         };
         let own: OwnLaws = [(0, law)].into();
-        Dashpot::of_connectors(&own).remove(0)
+        Dashpot::of_connectors(&own, None).remove(0)
     }
 
     /// A link that shortens at 0.2 m/s into its buffer and stop: the force by the law is that of the place and the rate from the

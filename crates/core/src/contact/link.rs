@@ -3,6 +3,7 @@
 //! Knows force against elongation. Does not know what the link joins or where the elongation comes from.
 
 use crate::connector::{Connection, ConnectorLaw, OwnLaws, State, Truss};
+use crate::response::DeadState;
 
 /// A branch `N = k e - n0` of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -74,6 +75,34 @@ impl LinkLaw {
             laws[*place] = Self::new(law);
         }
         laws
+    }
+
+    /// Laws whose elongations count from a dead state on.
+    /// Equation (D3).
+    pub(crate) fn from_rest(mut laws: Vec<Self>, dead: Option<&DeadState>) -> Vec<Self> {
+        if let Some(dead) = dead {
+            for (law, &e) in laws.iter_mut().zip(&dead.elongations_m) {
+                *law = law.counted_from(e);
+            }
+        }
+        laws
+    }
+
+    /// The law, its elongations counted from `e` on `[m]`.
+    #[must_use]
+    pub(crate) fn counted_from(mut self, e: f64) -> Self {
+        for begins in [
+            &mut self.tension_above_m,
+            &mut self.tension_stop_above_m,
+            &mut self.compression_below_m,
+            &mut self.compression_stop_below_m,
+        ] {
+            *begins -= e;
+        }
+        for branch in &mut self.branches {
+            branch.offset -= branch.stiffness * e;
+        }
+        self
     }
 
     /// A law as the step takes it. Equations (J2) to (J4).
@@ -203,6 +232,12 @@ impl LinkLaw {
             _ => energy,
         }
     }
+}
+
+/// Force of a link at rest `[N]`.
+#[inline]
+pub(crate) fn rest_force_n(dead: Option<&DeadState>, link: usize) -> f64 {
+    dead.map_or(0.0, |dead| dead.forces_n[link])
 }
 
 /// The state that each elongation asks for.

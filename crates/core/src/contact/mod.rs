@@ -9,7 +9,7 @@ mod warm;
 
 use crate::connector::State;
 pub(crate) use dashpot::{BackwardRate, Dashpot, DashpotTrail};
-pub(crate) use link::{LinkLaw, Uptake, ask};
+pub(crate) use link::{LinkLaw, Uptake, ask, rest_force_n};
 use nalgebra::{DMatrix, DVector};
 pub(crate) use warm::WarmContact;
 
@@ -73,6 +73,20 @@ impl ContactProblem<'_> {
         let mut system = UnderLaws { problem: self, laws };
         let (solution, iterations) = settle(&mut system, &mut states, &mut Vec::new(), limit)?;
         Ok(ContactSolution { iterations, ..solution })
+    }
+
+    /// The problem where the structure feels what the links' forces are beyond those at rest `[N]`.
+    /// Equation (D3).
+    #[must_use]
+    pub(crate) fn with_rest(mut self, forces_n: &[f64]) -> Self {
+        let held = DVector::from_iterator(forces_n.len(), forces_n.iter().map(|n| self.weight * n));
+        let among = self.connectors * &held;
+        self.e_free
+            .iter_mut()
+            .zip(among.iter())
+            .for_each(|(e, held)| *e += held);
+        self.riders_free += &self.riders_connectors * held;
+        self
     }
 
     /// One Newton solution: the linear system of an active set.

@@ -5,12 +5,16 @@
 
 use super::{ContactSolution, LinkLaw, NotSettled, PiecewiseLinear, ask, settle};
 use crate::connector::State;
-use nalgebra::{Cholesky, DMatrix, DVectorViewMut, Dyn};
+use crate::response::DeadState;
+use nalgebra::{Cholesky, DMatrix, DVector, DVectorViewMut, Dyn};
+use std::borrow::Cow;
 
 /// Connectors and their laws, with the states, forces and elongations of the last load.
 #[derive(Debug)]
 pub(crate) struct WarmContact<'a> {
     laws: Vec<LinkLaw>,
+    /// Elongations that the forces at rest would undo `[m]`; nothing without a dead load.
+    held: Vec<f64>,
     states: Vec<State>,
     seen: Vec<State>,
     tangent: Tangent<'a>,
@@ -18,10 +22,12 @@ pub(crate) struct WarmContact<'a> {
 
 impl<'a> WarmContact<'a> {
     /// Connectors with the flexibility `connectors` `[m/N]` among them, at rest.
-    pub(crate) fn new(connectors: &'a DMatrix<f64>, laws: Vec<LinkLaw>) -> Self {
+    pub(crate) fn new(connectors: &'a DMatrix<f64>, laws: Vec<LinkLaw>, dead: Option<&DeadState>) -> Self {
         let nc = connectors.nrows();
+        let held = dead.map(|dead| connectors * DVector::from_column_slice(&dead.forces_n));
         Self {
-            states: laws.iter().map(LinkLaw::at_rest).collect(),
+            states: laws.iter().map(|law| law.state(0.0)).collect(),
+            held: held.map_or_else(Vec::new, |held| held.iter().copied().collect()),
             laws,
             seen: Vec::new(),
             tangent: Tangent {
@@ -35,17 +41,25 @@ impl<'a> WarmContact<'a> {
         }
     }
 
-    /// Solves for the elongations without forces `e_free` `[m]`, from the last states on; gives the number of Newton
+    /// Solves for the elongations without more forces than at rest `e_free` `[m]`, from the last states on; gives the number of Newton
     /// solutions.
     ///
     /// # Errors
     /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is not positive definite; forces
     /// are then no solution's until [`Self::restart`].
     pub(crate) fn solve(&mut self, e_free: &[f64], limit: usize) -> Result<usize, NotSettled> {
+        let mut from_rest = Cow::Borrowed(e_free);
+        if !self.held.is_empty() {
+            from_rest
+                .to_mut()
+                .iter_mut()
+                .zip(&self.held)
+                .for_each(|(e, held)| *e += held);
+        }
         let mut system = UnderLoad {
             laws: &self.laws,
             tangent: &mut self.tangent,
-            e_free,
+            e_free: &from_rest,
         };
         let ((), iterations) = settle(&mut system, &mut self.states, &mut self.seen, limit)?;
         Ok(iterations)

@@ -9,13 +9,14 @@ use super::lane_array::LaneArray;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
 use crate::contact::{LinkLaw, Uptake};
+use crate::response::DeadState;
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
 /// Connectors of every lane.
 #[derive(Debug, Clone)]
 pub(super) struct Connectors {
-    /// Force N, tension positive `[N]`, at the last step and at the one under way.
+    /// Force N beyond that at rest, tension positive `[N]`, at the last step and at the one under way.
     pub(super) n: LaneArray,
     pub(super) n_now: LaneArray,
     /// `R_BB N` of both.
@@ -24,6 +25,10 @@ pub(super) struct Connectors {
     /// Elongation `[m]`, and in the step under way first without, then with its forces.
     pub(super) e: LaneArray,
     pub(super) e_now: LaneArray,
+    /// Force at rest `[N]`, and in which lanes there is one at all.
+    pub(super) rest: LaneArray,
+    from_rest: Vec<bool>,
+    pub(super) any_rest: bool,
     /// What dashpots give.
     pub(super) dashpots: DashpotForces,
     /// `1 / (2 k)` of the first connector that works at all.
@@ -33,6 +38,8 @@ pub(super) struct Connectors {
     compression: UptakeLanes,
     /// Lanes of which a connector takes up energy in one sense as it does not in the other, or has a stop.
     uneven: Vec<bool>,
+    /// Energy at rest `[J]`.
+    rest_energy: LaneArray,
     /// Those that pull or push in any lane.
     active: Vec<usize>,
 }
@@ -91,6 +98,10 @@ impl Connectors {
             rn_now: zeros(),
             e: zeros(),
             e_now: zeros(),
+            rest: zeros(),
+            from_rest: vec![false; lanes],
+            any_rest: false,
+            rest_energy: LaneArray::new(1, lanes),
             dashpots: DashpotForces::new(sizes, lanes),
             half_compliance: LaneArray::new(1, lanes),
             tension: UptakeLanes::new(sizes.connectors, lanes),
@@ -149,6 +160,18 @@ impl Connectors {
         for (i, [tension, compression]) in uptakes().enumerate() {
             self.tension.take(i, lane, tension, first);
             self.compression.take(i, lane, compression, first);
+        }
+    }
+
+    /// Takes the forces of a lane at rest; the laws are taken.
+    pub(super) fn take_rest(&mut self, lane: usize, (laws, dead): (&[LinkLaw], Option<&DeadState>)) {
+        self.from_rest[lane] = dead.is_some();
+        self.any_rest = self.from_rest.contains(&true);
+        self.rest.clear(lane);
+        *self.rest_energy.at_mut(0, lane) = 0.0;
+        if let Some(dead) = dead {
+            self.rest.scatter(lane, &dead.forces_n);
+            *self.rest_energy.at_mut(0, lane) = laws.iter().map(|law| law.energy(0.0)).sum();
         }
     }
 
@@ -239,6 +262,9 @@ impl Connectors {
         let mut squares = o.splat(0.0);
         let dashpots = &self.dashpots;
         let n = if dashpots.any { &dashpots.springs } else { &self.n }.vectors::<S>();
+        if self.any_rest {
+            return self.energy_from_rest(o, n);
+        }
         if self.uneven.contains(&true) {
             for (i, n) in n.iter().enumerate() {
                 squares = self.uneven_square(o, i, *n, squares);
@@ -249,6 +275,18 @@ impl Connectors {
             }
         }
         o.mul(squares, self.half_compliance.vectors::<S>()[0])
+    }
+
+    /// Strain energy beyond that at rest, less what the forces at rest do: that of the forces `n` beyond those at rest.
+    #[inline(always)]
+    fn energy_from_rest<S: Simd>(&self, o: Ops<S>, n: &[S::f64s]) -> S::f64s {
+        let (rest, e) = (self.rest.vectors::<S>(), self.e.vectors::<S>());
+        let (mut squares, mut work) = (o.splat(0.0), self.rest_energy.vectors::<S>()[0]);
+        for (i, n) in n.iter().enumerate() {
+            squares = self.uneven_square(o, i, o.add(*n, rest[i]), squares);
+            work = o.fma(rest[i], e[i], work);
+        }
+        o.sub(o.mul(squares, self.half_compliance.vectors::<S>()[0]), work)
     }
 
     /// Adds the square of one connector whose senses may differ; of one whose senses do not, the same bits as without looking.

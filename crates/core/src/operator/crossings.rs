@@ -21,7 +21,7 @@ use super::vector::Ops;
 use super::wheel_lines::WheelCompliance;
 use crate::connector::State;
 use crate::contact::NotSettled;
-use crate::response::{JointReading, PinPeaks, Reading, Statistics};
+use crate::response::{DeadState, JointReading, PinPeaks, Reading, Statistics};
 use pulp::Simd;
 use std::sync::Arc;
 
@@ -94,7 +94,7 @@ impl Crossings {
         let of = &mut self.lanes[lane];
         of.contact.forget();
         for (state, law) in of.contact.states.iter_mut().zip(crossing.laws.iter()) {
-            *state = law.at_rest();
+            *state = law.state(0.0);
         }
         of.statistics = Statistics::default();
         of.unloaded = 0;
@@ -106,10 +106,20 @@ impl Crossings {
         self.loads.weights.copy_lane(lane, &self.loads.weights_now);
     }
 
-    /// Takes the laws and dashpots of a lane's connectors.
+    /// Takes the laws, the dashpots and the rest of a lane's connectors.
     fn take_connectors(&mut self, lane: usize, crossing: &CrossingInput) {
         self.connectors.take_laws(lane, &crossing.laws);
         self.connectors.dashpots.take(lane, !crossing.dashpots.is_empty());
+        self.take_rest(lane, Some(crossing));
+    }
+
+    /// Takes the state at rest of a lane's crossing, or none.
+    fn take_rest(&mut self, lane: usize, crossing: Option<&CrossingInput>) {
+        let dead = crossing.and_then(|crossing| crossing.dead.as_deref());
+        let laws = crossing.map_or(&[][..], |crossing| &crossing.laws);
+        self.connectors.take_rest(lane, (laws, dead));
+        self.envelope.take_rest(lane, dead);
+        self.pins.take_rest(lane, dead);
     }
 
     /// Says where a lane's vehicle is at the end of the coming step.
@@ -121,9 +131,11 @@ impl Crossings {
     pub(crate) fn end(&mut self, lane: usize) {
         self.rest(lane);
         self.connectors.dashpots.take(lane, false);
+        self.take_rest(lane, None);
         let of = &mut self.lanes[lane];
         of.crossing = None;
         of.dashpots = None;
+        of.dead = None;
         of.weights.clear();
         of.mass_forces.clear();
     }
@@ -349,14 +361,25 @@ pub(crate) struct LaneReading<'a> {
     lane: usize,
 }
 
+impl LaneReading<'_> {
+    fn dead(&self) -> Option<&DeadState> {
+        self.of.lanes[self.lane].dead.as_ref().map(|dead| &*dead.state)
+    }
+}
+
 impl JointReading for LaneReading<'_> {
     fn connector_n(&self, connector: usize) -> [f64; 2] {
-        let now = self.of.connectors.by_law().at(connector, self.lane);
-        [now, self.of.pins.connector_n(connector, self.lane)]
+        let connectors = &self.of.connectors;
+        let now = connectors.by_law().at(connector, self.lane);
+        let at_balance = self.of.pins.connector_n(connector, self.lane);
+        match self.dead() {
+            None => [now, at_balance],
+            Some(dead) => [now, at_balance].map(|force| force + dead.forces_n[connector]),
+        }
     }
 
     fn elongation_m(&self, connector: usize) -> f64 {
-        self.of.connectors.e.at(connector, self.lane)
+        self.of.connectors.e.at(connector, self.lane) + self.dead().map_or(0.0, |dead| dead.elongations_m[connector])
     }
 
     fn pin_n(&self, pin: usize) -> [f64; 3] {
@@ -364,7 +387,7 @@ impl JointReading for LaneReading<'_> {
     }
 
     fn spring_m(&self, spring: usize) -> f64 {
-        self.of.envelope.spring_m(spring, self.lane)
+        self.of.envelope.spring_m(spring, self.lane) + self.dead().map_or(0.0, |dead| dead.springs_m[spring])
     }
 }
 
@@ -380,5 +403,9 @@ impl Reading for LaneReading<'_> {
 
     fn place_m(&self, index: usize) -> f64 {
         self.of.envelope.place_m(index, self.lane)
+    }
+
+    fn corner_m(&self, index: usize) -> f64 {
+        self.of.envelope.corner_m(index, self.lane)
     }
 }

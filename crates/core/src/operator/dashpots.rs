@@ -64,12 +64,13 @@ impl LaneDashpots {
         &self.laws
     }
 
-    /// Leaves what they give in the step under way, whose balance has the forces `n_now` at the elongations `e_now`.
+    /// Leaves what they give in the step under way, whose balance has the forces `n_now` beyond those at rest at the elongations
+    /// `e_now`.
     pub(super) fn end_step(
         &mut self,
         lane: usize,
         step_s: f64,
-        [e, e_now, n_now]: [&LaneArray; 3],
+        [e, e_now, n_now, rest]: [&LaneArray; 4],
         forces: &mut DashpotForces,
     ) {
         self.before_s = step_s;
@@ -77,8 +78,9 @@ impl LaneDashpots {
         for dashpot in &*self.dashpots {
             let i = dashpot.link;
             let [spring, by_law] = dashpot.forces(rate, e_now.at(i, lane), past(dashpot, lane, e, forces));
-            *forces.part_now.at_mut(i, lane) = n_now.at(i, lane) - spring;
-            *forces.above_law.at_mut(i, lane) = n_now.at(i, lane) - by_law;
+            let force = n_now.at(i, lane) + rest.at(i, lane);
+            *forces.part_now.at_mut(i, lane) = force - spring;
+            *forces.above_law.at_mut(i, lane) = force - by_law;
         }
     }
 }

@@ -12,7 +12,7 @@ use super::panel::{lanes, lanes_mut};
 use super::residual::Residual;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
-use crate::response::{EnergySummary, ForcePeaks, JointPeaks, Peak};
+use crate::response::{DeadState, EnergySummary, ForcePeaks, JointPeaks, Peak};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -45,6 +45,9 @@ pub(super) struct Envelope {
     observed: LaneArray,
     inside: LaneArray,
     breadth_m: f64,
+    /// How far the corners of decks, then of bottoms, have risen against the water at rest `[m]`, and in which lanes they have.
+    risen: LaneArray,
+    from_rest: Vec<bool>,
     /// Of each module how much its freeboard and its draft are above the least `[m]`.
     beyond_m: Vec<[f64; 2]>,
 }
@@ -73,6 +76,8 @@ impl Envelope {
             observed: of(sizes.observed),
             inside: of(modules.iter().map(|module| module.inside.len()).max().unwrap_or(0)),
             breadth_m: operator.breadth_m,
+            risen: of(rows.corners + rows.bottom_corners),
+            from_rest: vec![false; lanes],
             beyond_m: modules.iter().map(beyond_m).collect(),
         }
     }
@@ -94,6 +99,17 @@ impl Envelope {
         *self.axle.at_mut(0, lane) = f64::INFINITY;
     }
 
+    /// Takes how a lane's bridge floats at rest.
+    pub(super) fn take_rest(&mut self, lane: usize, dead: Option<&DeadState>) {
+        self.from_rest[lane] = dead.is_some();
+        self.risen.clear(lane);
+        if let Some(dead) = dead {
+            let corners = dead.deck_corners_m.iter().take(self.rows.corners);
+            let corners = corners.chain(dead.bottom_corners_m.iter().take(self.rows.bottom_corners));
+            self.risen.lane_mut(lane).zip(corners).for_each(|(to, z)| *to = *z);
+        }
+    }
+
     /// Number of observed rows.
     pub(super) fn observed_rows(&self) -> usize {
         self.observed.rows()
@@ -109,6 +125,11 @@ impl Envelope {
     pub(super) fn place_m(&self, index: usize, lane: usize) -> f64 {
         let first = self.observed.rows() - self.rows.springs - self.rows.places;
         0.0 - self.observed.at(first + index, lane)
+    }
+
+    /// Deflection of a corner of a module's deck now, positive downward `[m]`.
+    pub(super) fn corner_m(&self, index: usize, lane: usize) -> f64 {
+        0.0 - self.observed.at(self.rows.positions + index, lane)
     }
 
     /// Motion of a spring of a bank now, along its sense `[m]`.
@@ -166,7 +187,17 @@ impl Envelope {
             peaks.update_both(z);
         }
         let forces = &connectors.by_law().vectors::<S>()[..self.joint_connectors];
-        for joint in forces.chunks_exact(self.per_joint.max(1)) {
+        let per_joint = self.per_joint.max(1);
+        if connectors.any_rest {
+            let rest = &connectors.rest.vectors::<S>()[..self.joint_connectors];
+            for (joint, rest) in forces.chunks_exact(per_joint).zip(rest.chunks_exact(per_joint)) {
+                let whole = || joint.iter().zip(rest).map(|(force, rest)| o.add(*force, *rest));
+                peaks.update_both(whole().fold(o.splat(0.0), |sum, force| o.add(sum, force)));
+                whole().for_each(|force| peaks.update_both(force));
+            }
+            return;
+        }
+        for joint in forces.chunks_exact(per_joint) {
             let mut sum = o.splat(0.0);
             for &force in joint {
                 sum = o.add(sum, force);
@@ -194,7 +225,9 @@ impl Envelope {
         let of_corners = observed[positions..][..corners].chunks_exact(4);
         let modules = self.of_module.vectors_mut::<S>().iter_mut().zip(&self.beyond_m);
         let edge = &mut self.edge.vectors_mut::<S>()[0];
-        for ((module, [freeboard, _]), ends) in modules.zip(of_corners) {
+        let from_rest = self.from_rest.contains(&true);
+        let risen = self.risen.vectors::<S>();
+        for (j, ((module, [freeboard, _]), ends)) in modules.zip(of_corners).enumerate() {
             let mut down = o.neg(ends[0]);
             for end in ends.chunks_exact(2) {
                 roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
@@ -204,15 +237,29 @@ impl Envelope {
             }
             *module = down;
             *edge = o.max(*edge, down);
-            corner = o.max(corner, o.sub(down, o.splat(*freeboard)));
+            let under = if from_rest {
+                let corners = ends
+                    .iter()
+                    .zip(&risen[4 * j..])
+                    .map(|(z, risen)| o.neg(o.add(*z, *risen)));
+                corners.fold(o.splat(f64::NEG_INFINITY), |lowest, corner| o.max(lowest, corner))
+            } else {
+                down
+            };
+            corner = o.max(corner, o.sub(under, o.splat(*freeboard)));
         }
         self.roll.vectors_mut::<S>()[0] = roll;
         self.corner.vectors_mut::<S>()[0] = corner;
         let bottom = &mut self.bottom.vectors_mut::<S>()[0];
         let of_bottom = observed[positions + corners..][..bottom_corners].chunks_exact(4);
-        for ([_, draft], ends) in self.beyond_m.iter().zip(of_bottom) {
+        for (j, ([_, draft], ends)) in self.beyond_m.iter().zip(of_bottom).enumerate() {
             let draft = o.splat(*draft);
-            for &z in ends {
+            for (i, &z) in ends.iter().enumerate() {
+                let z = if from_rest {
+                    o.add(z, risen[corners + 4 * j + i])
+                } else {
+                    z
+                };
                 *bottom = o.max(*bottom, o.sub(z, draft));
             }
         }

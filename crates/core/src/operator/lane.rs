@@ -7,6 +7,7 @@ use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
 use super::contact_system::{ContactInput, ContactSystem};
 use super::dashpots::LaneDashpots;
+use super::dead::LaneDead;
 use super::lane_array::LaneArray;
 use super::loads::{Loads, StationForce};
 use super::local_residual::StepForces;
@@ -16,7 +17,7 @@ use super::step_constants::StepConstants;
 use super::wheel_lines::{WheelCompliance, WheelLine, WheelLines};
 use crate::bridge::{VehiclePlacement, front_x_m};
 use crate::contact::{Dashpot, LinkLaw, NotSettled};
-use crate::response::Statistics;
+use crate::response::{DeadState, Statistics};
 use std::sync::Arc;
 
 /// One crossing as its lane knows it.
@@ -34,6 +35,8 @@ pub(crate) struct CrossingInput {
     pub load_n: f64,
     /// Speed `[m/s]`.
     pub speed_m_s: f64,
+    /// The state at rest from which it starts, where the bridge has a dead load.
+    pub dead: Option<Arc<DeadState>>,
 }
 
 /// What a lane has beside its numbers.
@@ -45,6 +48,7 @@ pub(super) struct Lane {
     placement: VehiclePlacement,
     pub(super) contact: ContactSystem,
     pub(super) dashpots: Option<LaneDashpots>,
+    pub(super) dead: Option<LaneDead>,
     pub(super) masses: MovingMasses,
     /// Weight on each axle that is on the bridge `[N]`, and whether the contact force of all its points has settled.
     pub(super) axles: Vec<(f64, bool)>,
@@ -70,6 +74,7 @@ impl Lane {
             placement: VehiclePlacement::default(),
             contact: ContactSystem::new(connectors, most_nodes, newton_limit),
             dashpots: None,
+            dead: None,
             masses: MovingMasses::new(connectors, most_nodes),
             axles: Vec::new(),
             inertia: Vec::new(),
@@ -89,6 +94,7 @@ impl Lane {
         self.axles = vec![(0.0, true); axles];
         self.inertia = vec![0.0; axles];
         self.dashpots = LaneDashpots::new(&crossing.dashpots, &crossing.laws);
+        self.dead = crossing.dead.as_ref().map(LaneDead::new);
         self.crossing = Some(crossing);
     }
 
@@ -168,6 +174,10 @@ impl Lane {
         {
             self.contact.forget();
         }
+        if let Some(dead) = &mut self.dead {
+            let (e, riders) = (&mut self.contact.linear.e, &mut masses.block);
+            dead.begin_step((h, weight), &constants.connector_compliance, e, riders); // (D3)
+        }
         let input = ContactInput {
             laws: self.dashpots.as_ref().map_or(&*crossing.laws, LaneDashpots::laws),
             compliance: &constants.connector_compliance,
@@ -189,6 +199,9 @@ impl Lane {
                 return false;
             }
         }
+        if let Some(dead) = &self.dead {
+            dead.end_step(&mut self.contact.linear.forces);
+        }
         connectors.e_now.scatter(lane, &self.contact.linear.e);
         for (to, scaled) in connectors.n_now.rows_from_mut(0).zip(&self.contact.linear.forces) {
             to[lane] = scaled / weight;
@@ -199,9 +212,10 @@ impl Lane {
                 e_now,
                 n_now,
                 dashpots: given,
+                rest,
                 ..
             } = &mut *connectors;
-            dashpots.end_step(lane, h, [e, e_now, n_now], given);
+            dashpots.end_step(lane, h, [e, e_now, n_now, rest], given);
         }
         clock.lap(StepPart::GatherAndScatter, || 0.0);
         self.apply_masses(lane, constants, &connectors.n_now, loads);

@@ -17,6 +17,7 @@ mod contact_system;
 mod crossings;
 mod cutoff;
 mod dashpots;
+mod dead;
 mod energy;
 mod envelope;
 mod lane;

@@ -8,7 +8,7 @@ use super::lane_array::LaneArray;
 use super::modes::Modes;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
-use crate::response::{ForcePeaks, Peak, PinExtremes, PinPeaks};
+use crate::response::{DeadState, ForcePeaks, Peak, PinExtremes, PinPeaks};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -30,6 +30,9 @@ pub(super) struct Pins {
     /// Motion of the modes and forces of the connectors at the balance, and the forces of the pins there.
     balance: LaneArray,
     forces: LaneArray,
+    /// Forces at rest, and whether there are any in a lane.
+    rest: LaneArray,
+    from_rest: Vec<bool>,
     /// When that is `[s]`.
     time_s: LaneArray,
     /// Extremes and their times: of each pin against and with each axis and the resultant, and of each joint's sum behind its
@@ -58,6 +61,8 @@ impl Pins {
             inertia_now: of(rows),
             balance: of(2 * modes + connectors),
             forces: of(rows),
+            rest: of(rows),
+            from_rest: vec![false; lanes],
             time_s: of(1),
             value: of(extremes),
             time: of(extremes),
@@ -78,6 +83,18 @@ impl Pins {
     /// What a step leaves in a lane that no crossing writes any more.
     pub(super) fn left(&mut self) -> [&mut LaneArray; 2] {
         [&mut self.weights_now, &mut self.inertia_now]
+    }
+
+    /// Takes the forces of a lane at rest.
+    pub(super) fn take_rest(&mut self, lane: usize, dead: Option<&DeadState>) {
+        self.from_rest[lane] = dead.is_some() && !self.is_empty();
+        self.rest.clear(lane);
+        if let Some(dead) = dead {
+            self.rest
+                .lane_mut(lane)
+                .zip(dead.pins_n.iter().flatten())
+                .for_each(|(to, n)| *to = *n);
+        }
     }
 
     /// What pins see of weights and of inertia forces in the step under way.
@@ -126,6 +143,11 @@ impl Pins {
         for (i, force) in forces.iter_mut().enumerate() {
             let down = o.add(f.at(o, w_now[i], w_old[i]), m.at(o, i_now[i], i_old[i]));
             *force = o.sub(*force, down);
+        }
+        if self.from_rest.contains(&true) {
+            for (force, rest) in forces.iter_mut().zip(self.rest.vectors::<S>()) {
+                *force = o.add(*force, *rest);
+            }
         }
         self.time_s.write_row(end_s.iter().map(|end_s| end_s - s.alpha_f * s.h));
         self.update_extremes(o);

@@ -65,6 +65,18 @@ impl RiderBlock {
         }
     }
 
+    /// Adds to the measure of each rider what it sees of scaled forces of links.
+    pub(super) fn add_links(&mut self, scaled: &[f64]) {
+        for i in 0..self.riders {
+            let of_links = &self.of_links[i * self.links..][..self.links];
+            self.free[i] += of_links
+                .iter()
+                .zip(scaled)
+                .map(|(seen, force)| seen * force)
+                .sum::<f64>();
+        }
+    }
+
     /// Number of riders.
     #[inline(always)]
     pub(super) fn count(&self) -> usize {

@@ -2,11 +2,13 @@
 //!
 //! Knows numbers and where and when they occurred. Does not know how they were computed.
 
+mod dead;
 mod energy;
 mod peaks;
 mod recorder;
 mod subject;
 
+pub use dead::{DeadState, ModuleAtRest};
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
 pub use peaks::{
     BankPeaks, ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PlacePeaks, PositionPeaks,
@@ -14,6 +16,7 @@ pub use peaks::{
 };
 pub(crate) use recorder::Recorder;
 pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
+use std::sync::Arc;
 pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
 pub(crate) use subject::{BankPart, BankSource, JointParts, JointReading, Reading};
 
@@ -93,6 +96,8 @@ pub struct StaticResponse {
     pub sections: Vec<[f64; SECTIONS]>,
     /// Deflection of each place asked for, positive downward `[m]`.
     pub places_m: Vec<f64>,
+    /// Deflection of each corner of the modules' decks, see [`DeadState::deck_corners_m`] `[m]`.
+    pub corners_m: Vec<f64>,
     /// Force of each bank's spring on the bridge along its sense: bank, place across `[m]`, force `[N]`.
     pub banks: Vec<(usize, f64, f64)>,
     /// Largest downward deflection of the deck's two edges `[m]`.
@@ -108,18 +113,22 @@ pub struct StaticResponse {
     pub deck_submerged: Option<bool>,
     /// Newton solutions.
     pub newton_iterations: usize,
-    /// What carries the load.
+    /// What carries the load and the dead load.
     pub equilibrium: Equilibrium,
+    /// The state at rest from which deflections are counted, where the bridge has a dead load.
+    pub dead: Option<Arc<DeadState>>,
 }
 
 /// Resultants about the origin (left end, centre line) in a static case: force up `[N]`, moment about x `[N m]` and about
-/// y `[N m]`. Load, water and supports sum to zero.
+/// y `[N m]`. Load, water, supports and banks sum to zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Equilibrium {
-    /// The vehicle's weight.
+    /// The vehicle's weight, and what lies on the bridge.
     pub load: [f64; 3],
-    /// The water's answer.
+    /// The water's answer, that of a risen river included.
     pub water: [f64; 3],
     /// The supports' answer.
     pub supports: [f64; 3],
+    /// The banks' answer.
+    pub banks: [f64; 3],
 }

@@ -21,6 +21,8 @@ pub struct Record {
     pub pins: bool,
     /// Whether section forces and angles of joints are wanted.
     pub sections: bool,
+    /// Whether the lowest place of each corner of the modules' decks is wanted.
+    pub corners: bool,
     /// Peaks at whose instant everything else is wanted.
     pub at_peaks: Vec<WatchedPeak>,
 }
@@ -113,6 +115,8 @@ pub struct Recorded {
     pub places: Vec<PlacePeaks>,
     /// Peaks of banks: of each bank's sum, then of each place.
     pub banks: Vec<BankPeaks>,
+    /// Largest deflection of each corner of the modules' decks, see [`super::DeadState::deck_corners_m`]; none where nobody asks.
+    pub corners: Vec<Peak>,
     /// Peaks of angles and section forces, joint after joint.
     pub sections: Vec<SectionPeaks>,
     /// Times of the histories `[s]`; empty where none was asked for.
@@ -174,6 +178,7 @@ impl Recorder {
                 banks: bank_peaks(&banks),
                 places: record.places_x_m.iter().map(place).collect(),
                 sections: sections.collect(),
+                corners: vec![Peak::default(); if record.corners { 4 * (positions - 1) } else { 0 }],
                 histories: record.histories().into_iter().map(history).collect(),
                 at_peaks: record.at_peaks.iter().map(at_peak).collect(),
                 ..Recorded::default()
@@ -191,13 +196,18 @@ impl Recorder {
             sections,
             at_peaks,
             banks,
+            corners,
             ..
         } = &mut self.recorded;
-        if places.is_empty() && sections.is_empty() && at_peaks.is_empty() && banks.is_empty() {
+        let unread = places.is_empty() && sections.is_empty() && at_peaks.is_empty();
+        if unread && banks.is_empty() && corners.is_empty() {
             return;
         }
         let [now_s, balance_s] = reading.times_s();
         take_banks(&self.banks, banks, reading);
+        for (index, corner) in corners.iter_mut().enumerate() {
+            corner.take(reading.corner_m(index), now_s);
+        }
         for (index, place) in places.iter_mut().enumerate() {
             let down = reading.place_m(index);
             place.deflection.take(down, now_s);

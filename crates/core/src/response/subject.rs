@@ -199,6 +199,8 @@ pub(crate) trait Reading: JointReading {
     fn position_m(&self, index: usize) -> f64;
     /// Deflection of a place `[m]`.
     fn place_m(&self, index: usize) -> f64;
+    /// Deflection of a corner of a module's deck `[m]`.
+    fn corner_m(&self, index: usize) -> f64;
 }
 
 impl JointParts {

@@ -113,6 +113,7 @@ fn static_free_bodies_are_in_equilibrium() {
                 load_n: LOAD_N,
                 load_x_m,
                 places_x_m: Vec::new(),
+                dead: None,
             };
             let pins_n = solver.solve(&vehicle, &case).expect("solved").pins_n;
             let state = solver.state(&vehicle, &case).expect("a state");
@@ -160,6 +161,7 @@ fn moving_free_bodies_are_in_equilibrium() {
                 more,
                 ..Record::default()
             },
+            dead: None,
         };
         let mut run = solver.begin(&vehicle, &crossing);
         let mut states = vec![run.snapshot()];

@@ -18,7 +18,7 @@ use crate::connector::{Connection, OwnLaws};
 use crate::contact::{Dashpot, LinkLaw};
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
-use crate::response::{CrossingResponse, Record};
+use crate::response::{CrossingResponse, DeadState, Record};
 use crate::scheme::Scheme;
 use crate::vehicle::Vehicle;
 use observe::Observer;
@@ -59,22 +59,25 @@ pub struct Crossing {
     pub tail_s: f64,
     /// Histories to keep.
     pub record: Record,
+    /// The state at rest from which it starts and deflections are counted, where the bridge has a dead load.
+    pub dead: Option<Arc<DeadState>>,
 }
 
 impl Crossing {
     /// The law of each of so many connectors.
     fn laws(&self, connectors: usize) -> Vec<LinkLaw> {
-        LinkLaw::connectors(
+        let laws = LinkLaw::connectors(
             connectors,
             self.connector_stiffness_n_m,
             self.connection,
             &self.own_laws,
-        )
+        );
+        LinkLaw::from_rest(laws, self.dead.as_deref())
     }
 
     /// The connectors that have dashpots.
     fn dashpots(&self) -> Vec<Dashpot> {
-        Dashpot::of_connectors(&self.own_laws)
+        Dashpot::of_connectors(&self.own_laws, self.dead.as_deref())
     }
 }
 
@@ -117,7 +120,7 @@ impl CrossingSolver {
         StepSpan::new(bridge_length_m, vehicle, time_step_s, speed_m_s, tail_s).steps
     }
 
-    /// Solves one crossing. The front is at x = 0 at t = 0; the motion starts from rest at the step before the first point
+    /// Solves one crossing. The front is at x = 0 at t = 0; the motion starts from rest, the dead state, at the step before the first point
     /// reaches the bridge.
     ///
     /// # Errors
@@ -140,8 +143,9 @@ impl CrossingSolver {
             laws: crossing.laws(self.bridge.links.len()),
             pins: crossing.record.needs_pins(),
             dashpots: crossing.dashpots(),
+            dead: crossing.dead.clone(),
         };
-        let observer = Observer::new(&self.bridge, &crossing.record);
+        let observer = Observer::new(&self.bridge, crossing);
         CrossingRun::new(self, stepper, observer, crossing.tail_s)
     }
 

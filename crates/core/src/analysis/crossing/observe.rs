@@ -2,13 +2,16 @@
 //!
 //! Knows the bridge's observed rows and what is kept of each. Does not know the scheme.
 
+use super::Crossing;
 use super::step::Motion;
 use crate::bridge::{Bridge, joint_parts};
+use crate::contact::rest_force_n;
 use crate::fem::SparseRow;
 use crate::response::{
-    CrossingResponse, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks, PositionPeaks,
-    Reading, Record, Recorder, Statistics,
+    CrossingResponse, DeadState, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks,
+    PositionPeaks, Reading, Recorder, Statistics,
 };
+use std::sync::Arc;
 
 /// Gathers the response of one crossing.
 #[derive(Debug)]
@@ -24,14 +27,15 @@ pub(super) struct Observer<'a> {
     deck_submerged: Option<bool>,
     statistics: Statistics,
     energy: EnergyBalance,
+    dead: Option<Arc<DeadState>>,
     /// Rows of the places that are followed.
     places: Vec<SparseRow>,
     recorder: Recorder,
 }
 
 impl<'a> Observer<'a> {
-    pub(super) fn new(bridge: &'a Bridge, record: &Record) -> Self {
-        let design = bridge.design();
+    pub(super) fn new(bridge: &'a Bridge, crossing: &Crossing) -> Self {
+        let (design, record) = (bridge.design(), &crossing.record);
         let positions = (1..=design.positions())
             .map(|position| PositionPeaks {
                 position,
@@ -60,6 +64,7 @@ impl<'a> Observer<'a> {
             deck_submerged: bridge.least_freeboard_m().map(|_| false),
             statistics: Statistics::default(),
             energy: EnergyBalance::default(),
+            dead: crossing.dead.clone(),
             places: record.places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect(),
             recorder: Recorder::new(design.positions(), (joint_parts(design), bridge.bank_parts()), record),
         }
@@ -85,6 +90,7 @@ impl<'a> Observer<'a> {
             bridge: self.bridge,
             places: &self.places,
             now: new,
+            dead: self.dead.as_deref(),
         });
     }
 
@@ -109,8 +115,9 @@ impl<'a> Observer<'a> {
             self.roll = self.roll.max(row.dot(u).abs());
         }
         let ever = |before: Option<bool>, now: Option<bool>| before.zip(now).map(|(before, now)| before || now);
-        self.bottom_emerged = ever(self.bottom_emerged, self.bridge.bottom_emerges(u));
-        self.deck_submerged = ever(self.deck_submerged, self.bridge.deck_submerges(u));
+        let dead = self.dead.as_deref();
+        self.bottom_emerged = ever(self.bottom_emerged, self.bridge.bottom_emerges(u, dead));
+        self.deck_submerged = ever(self.deck_submerged, self.bridge.deck_submerges(u, dead));
         for (axle, &(weight, whole)) in now.load.axles.iter().enumerate() {
             if whole {
                 let riders = now.load.riders.iter().zip(&now.inertia);
@@ -126,6 +133,7 @@ impl<'a> Observer<'a> {
             bridge: self.bridge,
             places: &self.places,
             now,
+            dead: self.dead.as_deref(),
         });
     }
 
@@ -151,6 +159,7 @@ struct MotionReading<'a> {
     bridge: &'a Bridge,
     places: &'a [SparseRow],
     now: &'a Motion,
+    dead: Option<&'a DeadState>,
 }
 
 impl Reading for MotionReading<'_> {
@@ -167,6 +176,10 @@ impl Reading for MotionReading<'_> {
     fn place_m(&self, index: usize) -> f64 {
         0.0 - self.places[index].dot(&self.now.u)
     }
+
+    fn corner_m(&self, index: usize) -> f64 {
+        0.0 - self.bridge.deck_corners[index].dot(&self.now.u)
+    }
 }
 
 impl JointReading for MotionReading<'_> {
@@ -174,21 +187,25 @@ impl JointReading for MotionReading<'_> {
         let at_balance = self.now.balance.as_ref().and_then(|of| of.connectors_n.get(connector));
         [
             self.now.connector_forces()[connector],
-            at_balance.copied().unwrap_or(0.0),
+            at_balance
+                .copied()
+                .unwrap_or_else(|| rest_force_n(self.dead, connector)),
         ]
     }
 
     fn elongation_m(&self, connector: usize) -> f64 {
-        self.now.elongations[connector]
+        self.now.elongations[connector] + self.dead.map_or(0.0, |dead| dead.elongations_m[connector])
     }
 
     fn spring_m(&self, spring: usize) -> f64 {
-        self.bridge.springs[spring].row.dot(&self.now.u)
+        self.bridge.springs[spring].row.dot(&self.now.u) + self.dead.map_or(0.0, |dead| dead.springs_m[spring])
     }
 
     fn pin_n(&self, pin: usize) -> [f64; 3] {
-        let of = self.now.balance.as_ref().and_then(|of| of.pins_n.get(pin));
-        of.copied().unwrap_or_default()
+        match &self.now.balance {
+            Some(of) => of.pins_n.get(pin).copied().unwrap_or_default(),
+            None => self.dead.map_or([0.0; 3], |dead| dead.pins_n[pin]),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
 };
-use crate::response::{BankPart, CrossingResponse, JointReading, PositionPeaks, Reading, Record, Recorder};
+use crate::response::{BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder};
 use crate::vehicle::Vehicle;
 use std::sync::{Arc, OnceLock};
 
@@ -211,6 +211,7 @@ impl<C: StepClock> Crew<'_, C> {
             dashpots: crossing.dashpots().into(),
             load_n: crossing.load_n,
             speed_m_s: crossing.speed_m_s,
+            dead: crossing.dead.clone(),
         };
         let h = self.solver.time_step_s(self.refinement);
         let length_m = self.solver.design.length_m();
@@ -220,7 +221,10 @@ impl<C: StepClock> Crew<'_, C> {
         let design = &self.solver.design;
         let parts = (joint_parts(design), self.solver.banks.clone());
         let mut recorder = Recorder::new(design.positions(), parts, &crossing.record);
-        recorder.note(&Start(start_s));
+        recorder.note(&Start {
+            time_s: start_s,
+            dead: crossing.dead.as_deref(),
+        });
         Under {
             index,
             vehicle,
@@ -392,30 +396,33 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
     }
 }
 
-/// The rest before the first step, at its time `[s]`.
-struct Start(f64);
+/// The rest before the first step.
+struct Start<'a> {
+    time_s: f64,
+    dead: Option<&'a DeadState>,
+}
 
-impl JointReading for Start {
-    fn connector_n(&self, _: usize) -> [f64; 2] {
-        [0.0; 2]
+impl JointReading for Start<'_> {
+    fn connector_n(&self, connector: usize) -> [f64; 2] {
+        [self.dead.map_or(0.0, |dead| dead.forces_n[connector]); 2]
     }
 
-    fn elongation_m(&self, _: usize) -> f64 {
-        0.0
+    fn elongation_m(&self, connector: usize) -> f64 {
+        self.dead.map_or(0.0, |dead| dead.elongations_m[connector])
     }
 
-    fn pin_n(&self, _: usize) -> [f64; 3] {
-        [0.0; 3]
+    fn pin_n(&self, pin: usize) -> [f64; 3] {
+        self.dead.map_or([0.0; 3], |dead| dead.pins_n[pin])
     }
 
-    fn spring_m(&self, _: usize) -> f64 {
-        0.0
+    fn spring_m(&self, spring: usize) -> f64 {
+        self.dead.map_or(0.0, |dead| dead.springs_m[spring])
     }
 }
 
-impl Reading for Start {
+impl Reading for Start<'_> {
     fn times_s(&self) -> [f64; 2] {
-        [self.0; 2]
+        [self.time_s; 2]
     }
 
     fn position_m(&self, _: usize) -> f64 {
@@ -423,6 +430,10 @@ impl Reading for Start {
     }
 
     fn place_m(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn corner_m(&self, _: usize) -> f64 {
         0.0
     }
 }

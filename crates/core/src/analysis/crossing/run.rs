@@ -70,14 +70,21 @@ impl<'a> CrossingRun<'a> {
     pub fn snapshot(&self) -> Snapshot {
         let (now, stepper) = (&self.now, &self.stepper);
         let Rayleigh { a, b } = stepper.rayleigh;
-        let sum = |x: &[f64], factor: f64, y: &[f64]| x.iter().zip(y).map(|(x, y)| x + factor * y).collect();
+        let sum =
+            |x: &[f64], factor: f64, y: &[f64]| -> Vec<f64> { x.iter().zip(y).map(|(x, y)| x + factor * y).collect() };
+        let (mut u, mut elongations) = (now.u.clone(), now.elongations.clone());
+        if let Some(dead) = &stepper.dead {
+            u = sum(&u, 1.0, &dead.displacements);
+            elongations = sum(&elongations, 1.0, &dead.elongations_m);
+        }
         Snapshot {
             time_s: now.time_s,
-            u: now.u.clone(),
-            elastic: sum(&now.u, a, &now.v),
+            elastic: sum(&u, a, &now.v),
+            u,
             inertial: Some(sum(&now.a, b, &now.v)),
-            connectors: connectors(&now.states, now.connector_forces(), &now.elongations),
+            connectors: connectors(&now.states, now.connector_forces(), &elongations),
             wheels: wheels(stepper.track, stepper.vehicle, stepper.load_n, &now.load, &now.inertia),
+            dead: stepper.dead.clone(),
         }
     }
 

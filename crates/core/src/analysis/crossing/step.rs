@@ -6,12 +6,13 @@ use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
 use crate::bridge::{Bridge, Load, PinPlace, Rider, Track, front_x_m};
 use crate::connector::State;
-use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled};
+use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled, rest_force_n};
 use crate::fem::SparseRow;
-use crate::response::StepEnergies;
+use crate::response::{DeadState, StepEnergies};
 use crate::scheme::{Newmark, Scalar};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// The motion at one time, with what the next step and the energy balance need of it.
 #[derive(Debug, Clone, Default)]
@@ -89,6 +90,8 @@ pub(super) struct Stepper<'a> {
     pub dashpots: Vec<Dashpot>,
     /// Whether forces of pins are wanted.
     pub pins: bool,
+    /// The state at rest from which the motion counts; forces of links are whole, the structure feels what they are beyond it.
+    pub dead: Option<Arc<DeadState>>,
 }
 
 impl Stepper<'_> {
@@ -98,8 +101,8 @@ impl Stepper<'_> {
         let connectors = self.laws.len();
         Motion {
             time_s,
-            states: self.laws.iter().map(LinkLaw::at_rest).collect(),
-            forces: vec![0.0; connectors],
+            states: self.laws.iter().map(|law| law.state(0.0)).collect(),
+            forces: (0..connectors).map(|i| self.rest_n(i)).collect(),
             elongations: vec![0.0; connectors],
             inertia: vec![0.0; load.riders.len()],
             load,
@@ -154,7 +157,7 @@ impl Stepper<'_> {
     fn correct(&self, matrix: &StepMatrix, load: &Load, contact: &ContactSolution, d: &mut [f64]) {
         let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         for (i, force) in contact.forces.iter().enumerate() {
-            flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * force, d);
+            flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * (force - self.rest_n(i)), d);
         }
         let mut inertia = SparseRow::default();
         for (rider, q) in load.riders.iter().zip(&contact.riders) {
@@ -176,6 +179,19 @@ impl Stepper<'_> {
         new
     }
 
+    /// Force of a link at rest `[N]`.
+    fn rest_n(&self, link: usize) -> f64 {
+        rest_force_n(self.dead.as_deref(), link)
+    }
+
+    /// What a link takes up beyond its force at rest, from there to the elongation `e` `[J]`.
+    fn energy_from_rest(&self, link: usize, law: &LinkLaw, e: f64) -> f64 {
+        match &self.dead {
+            None => law.energy(e),
+            Some(_) => law.energy(e) - law.energy(0.0) - self.rest_n(link) * e,
+        }
+    }
+
     /// The vehicle where it is at a time.
     fn load(&self, time_s: f64) -> Load {
         let front_x_m = front_x_m(self.track, self.speed_m_s, time_s);
@@ -195,8 +211,8 @@ impl Stepper<'_> {
         for (i, f) in f.iter_mut().enumerate() {
             *f = -a * *f - old.ku[i] - m_v * old.mv[i] - m_a * old.ma[i];
         }
-        for (connector, force) in self.bridge.links.iter().zip(&old.forces) {
-            connector.row.add_to(-s.alpha_f * force, &mut f);
+        for (i, (connector, force)) in self.bridge.links.iter().zip(&old.forces).enumerate() {
+            connector.row.add_to(-s.alpha_f * (force - self.rest_n(i)), &mut f);
         }
         matrix.flexibility.add_track_force(&old.load.weight, -s.alpha_f, &mut f);
         for (rider, q) in old.load.riders.iter().zip(&old.inertia) {
@@ -230,7 +246,7 @@ impl Stepper<'_> {
             }
             total / s.c_a
         };
-        ContactProblem {
+        let problem = ContactProblem {
             e_free: connectors
                 .iter()
                 .zip(&old.elongations)
@@ -248,6 +264,10 @@ impl Stepper<'_> {
                     .zip(&measures)
                     .map(|(rider, g)| flexibility.track_dot(g, d) + known(rider)),
             ),
+        };
+        match &self.dead {
+            None => problem,
+            Some(dead) => problem.with_rest(&dead.forces_n),
         }
     }
 
@@ -283,16 +303,19 @@ impl Stepper<'_> {
                 inertia.chain([SparseRow::combine(&[(*f, &instant.load.weight)])])
             })
             .collect();
-        let force = |pin: &PinPlace| {
-            pin.rows
+        let force = |(i, pin): (usize, &PinPlace)| {
+            let at_rest = self.dead.as_ref().map_or([0.0; 3], |dead| dead.pins_n[i]);
+            let moved = pin
+                .rows
                 .each_ref()
-                .map(|row| row.force_n(&elastic, Some(&inertial), &down))
+                .map(|row| row.force_n(&elastic, Some(&inertial), &down));
+            [0, 1, 2].map(|d| moved[d] + at_rest[d])
         };
         let connectors = new.forces.iter().zip(&old.forces);
         BalanceForces {
             time_s: s.at_f(new.time_s, old.time_s),
             connectors_n: connectors.map(|(new, old)| s.at_f(*new, *old)).collect(),
-            pins_n: self.bridge.pins.iter().map(force).collect(),
+            pins_n: self.bridge.pins.iter().enumerate().map(force).collect(),
         }
     }
 
@@ -306,7 +329,8 @@ impl Stepper<'_> {
             .laws
             .iter()
             .zip(&new.elongations)
-            .map(|(law, &e)| law.energy(e))
+            .enumerate()
+            .map(|(i, (law, &e))| self.energy_from_rest(i, law, e))
             .sum();
         let (mut inertia, mut stiffness, mut damping_m, mut damping_k) = (0.0, 0.0, 0.0, 0.0);
         for (i, d) in d.iter().enumerate() {
@@ -319,7 +343,7 @@ impl Stepper<'_> {
         for i in 0..new.forces.len() {
             let lengthening = new.elongations[i] - old.elongations[i];
             let [damped, damped_old] = [new, old].map(|m| m.dashpots.in_balance.get(i).copied().unwrap_or(0.0));
-            springs += lengthening * s.at_f(new.forces[i] - damped, old.forces[i] - damped_old);
+            springs += lengthening * (s.at_f(new.forces[i] - damped, old.forces[i] - damped_old) - self.rest_n(i));
             dashpots += lengthening * s.at_f(damped, damped_old);
         }
         let riders = |instant: &Motion| -> f64 {

@@ -6,7 +6,7 @@
 use super::{NEWTON_LIMIT, StaticCase, brought_on};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign, Load};
-use crate::contact::WarmContact;
+use crate::contact::{WarmContact, rest_force_n};
 use crate::flexibility::Flexibility;
 use crate::module::ModuleDesign;
 use crate::vehicle::{Inertia, Vehicle};
@@ -77,7 +77,8 @@ impl CreepingLoad {
     fn peaks_within(&self, case: &StaticCase, limit: usize) -> Result<Vec<f64>, AnalysisError> {
         let nc = self.among.nrows();
         let laws = case.laws(nc);
-        let mut contact = WarmContact::new(&self.among, laws.clone());
+        let dead = case.dead.as_deref();
+        let mut contact = WarmContact::new(&self.among, laws.clone(), dead);
         let mut e_free = vec![0.0; nc];
         let mut deflections = vec![0.0; self.positions.nrows()];
         let mut peaks = vec![0.0_f64; self.positions.nrows()];
@@ -86,9 +87,14 @@ impl CreepingLoad {
             scale(&mut e_free, -case.load_n, shortenings);
             scale(&mut deflections, case.load_n, direct);
             if contact.solve(&e_free, limit).is_err() {
-                contact.restart(&brought_on(&self.among, &laws, &e_free, x)?);
+                let unsettled = |iterations| AnalysisError::StaticNotConverged {
+                    iterations,
+                    load_x_m: x,
+                };
+                contact.restart(&brought_on(&self.among, &laws, dead, &e_free).map_err(unsettled)?);
             }
-            for (&force, seen) in contact.forces().iter().zip(self.positions.column_iter()) {
+            for (i, (force, seen)) in contact.forces().iter().zip(self.positions.column_iter()).enumerate() {
+                let force = force - rest_force_n(dead, i);
                 if force != 0.0 {
                     for (w, s) in deflections.iter_mut().zip(seen.iter()) {
                         *w += force * s;
@@ -162,6 +168,7 @@ mod tests {
             load_n: 230_300.0,
             load_x_m: 0.0,
             places_x_m: Vec::new(),
+            dead: None,
         };
         let apart = |factor: f64| {
             let [warm, cold] =

@@ -64,7 +64,7 @@ pub(super) fn check_water(design: &BridgeDesign) -> Result<(), InvalidInput> {
     }
 }
 
-/// Refuses a dry module of which an end is free to fall: no neighbour that floats, no support and no bank that holds z both ways.
+/// Refuses a dry module of which an end is free to fall: no neighbour that floats, no support and no bank that holds z.
 ///
 /// # Errors
 /// [`InvalidInput`] on `modules`.
@@ -81,16 +81,14 @@ pub(super) fn check_dry_held(design: &BridgeDesign) -> Result<(), InvalidInput> 
             1 => design.supports.left.contains(&Direction::Z),
             _ => position > design.modules && design.supports.right.contains(&Direction::Z),
         };
-        let of_bank = |bank: &BankSpec| {
-            !bank.one_sided && bank.direction == Direction::Z && bank.position(design.modules) == position
-        };
+        let of_bank = |bank: &BankSpec| bank.direction == Direction::Z && bank.position(design.modules) == position;
         // the modules left and right of a position
         supported || floats(position - 1) || floats(position) || design.banks.iter().any(of_bank)
     };
     for module in (1..=design.modules).filter(|module| is_dry[module - 1]) {
         if let Some(position) = [module, module + 1].into_iter().find(|&position| !is_held(position)) {
             let found = format!("module {module}, which is dry, free at position {position}");
-            let allowed = "dry modules held in z at both ends in a static case: by a neighbour that floats, by supports, or by a bank both ways";
+            let allowed = "dry modules held in z at both ends: by a neighbour that floats, by supports, or by a bank";
             return Err(InvalidInput::new("modules", found, allowed).because(Problem::Conflict));
         }
     }

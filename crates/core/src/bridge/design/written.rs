@@ -5,6 +5,7 @@
 
 use super::{BridgeDesign, Condensation, Supports};
 use crate::bridge::Provenance;
+use crate::bridge::ballast::DeadSpec;
 use crate::bridge::banks::BankSpec;
 use crate::bridge::buoyancy::{DraftBuoyancy, Todd};
 use crate::bridge::joints::{Connectors, Hinges, Joints};
@@ -75,6 +76,12 @@ pub(super) struct WrittenBridge {
     /// Springs between the bridge and the ground.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     banks: Vec<BankSpec>,
+    /// What lies on the bridge at rest.
+    #[serde(default, skip_serializing_if = "DeadSpec::is_empty")]
+    dead: DeadSpec,
+    /// How much the river has risen since the bridge was laid on its supports and banks `[m]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    water_level_m: Option<f64>,
     /// Still-water draft `[m]`, for reporting whether the bottom emerged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     draft_m: Option<f64>,
@@ -202,6 +209,8 @@ impl WrittenBridge {
             joints: self.joints,
             supports: self.supports,
             banks: self.banks,
+            dead: self.dead,
+            water_level_m: self.water_level_m,
             draft_m: self.draft_m,
             freeboard_m: self.freeboard_m,
             condensation: self.condensation,
@@ -239,6 +248,8 @@ impl WrittenBridge {
             joints: of.joints,
             supports: of.supports,
             banks: of.banks,
+            dead: of.dead,
+            water_level_m: of.water_level_m,
             draft_m: of.draft_m,
             freeboard_m: of.freeboard_m,
             condensation: of.condensation,
