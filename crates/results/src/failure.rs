@@ -23,6 +23,8 @@ pub enum FailureKind {
     ContactNotSettled,
     /// The contacts of a static case did not settle.
     StaticContactNotSettled,
+    /// The bridge has no state at rest under its dead load, or none was found.
+    NoDeadState,
     /// A number left the finite range.
     NotFinite,
     /// The peak force still changed at the finest time step.
@@ -45,9 +47,10 @@ pub enum FailureKind {
 
 impl FailureKind {
     /// All kinds.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::ContactNotSettled,
         Self::StaticContactNotSettled,
+        Self::NoDeadState,
         Self::NotFinite,
         Self::PeakForceNotSettled,
         Self::TooManySteps,
@@ -75,6 +78,7 @@ impl FailureKind {
         match self {
             Self::ContactNotSettled => "contact_not_settled",
             Self::StaticContactNotSettled => "static_contact_not_settled",
+            Self::NoDeadState => "no_dead_state",
             Self::NotFinite => "not_finite",
             Self::PeakForceNotSettled => "peak_force_not_settled",
             Self::TooManySteps => "too_many_steps",

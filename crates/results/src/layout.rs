@@ -71,6 +71,8 @@ impl Layout {
             TableName::Sections => record.sections && loaded,
             TableName::Places => !record.places_x_m.is_empty() && loaded,
             TableName::Banks => loaded && jobs.iter().any(|job| !job.bridge.design.banks.is_empty()),
+            TableName::Dead => loaded && jobs.iter().any(|job| job.bridge.design.has_dead_load()),
+            TableName::Freeboards => record.freeboards && loaded,
             TableName::AtPeaks => !record.at_peak_of.is_empty() && kind == Kind::Crossing,
             TableName::Joints => study.wear.is_some() && loaded,
         };
@@ -119,6 +121,10 @@ impl Layout {
                 ColumnSource::Place(of) => push(&mut columns, column, rows(records, |record| &record.places), of),
                 ColumnSource::AtPeak(of) => push(&mut columns, column, rows(records, |record| &record.at_peaks), of),
                 ColumnSource::Bank(of) => push(&mut columns, column, rows(records, |record| &record.banks), of),
+                ColumnSource::Dead(of) => push(&mut columns, column, rows(records, |record| &record.dead), of),
+                ColumnSource::Freeboard(of) => {
+                    push(&mut columns, column, rows(records, |record| &record.freeboards), of)
+                }
                 ColumnSource::Joint(of) => {
                     let rows = jobs.iter().flat_map(worn_joints);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
@@ -150,6 +156,7 @@ impl Layout {
             When::Verify => self.verify,
             When::Pins => self.record.pins && self.kind != Kind::Modes,
             When::Sections => self.record.sections && self.kind != Kind::Modes,
+            When::Freeboards => self.record.freeboards && self.kind != Kind::Modes,
             When::PlaceHistories => !self.record.histories.places_x_m.is_empty(),
             When::PinHistories => !self.record.histories.pins.is_empty(),
         }

@@ -21,6 +21,7 @@
 
 mod arrays;
 mod documents;
+mod extreme;
 mod failure;
 mod files;
 mod frame;
@@ -35,6 +36,7 @@ mod preparation;
 mod quantities;
 mod record;
 mod registry;
+mod rest_rows;
 mod results;
 mod results_error;
 mod summary;
@@ -45,6 +47,7 @@ mod writer;
 
 pub use arrays::CellKind;
 pub use documents::{RunDocuments, keep_documents};
+pub use extreme::Extreme;
 pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE, replaceable};
 pub use manifest::{DocumentPlace, Manifest, SessionNote, check_own};
@@ -53,12 +56,13 @@ pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::TableProvenance;
 pub use preparation::{BridgeReport, OperatorCounts, Preparation};
-pub use quantities::{QUANTITIES, SECTION_QUANTITIES};
+pub use quantities::{DEAD_QUANTITIES, QUANTITIES, SECTION_QUANTITIES};
 pub use record::{
-    AtPeakRow, BankRow, ConnectorRow, Extreme, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow,
-    PlaceRow, PositionRow, SectionRow, Summary,
+    AtPeakRow, BankRow, ConnectorRow, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow,
+    PositionRow, SectionRow, Summary,
 };
 pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, SpeedFigure, When, registered};
+pub use rest_rows::{DeadRow, FreeboardRow};
 pub use results::Results;
 pub use results_error::ResultsError;
 pub use summary::SummaryTable;

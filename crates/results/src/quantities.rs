@@ -18,6 +18,17 @@ pub const QUANTITIES: [&str; 12] = [
     "lateral_bending_nm",
 ];
 
+/// The words of what a bridge does at rest, with their units and senses.
+pub const DEAD_QUANTITIES: [&str; 7] = [
+    "deflection_m",
+    "force_n",
+    "reaction_n",
+    "sinkage_m",
+    "trim_rad",
+    "heel_rad",
+    "freeboard_m",
+];
+
 /// Those of them that are a joint's angle and section forces.
 pub const SECTION_QUANTITIES: [&str; 7] = {
     let [_, _, _, _, _, sections @ ..] = QUANTITIES;

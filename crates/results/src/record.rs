@@ -3,8 +3,10 @@
 //! Knows which numbers a job leaves and that a number is either there or null. Does not know tables. A record can be
 //! written and read back without loss, so that a journal can stand between the jobs and the tables.
 
+use super::extreme::Extreme;
 use super::failure::Failure;
 use super::quantities::SECTION_QUANTITIES;
+use super::rest_rows::{DeadRow, FreeboardRow, freeboard_rows_of_none};
 use pontoon_plan::job::Job;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +40,10 @@ pub struct JobRecord {
     pub at_peaks: Vec<AtPeakRow>,
     /// Its rows of the table of banks.
     pub banks: Vec<BankRow>,
+    /// Its rows of the table of what is at rest.
+    pub dead: Vec<DeadRow>,
+    /// Its rows of the table of freeboards.
+    pub freeboards: Vec<FreeboardRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
@@ -88,6 +94,10 @@ pub struct Summary {
     pub structural_mass_kg: Option<f64>,
     /// Length over which a static load presses the bridge down `[m]`.
     pub influential_length_m: Option<f64>,
+    /// Smallest freeboard of any corner of a module's deck `[m]`; null where freeboards are not recorded.
+    pub least_freeboard_m: Option<f64>,
+    /// Its module.
+    pub least_freeboard_module: Option<usize>,
     /// Whether a module's bottom rose above the water.
     pub bottom_emerged: Option<bool>,
     /// Whether a module's deck went below the water.
@@ -118,34 +128,6 @@ pub struct Summary {
     pub verify_contact: Option<f64>,
     /// Whether all are within their tolerances.
     pub verify_held: Option<bool>,
-}
-
-/// A largest value with its time; the time is null where the value is zero, for nothing occurred then, and in a static
-/// case.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Extreme {
-    /// The value; null where the job failed.
-    pub value: Option<f64>,
-    /// Its time `[s]`.
-    pub time_s: Option<f64>,
-}
-
-impl Extreme {
-    /// A value with its time; none where the value is zero.
-    pub fn at(value: f64, time_s: f64) -> Self {
-        Self {
-            value: Some(value),
-            time_s: (value > 0.0).then_some(time_s),
-        }
-    }
-
-    /// A value without a time.
-    pub fn timeless(value: f64) -> Self {
-        Self {
-            value: Some(value),
-            time_s: None,
-        }
-    }
 }
 
 /// A row of the table of positions.
@@ -410,6 +392,8 @@ impl JobRecord {
             places: places.collect(),
             at_peaks: Vec::new(),
             banks: bank_rows_of_none(job),
+            dead: Vec::new(),
+            freeboards: freeboard_rows_of_none(job),
         }
     }
 }
@@ -435,6 +419,16 @@ impl Summary {
         };
         (self.peak_angle_joint, self.peak_angle_rad) = largest(&mut of("angle_rad"));
         (self.peak_bending_joint, self.peak_bending_nm) = largest(&mut of("bending_nm"));
+    }
+
+    /// Fills in the smallest freeboard, where these are recorded (the first of equals).
+    pub fn take_freeboards(&mut self, freeboards: &[FreeboardRow]) {
+        for row in freeboards {
+            let Some(board_m) = row.least.value else { continue };
+            if self.least_freeboard_m.is_none_or(|least_m| board_m < least_m) {
+                (self.least_freeboard_m, self.least_freeboard_module) = (Some(board_m), Some(row.module));
+            }
+        }
     }
 
     /// Fills in the peaks of the whole bridge from the rows of its positions and joints (the first of equals; no place

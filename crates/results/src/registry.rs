@@ -14,12 +14,12 @@ pub(crate) use column::{ColumnSource, HistorySample, JointRow, RowOf};
 
 use crate::FailureKind;
 use crate::arrays::CellKind;
-use crate::quantities::{QUANTITIES, SECTION_QUANTITIES};
+use crate::quantities::{DEAD_QUANTITIES, QUANTITIES, SECTION_QUANTITIES};
 use crate::record::JobRecord;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use column::{
-    at_peak, centimetres, kilonewtons, measure, of_bank, of_connector, of_job, of_joint, of_mode, of_pin, of_place,
-    of_position, of_record, of_sample, of_section, peak_card, plain_card,
+    at_peak, at_rest, centimetres, kilonewtons, measure, of_bank, of_connector, of_freeboard, of_job, of_joint,
+    of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, peak_card, plain_card,
 };
 use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;
@@ -85,6 +85,8 @@ pub const COLUMNS: &[Column] = &[
         .card(plain_card("largest dynamic amplification")),
     measure("influential_length_m", "influential length", "length over which a static load presses the bridge down; null in crossings", |r| r.summary.influential_length_m.into()).unit("m")
         .card(plain_card("longest influential length")),
+    of_job("least_freeboard_m", Numbers, ("least freeboard", "smallest height of any corner of a module's deck above the water"), |r| r.summary.least_freeboard_m.into()).unit("m").role(ColumnRole::Listed).when(When::Freeboards),
+    of_job("least_freeboard_module", Counts, ("least freeboard module", "its module"), |r| r.summary.least_freeboard_module.into()).when(When::Freeboards),
     of_job("bottom_emerged", Flags, ("bottom emerged", "whether a corner of a module's bottom rose above the water; null unless the bridge has `draft_m`"), |r| r.summary.bottom_emerged.into()),
     of_job("deck_submerged", Flags, ("deck submerged", "whether a corner of a module's deck went below the water; null unless the bridge has `freeboard_m`"), |r| r.summary.deck_submerged.into()),
     of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle, from 50 ms after its last point came onto a module; below zero it would have lifted off; with gaps impacts make it depend on the time step; null where no axle has been on its modules so long"), |r| r.summary.min_contact_force_n.into()).unit("N").role(ColumnRole::Listed),
@@ -193,6 +195,21 @@ pub const COLUMNS: &[Column] = &[
     of_bank("peak_toward_time_s", Numbers, ("peak reaction time", "its time"), |r| r.row.toward.time_s.into()).unit("s"),
     of_bank("peak_away_n", Numbers, ("peak reaction, against its sense", "largest force against the bank's sense, of a spring that holds both ways"), |r| r.row.away.value.into()).newtons(),
     of_bank("peak_away_time_s", Numbers, ("peak reaction, against its sense, time", "its time"), |r| r.row.away.time_s.into()).unit("s"),
+
+    at_rest("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    at_rest("quantity", Words(&DEAD_QUANTITIES), ("quantity", "what the value is, with its unit: deflections and sinkages downward, forces of joints and connectors in tension, reactions of banks along their sense; trim positive where a module's right end is higher, heel where its side of higher y is"), |r| r.row.quantity.as_str().into()).role(ColumnRole::Key),
+    at_rest("position", Counts, ("position", "position of a deflection or freeboard, joint of a force"), |r| r.row.position.into()).role(ColumnRole::Key),
+    at_rest("module", Counts, ("module", "number of the module, from 1, of its sinkage, trim, heel and freeboard"), |r| r.row.module.into()).role(ColumnRole::Key),
+    at_rest("bank", Counts, ("bank", "number of the bank, from 0, of a reaction"), |r| r.row.bank.into()).role(ColumnRole::Key),
+    at_rest("y_m", Numbers, ("y", "place across, of a connector, a bank's place or a deck's edge; null of a sum"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
+    at_rest("value", Numbers, ("value", "the quantity, in its unit"), |r| r.row.value.into()),
+
+    of_freeboard("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_freeboard("module", Counts, ("module", "number of the module, from 1"), |r| r.row.module.into()).role(ColumnRole::Key),
+    of_freeboard("position", Counts, ("position", "position of its end"), |r| r.row.position.into()).role(ColumnRole::Key),
+    of_freeboard("y_m", Numbers, ("y", "place across of the deck's edge"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
+    of_freeboard("least_freeboard_m", Numbers, ("least freeboard", "smallest height of that corner of the deck above the water; below 0 under it"), |r| r.row.least.value.into()).unit("m"),
+    of_freeboard("least_freeboard_time_s", Numbers, ("least freeboard time", "its time; null of a static case"), |r| r.row.least.time_s.into()).unit("s"),
 ];
 
 /// The columns of all tables and the axes that have a name of their own, in their order.

@@ -39,11 +39,15 @@ pub enum TableName {
     AtPeaks,
     /// One row a bank of a job, or one of its places across.
     Banks,
+    /// One row a number of a job at rest, before its vehicle comes.
+    Dead,
+    /// One row a corner of a module's deck of a job.
+    Freeboards,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
@@ -55,6 +59,8 @@ impl TableName {
         Self::Places,
         Self::AtPeaks,
         Self::Banks,
+        Self::Dead,
+        Self::Freeboards,
     ];
 
     /// Its name as files and references have it.
@@ -71,6 +77,8 @@ impl TableName {
             Self::Places => "places",
             Self::AtPeaks => "at_peaks",
             Self::Banks => "banks",
+            Self::Dead => "dead",
+            Self::Freeboards => "freeboards",
         }
     }
 

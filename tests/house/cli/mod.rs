@@ -11,6 +11,7 @@ mod compare_input;
 mod compare_kinds;
 mod contradictions;
 mod damaged;
+mod dead;
 mod designs;
 mod export;
 mod export_input;

@@ -96,7 +96,9 @@ fn against(table: TableName) -> &'static [Against] {
         | TableName::Sections
         | TableName::Places
         | TableName::AtPeaks
-        | TableName::Banks => &[],
+        | TableName::Banks
+        | TableName::Dead
+        | TableName::Freeboards => &[],
     }
 }
 

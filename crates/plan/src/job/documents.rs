@@ -5,7 +5,7 @@
 use crate::design::{DesignPoint, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
 use crate::study_file::{Analysis, Study, WearSpec, filled_vehicle};
-use pontoon_core::bridge::{BankSpec, BridgeDesign, Joints, Supports};
+use pontoon_core::bridge::{BankSpec, BridgeDesign, DeadSpec, Joints, Supports};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::vehicle::Vehicle;
 use serde::Serialize;
@@ -234,6 +234,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     neutral.connectors.damping_n_s_m = None;
     neutral.joints = design.joints.structure(design.modules, &design.hinges);
     neutral.banks = design.banks.iter().map(BankSpec::structure).collect();
+    neutral.water_level_m = None;
     let structure_key = hash_of(&to_value(&neutral)).as_str().into();
     neutral.connectors.stiffness_n_m = 1.0;
     let operator_key = hash_of(&to_value(&neutral)).as_str().into();
@@ -243,6 +244,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
         of_kind.joints = Joints::default();
         of_kind.supports = Supports::default();
         of_kind.banks = Vec::new();
+        of_kind.dead = DeadSpec::default();
         of_kind.draft_m = None;
         of_kind.freeboard_m = None;
         hash_of(&to_value(&of_kind)).as_str().into()

@@ -73,6 +73,9 @@ impl Jobs<'_> {
                 let speed_m_s = short.speed()?;
                 short.time_step(crossing, &bridge, &vehicle, speed_m_s)?;
                 short.damping(crossing, &bridge)?;
+                if bridge.design.has_dead_load() {
+                    short.held(&bridge)?;
+                }
                 (Task::Crossing { speed_m_s }, connection, load_n)
             }
             Analysis::Static(_) => {
@@ -319,7 +322,7 @@ impl Short<'_> {
         Err(Refusal::new(&self.study.file, path, FoundValue::NOTHING, allowed))
     }
 
-    /// Refuses a static case of a bridge that its supports and hinges leave free to move horizontally.
+    /// Refuses a static case or a dead load of a bridge that its supports, banks and hinges leave free to move horizontally.
     fn held(&self, bridge: &BridgeEntry) -> Result<(), Refusal> {
         bridge.design.check_held().map_err(|free| self.of_bridge(free))
     }

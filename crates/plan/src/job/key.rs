@@ -77,6 +77,12 @@ pub(super) fn key_of(job: &Job) -> JobKey {
     if let Some(laws) = job.laws_key() {
         hasher.update(&laws);
     }
+    // a river that has not risen is known as it was before any could
+    let level_m = job.bridge.design.risen_m();
+    if level_m != 0.0 {
+        hasher.update(b"water level");
+        hasher.update(&level_m.to_bits().to_le_bytes());
+    }
     let mut number = |x: f64| {
         hasher.update(&(x + 0.0).to_bits().to_le_bytes());
     };

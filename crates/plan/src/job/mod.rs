@@ -35,7 +35,7 @@ use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::JointGaps;
 use pontoon_core::connector::{Connection, ConnectorLaw, OwnLaws};
 use pontoon_core::input::InvalidInput;
-use pontoon_core::response::Record;
+use pontoon_core::response::{DeadState, Record};
 use pontoon_core::vehicle::Inertia;
 use std::sync::Arc;
 
@@ -165,8 +165,8 @@ impl<'a> CrossingJob<'a> {
         Ok(())
     }
 
-    /// What a solver is given, of which a record is kept.
-    pub fn input(&self, record: Record) -> Crossing {
+    /// What a solver is given, of which a record is kept; it starts from the `dead` state of its bridge.
+    pub fn input(&self, record: Record, dead: Option<Arc<DeadState>>) -> Crossing {
         Crossing {
             connection: self.job.connection,
             connector_stiffness_n_m: self.job.bridge.design.connectors.stiffness_n_m,
@@ -175,6 +175,7 @@ impl<'a> CrossingJob<'a> {
             speed_m_s: self.speed_m_s,
             tail_s: self.analysis.tail_s,
             record,
+            dead,
         }
     }
 
@@ -373,6 +374,7 @@ impl Job {
                 .gaps_m()
                 .map(|(tension, compression)| [tension, compression].map(bits)),
             laws: self.laws_key(),
+            level: bits(self.bridge.design.risen_m()),
             load: bits(self.load_n),
             task: bits(match self.task {
                 Task::Crossing { speed_m_s } => speed_m_s,
@@ -391,6 +393,7 @@ pub(super) struct Identity {
     analysis: usize,
     gaps: Option<[u64; 2]>,
     laws: Option<[u8; 32]>,
+    level: u64,
     load: u64,
     task: u64,
 }

@@ -31,6 +31,9 @@ pub struct RecordSpec {
     /// Whether to write the table of section forces and angles of joints: a step then costs more.
     #[serde(default)]
     pub sections: bool,
+    /// Whether to write the table of freeboards at the corners of modules' decks.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub freeboards: bool,
     /// Places along the bridge whose deflection is followed, for the table of places `[m]`.
     #[serde(default)]
     pub places_x_m: Vec<f64>,
@@ -200,6 +203,7 @@ impl Default for RecordSpec {
             connectors: true,
             pins: false,
             sections: false,
+            freeboards: false,
             places_x_m: Vec::new(),
             at_peak_of: Vec::new(),
         }
@@ -248,6 +252,7 @@ impl RecordSpec {
             places_x_m: self.places_x_m.clone(),
             pins: self.pins,
             sections: self.sections,
+            corners: self.freeboards,
             at_peaks: self.at_peak_of.iter().map(|peak| peak.watched()).collect(),
         }
     }
@@ -272,6 +277,16 @@ impl RecordSpec {
                     return Err(Refusal::new(file, key, number, "each number once").because(RefusalKind::Repeated));
                 }
             }
+        }
+        if self.freeboards && design.freeboards_m().iter().all(Option::is_none) {
+            let found = FoundValue::value(true).which("with no module that has a freeboard_m");
+            let refused = Refusal::new(
+                file,
+                "record.freeboards",
+                found,
+                "freeboard_m of the bridge, or of its kinds",
+            );
+            return Err(refused.because(RefusalKind::Conflict));
         }
         self.check_places(file, design.length_m())?;
         self.check_peaks(file, design)

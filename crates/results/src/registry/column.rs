@@ -7,6 +7,7 @@ use crate::arrays::CellKind;
 use crate::record::{
     AtPeakRow, BankRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
 };
+use crate::rest_rows::{DeadRow, FreeboardRow};
 use crate::table::TableName;
 use pontoon_plan::input::Cell;
 use serde::Serialize;
@@ -75,6 +76,10 @@ pub(crate) enum ColumnSource {
     AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>),
     /// A bank.
     Bank(fn(&RowOf<'_, BankRow>) -> Cell<'static>),
+    /// A number at rest.
+    Dead(for<'a> fn(&RowOf<'a, DeadRow>) -> Cell<'a>),
+    /// A corner of a deck.
+    Freeboard(fn(&RowOf<'_, FreeboardRow>) -> Cell<'static>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -134,6 +139,8 @@ pub enum When {
     Pins,
     /// Where section forces are recorded.
     Sections,
+    /// Where freeboards are recorded.
+    Freeboards,
     /// Where histories of places are recorded.
     PlaceHistories,
     /// Where histories of pins are recorded.
@@ -334,6 +341,8 @@ entries! {
     of_place: Places, Place(fn(&RowOf<'_, PlaceRow>) -> Cell<'static>);
     at_peak: AtPeaks, AtPeak(for<'a> fn(&RowOf<'a, AtPeakRow>) -> Cell<'a>);
     of_bank: Banks, Bank(fn(&RowOf<'_, BankRow>) -> Cell<'static>);
+    at_rest: Dead, Dead(for<'a> fn(&RowOf<'a, DeadRow>) -> Cell<'a>);
+    of_freeboard: Freeboards, Freeboard(fn(&RowOf<'_, FreeboardRow>) -> Cell<'static>);
 }
 
 pub(super) const fn peak_card(

@@ -3,6 +3,7 @@
 //! Knows which number of a response fills which field of a record, and when a time step has been halved enough. Does not know
 //! columns, or how a crossing is stepped.
 
+use super::dead_rows::{dead_rows, freeboard_rows, lowest};
 use super::failure::{JobFailure, too_many_steps};
 use super::joint_rows::Rounding;
 use super::quantity_words::quantity_word;
@@ -12,8 +13,8 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::{
-    AtPeak, BankPeaks, CrossingResponse, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record, Recorded,
-    Subject,
+    AtPeak, BankPeaks, CrossingResponse, DeadState, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record,
+    Recorded, Subject,
 };
 use pontoon_core::vehicle::Vehicle;
 use pontoon_plan::job::{CrossingJob, Job};
@@ -29,7 +30,7 @@ pub(super) type JobResult = Result<JobRecord, JobFailure>;
 /// Solves a crossing by the reference solver.
 pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, models: &SharedModels) -> JobResult {
     let solver = models.crossing(crossing)?;
-    let response = solver.solve(crossing.vehicle(), &crossing.input(record))?;
+    let response = solver.solve(crossing.vehicle(), &crossing.input(record, models.dead(crossing.job)?))?;
     recorded(crossing, response, models)
 }
 
@@ -45,7 +46,8 @@ pub(super) fn again_at_half_step(
         let behind = format!("; at half the time step: {}", too_many_steps(beyond).text);
         JobFailure::from(failed.failure.clone().said("", &behind))
     })?;
-    let (vehicle, input) = (crossing.vehicle(), crossing.input(record));
+    let dead = models.dead(crossing.job)?;
+    let (vehicle, input) = (crossing.vehicle(), crossing.input(record, dead));
     let again = if crossing.operator_tolerance().is_some() {
         let mut answers = models.operated(crossing)?.solve_all(&[(vehicle, &input)], 1);
         answers.pop().ok_or_else(|| JobFailure::of_program("no answer"))?
@@ -70,19 +72,23 @@ pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models:
         Ok(solver) => solver,
         Err(failure) => return lane_batch.iter().map(|_| Err(failure.clone())).collect(),
     };
-    let inputs: Vec<Crossing> = lane_batch
+    // one whose bridge has no dead state fails alone
+    let inputs: Vec<Result<Crossing, JobFailure>> = lane_batch
         .iter()
-        .map(|(crossing, record)| crossing.input(record.clone()))
+        .map(|(crossing, record)| Ok(crossing.input(record.clone(), models.dead(crossing.job)?)))
         .collect();
-    let asked: Vec<(&Vehicle, &Crossing)> = lane_batch
+    let started = lane_batch.iter().zip(&inputs);
+    let started: Vec<(&CrossingJob<'_>, &Crossing)> = started
+        .filter_map(|((crossing, _), input)| Some((crossing, input.as_ref().ok()?)))
+        .collect();
+    let asked: Vec<(&Vehicle, &Crossing)> = started
         .iter()
-        .zip(&inputs)
-        .map(|((crossing, _), input)| (crossing.vehicle(), input))
+        .map(|(crossing, input)| (crossing.vehicle(), *input))
         .collect();
     let answers = match first.analysis.time_step.tolerance() {
         Some(tolerance) => {
             let may_run = |place: usize, time_step_s: f64| {
-                let (crossing, _) = &lane_batch[place];
+                let (crossing, _) = started[place];
                 crossing.check_steps(time_step_s).map_err(too_many_steps)
             };
             refined(&solver, &asked, tolerance, may_run)
@@ -92,13 +98,17 @@ pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models:
             solver.solve_all(&asked, 0).into_iter().map(plain).collect()
         }
     };
-    let record = |((crossing, _), answer): (&(CrossingJob<'_>, Record), Result<SteppedResponse, JobFailure>)| {
-        let (response, time_step_s) = answer?;
+    let mut answers = answers.into_iter();
+    let record = |((crossing, _), input): (&(CrossingJob<'_>, Record), &Result<Crossing, JobFailure>)| {
+        input.as_ref().map_err(Clone::clone)?;
+        let (response, time_step_s) = answers
+            .next()
+            .unwrap_or_else(|| Err(JobFailure::of_program("no answer")))?;
         let mut record = recorded(crossing, response, models)?;
         record.summary.time_step_s = time_step_s;
         Ok(record)
     };
-    lane_batch.iter().zip(answers).map(record).collect()
+    lane_batch.iter().zip(&inputs).map(record).collect()
 }
 
 /// A response and the time step that the program has found for it.
@@ -184,7 +194,12 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
 fn recorded(crossing: &CrossingJob<'_>, response: CrossingResponse, models: &SharedModels) -> JobResult {
     let job = crossing.job;
     let static_peaks_m = models.creeping_peaks_m(job)?;
-    let mut record = rows(job, response, static_peaks_m.as_deref().map(Vec::as_slice));
+    let mut record = rows(
+        job,
+        response,
+        models.dead(job)?.as_deref(),
+        static_peaks_m.as_deref().map(Vec::as_slice),
+    );
     record.summary.step_warning = crossing.is_step_long();
     Ok(record)
 }
@@ -223,7 +238,12 @@ fn joint_rows(joint: &JointPeaks) -> impl Iterator<Item = ConnectorRow> {
     std::iter::once(peaks_row(joint.joint, None, &joint.sum)).chain(each)
 }
 
-fn rows(job: &Job, mut response: CrossingResponse, static_peaks_m: Option<&[f64]>) -> JobRecord {
+fn rows(
+    job: &Job,
+    mut response: CrossingResponse,
+    dead: Option<&DeadState>,
+    static_peaks_m: Option<&[f64]>,
+) -> JobRecord {
     let positions: Vec<PositionRow> = (0..)
         .zip(&response.positions)
         .map(|(i, peaks): (usize, _)| position_row(peaks, static_peaks_m.map(|of| of[i])))
@@ -255,6 +275,8 @@ fn rows(job: &Job, mut response: CrossingResponse, static_peaks_m: Option<&[f64]
     };
     summary.take_peaks(&positions, &connectors);
     summary.take_joint_peaks(&pins, &sections);
+    let freeboards = freeboard_rows(job, dead, &lowest(&response.recorded.corners));
+    summary.take_freeboards(&freeboards);
     summary.dynamic_amplification = summary
         .peak_deflection_m
         .zip(static_peak_m.filter(|&peak| peak > 0.0))
@@ -269,6 +291,8 @@ fn rows(job: &Job, mut response: CrossingResponse, static_peaks_m: Option<&[f64]
         connectors,
         places: recorded.places.iter().map(place_row).collect(),
         banks: recorded.banks.iter().map(bank_row).collect(),
+        dead: dead_rows(job, dead),
+        freeboards,
         at_peaks: recorded.at_peaks.iter().flat_map(|at| named.at_peak(at)).collect(),
         histories: named.histories(recorded),
         modes: Vec::new(),

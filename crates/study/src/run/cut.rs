@@ -66,5 +66,12 @@ fn rows(study: &Study, job: &Job) -> usize {
     let series = record.histories.series(design) * job.steps();
     let of_bank = |bank: &BankSpec| 1 + design.bank_places_y_m(bank).len();
     let banks: usize = design.banks.iter().map(of_bank).sum();
-    1 + positions + places + banks + (of_joint + pins + sections) * joints + at_peaks + series
+    let freeboards = if record.freeboards { 4 * design.modules } else { 0 };
+    let dead = if design.has_dead_load() {
+        // deflections, forces and reactions once more, and of each module three numbers and four freeboards
+        design.positions() + (1 + design.connectors.y_m.len()) * joints + banks + 7 * design.modules
+    } else {
+        0
+    };
+    1 + positions + places + banks + freeboards + dead + (of_joint + pins + sections) * joints + at_peaks + series
 }

@@ -4,7 +4,7 @@
 //! tables.
 
 use super::retry::half_step_may_help;
-use pontoon_core::analysis::AnalysisError;
+use pontoon_core::analysis::{AnalysisError, DeadFault};
 use pontoon_core::bridge::BridgeError;
 use pontoon_core::bridge::LinkPlace;
 use pontoon_core::fem::FemError;
@@ -128,6 +128,16 @@ fn failure_of(error: &AnalysisError) -> Failure {
         AnalysisError::StaticNotConverged { iterations, load_x_m } => of(FailureKind::StaticContactNotSettled)
             .with("iterations", *iterations as f64)
             .with("load_x_m", *load_x_m),
+        AnalysisError::NoDeadState(fault) => {
+            let failure = of(FailureKind::NoDeadState);
+            match fault {
+                DeadFault::NotSettled { iterations } => failure.with("iterations", *iterations as f64),
+                DeadFault::NotHeld => failure,
+                DeadFault::Sinks { module, under_m } => {
+                    failure.with("module", *module as f64).with("under_m", *under_m)
+                }
+            }
+        }
         AnalysisError::NotFinite { time_s } => of(FailureKind::NotFinite).with("time_s", *time_s),
         AnalysisError::Factor(_) => of(FailureKind::NotPrepared),
         AnalysisError::ModeMissing { searched, .. } => of(FailureKind::ModeMissing).with("searched", *searched as f64),

@@ -208,6 +208,7 @@ impl SelfTestCrossing {
             speed_m_s: 9.0,
             tail_s: 0.5,
             record: Record::default(),
+            dead: None,
         };
         let settings = CrossingSettings {
             time_step_s: self.time_step_s,

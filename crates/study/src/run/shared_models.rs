@@ -6,65 +6,28 @@ use super::cache::{Cache, CacheLookup};
 use super::cancel::CancelToken;
 use super::failure::JobFailure;
 use super::guard::guarded;
+use super::model_keys::{
+    BridgeKey, CreepingKey, CrossingKey, DampingKey, DeadKey, LaneBatchKey, ModuleKey, OperatorKey, bridge_key,
+    creeping_key, crossing_key, damping_key, dead_key, model, module_keys, operator_key, word,
+};
 use super::progress::Progress;
 use super::retry::RETRY_STEP_SHARE;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
-use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
+use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
-use pontoon_core::operator::{BridgeOperator, Followed};
+use pontoon_core::operator::BridgeOperator;
+use pontoon_core::response::DeadState;
 use pontoon_core::stop::Stop;
-use pontoon_journal::PreparationKey;
 use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A thing that jobs share, or why it could not be made.
 type SharedResult<T> = Result<Arc<T>, JobFailure>;
-type ModuleKey = (Model, Arc<str>);
-type BridgeKey = (Model, Arc<str>);
-type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
-type CrossingKey = (DampingKey, [u64; 2], [usize; 2]);
-/// Crossings of one key are solved side by side.
-pub(super) type LaneBatchKey = (CrossingKey, OperatorKey, Option<u64>);
-type CreepingKey = (BridgeKey, Arc<str>, Option<(u64, u64)>, Option<[u8; 32]>, u64);
-
-/// What an operator depends on: a bridge, and how far its flexibility may be off.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct OperatorKey {
-    bridge: BridgeKey,
-    tolerance: u64,
-    pins: bool,
-    /// Places that are followed, by their bits.
-    places: Vec<u64>,
-}
-
-impl OperatorKey {
-    /// What its file in the cache is named by.
-    fn name(&self) -> String {
-        let (model, structure) = &self.bridge;
-        let mut name = format!("{} {structure} {:016x}", word(*model), self.tolerance);
-        if self.pins {
-            name.push_str(" pins");
-        }
-        for place in &self.places {
-            let _ = write!(name, " {place:016x}");
-        }
-        Cache::name(&name)
-    }
-
-    /// What it follows.
-    fn followed(&self) -> Followed {
-        Followed {
-            pins: self.pins,
-            places_x_m: self.places.iter().copied().map(f64::from_bits).collect(),
-        }
-    }
-}
 
 /// Damping and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,6 +58,7 @@ pub(super) struct SharedModels {
     operated: BTreeMap<LaneBatchKey, SharedResult<OperatorSolver>>,
     crossings: BTreeMap<CrossingKey, SharedResult<CrossingSolver>>,
     statics: BTreeMap<BridgeKey, SharedResult<StaticSolver>>,
+    dead: BTreeMap<DeadKey, SharedResult<Option<Arc<DeadState>>>>,
     creeping: BTreeMap<CreepingKey, SharedResult<Vec<f64>>>,
     condensations: AtomicUsize,
     operators_made: OperatorsMade,
@@ -126,6 +90,7 @@ impl SharedModels {
             operated: BTreeMap::new(),
             crossings: BTreeMap::new(),
             statics: BTreeMap::new(),
+            dead: BTreeMap::new(),
             creeping: BTreeMap::new(),
             condensations: AtomicUsize::new(0),
             operators_made: OperatorsMade::default(),
@@ -166,11 +131,12 @@ impl SharedModels {
         models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| {
             models.operator_solver(job)
         });
+        models.dead = models.dead_states(cancel, &loaded);
         progress.stage("static peaks of creeping loads");
         let creeping: Vec<&Job> = crossings
             .iter()
             .map(|crossing| crossing.job)
-            .filter(|job| is_held(job))
+            .filter(|job| models.has_static_peak(job))
             .collect();
         models.creeping = models.creeping_peaks(cancel, &creeping);
         models
@@ -351,12 +317,42 @@ impl SharedModels {
             let key = |job: &&Job| Some(creeping_key(job));
             each(cancel, &jobs, key, |job| {
                 let load = load.as_ref().map_err(Clone::clone)?;
-                Ok(load.peaks_m(&static_case(job, 0.0))?)
+                Ok(load.peaks_m(&static_case(job, 0.0, self.dead(job)?))?)
             })
         };
         let vehicles: Vec<_> = vehicles.into_iter().collect();
         let made: Vec<_> = vehicles.into_par_iter().with_max_len(1).map(peaks).collect();
         made.into_iter().flatten().collect()
+    }
+
+    /// The dead states of bridges that are loaded before any vehicle comes.
+    fn dead_states(
+        &self,
+        cancel: &CancelToken,
+        jobs: &[&Job],
+    ) -> BTreeMap<DeadKey, SharedResult<Option<Arc<DeadState>>>> {
+        let loaded: Vec<&Job> = jobs
+            .iter()
+            .copied()
+            .filter(|job| job.bridge.design.has_dead_load())
+            .collect();
+        each(
+            cancel,
+            &loaded,
+            |job| Some(dead_key(job)),
+            |job| {
+                let case = DeadCase::new(&job.bridge.design, job.connection, job.laws_at_rest());
+                Ok(shared(&self.statics, &bridge_key(job))?.dead_state(&case)?)
+            },
+        )
+    }
+
+    /// The state at rest from which a job's vehicle starts; none of a bridge without a dead load.
+    pub(super) fn dead(&self, job: &Job) -> Result<Option<Arc<DeadState>>, JobFailure> {
+        if !job.bridge.design.has_dead_load() {
+            return Ok(None);
+        }
+        shared(&self.dead, &dead_key(job)).map(|state| (*state).clone())
     }
 
     /// The solver of a crossing.
@@ -369,15 +365,20 @@ impl SharedModels {
         shared(&self.statics, &bridge_key(job))
     }
 
-    /// The largest static deflection of each position under the job's load over its places `[m]`; none where the bridge is
-    /// not held.
+    /// The largest static deflection of each position under the job's load over its places `[m]`; none where nothing linear
+    /// holds the bridge.
     pub(super) fn creeping_peaks_m(&self, job: &Job) -> Result<Option<Arc<Vec<f64>>>, JobFailure> {
-        if !is_held(job) {
+        if !self.has_static_peak(job) {
             return Ok(None);
         }
         shared(&self.creeping, &creeping_key(job))
             .map(Some)
             .map_err(|failure| failure.said("static peak: ", ""))
+    }
+
+    /// Whether a load can creep over the bridge of a job: something linear holds it.
+    fn has_static_peak(&self, job: &Job) -> bool {
+        is_held(job) && !self.statics(job).is_ok_and(|solver| solver.is_loose())
     }
 
     /// The modules, for a later run.
@@ -434,7 +435,7 @@ impl SharedModels {
 }
 
 /// The static case of a job with its load at a place.
-pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
+pub(super) fn static_case(job: &Job, load_x_m: f64, dead: Option<Arc<DeadState>>) -> StaticCase {
     StaticCase {
         connection: job.connection,
         connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
@@ -442,6 +443,7 @@ pub(super) fn static_case(job: &Job, load_x_m: f64) -> StaticCase {
         load_n: job.load_n,
         load_x_m,
         places_x_m: job.record.places_x_m.clone(),
+        dead,
     }
 }
 
@@ -486,91 +488,4 @@ fn shared<K: Ord, T>(map: &BTreeMap<K, SharedResult<T>>, key: &K) -> SharedResul
 
 fn not_prepared() -> JobFailure {
     JobFailure::of_program("not prepared")
-}
-
-fn model(job: &Job) -> Model {
-    job.model().into()
-}
-
-/// A model's word in tables and keys.
-const fn word(model: Model) -> &'static str {
-    match model {
-        Model::Full => "full",
-        Model::SuperElement => "super-element",
-    }
-}
-
-/// Jobs by the bridge whose preparation they share; bridges of the same module stand side by side.
-pub(super) fn by_bridge<'j>(jobs: impl Iterator<Item = &'j Job>) -> Vec<(PreparationKey, Vec<&'j Job>)> {
-    let mut bridges: BTreeMap<(Vec<ModuleKey>, BridgeKey), Vec<&Job>> = BTreeMap::new();
-    for job in jobs {
-        let key = (module_keys(job), bridge_key(job));
-        bridges.entry(key).or_default().push(job);
-    }
-    let keyed = bridges
-        .into_iter()
-        .map(|((_, key), jobs)| (preparation_key(&key), jobs));
-    keyed.collect()
-}
-
-/// What the preparation of a job's bridge is found by in the journal.
-pub(crate) fn preparation_key_of(job: &Job) -> PreparationKey {
-    preparation_key(&bridge_key(job))
-}
-
-fn preparation_key((model, structure): &BridgeKey) -> PreparationKey {
-    let hash = blake3::hash(format!("{} {structure}", word(*model)).as_bytes());
-    let mut key = [0; 16];
-    key.copy_from_slice(&hash.as_bytes()[..16]);
-    PreparationKey(key)
-}
-
-/// The keys of a job's modules, in the order of its bridge's variants.
-fn module_keys(job: &Job) -> Vec<ModuleKey> {
-    let keys = job.bridge.module_keys.iter();
-    keys.map(|key| (model(job), key.clone())).collect()
-}
-
-fn bridge_key(job: &Job) -> BridgeKey {
-    (model(job), job.bridge.structure_key.clone())
-}
-
-fn damping_key(crossing: &CrossingJob<'_>) -> DampingKey {
-    let damping = crossing.analysis.damping;
-    (
-        bridge_key(crossing.job),
-        damping.ratio.to_bits(),
-        damping.frequencies_hz.map(|f| f.map(f64::to_bits)),
-    )
-}
-
-fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
-    let analysis = crossing.analysis;
-    let scheme = [crossing.first_time_step_s(), analysis.spectral_radius].map(f64::to_bits);
-    let limits = [analysis.newton_limit, analysis.bisection_limit];
-    (damping_key(crossing), scheme, limits)
-}
-
-fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
-    let job = crossing.job;
-    let record = job.record.of_crossing(&job.bridge.design);
-    Some(OperatorKey {
-        bridge: bridge_key(crossing.job),
-        tolerance: crossing.operator_tolerance()?.to_bits(),
-        pins: record.needs_pins(),
-        places: record.places_x_m.into_iter().map(f64::to_bits).collect(),
-    })
-}
-
-fn creeping_key(job: &Job) -> CreepingKey {
-    let gaps = job
-        .gaps_m()
-        .map(|(tension, compression)| (tension.to_bits(), compression.to_bits()));
-    (
-        bridge_key(job),
-        job.vehicle.key.clone(),
-        gaps,
-        job.laws_at_rest_key(),
-        job.load_n.to_bits(),
-    )
 }

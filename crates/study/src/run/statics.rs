@@ -2,6 +2,7 @@
 //!
 //! Knows which number of a response fills which field of a record. Does not know columns, or how a case is solved.
 
+use super::dead_rows::{dead_rows, freeboard_rows};
 use super::failure::JobFailure;
 use super::joint_rows::Rounding;
 use super::shared_models::{SharedModels, static_case};
@@ -13,7 +14,7 @@ use pontoon_results::{BankRow, ConnectorRow, Extreme, JobRecord, PlaceRow, Posit
 pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
     let response = models
         .statics(job)?
-        .solve(&job.vehicle.vehicle, &static_case(job, load.x_m))?;
+        .solve(&job.vehicle.vehicle, &static_case(job, load.x_m, models.dead(job)?))?;
     Ok(rows(job, &response))
 }
 
@@ -58,6 +59,13 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         sections = rounding.static_section_rows(&response.sections);
     }
     summary.take_joint_peaks(&pins, &sections);
+    let dead = response.dead.as_deref();
+    let mut freeboards = Vec::new();
+    if job.record.freeboards {
+        let lowest: Vec<Extreme> = response.corners_m.iter().map(|down| Extreme::timeless(*down)).collect();
+        freeboards = freeboard_rows(job, dead, &lowest);
+    }
+    summary.take_freeboards(&freeboards);
     JobRecord {
         job: job.number,
         summary,
@@ -67,6 +75,8 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         sections,
         places: place_rows(job, &response.places_m),
         banks: bank_rows(&response.banks),
+        dead: dead_rows(job, dead),
+        freeboards,
         ..JobRecord::default()
     }
 }
