@@ -86,7 +86,9 @@
       bridge.lost_joints?.includes(joint) ? 'lost' : bridge.open_joints?.includes(joint) ? 'uncoupled' : '',
     );
     const banks = bridge.banks ?? [];
-    const w = array(play.deflection_m),
+    const moved = array(play.deflection_m),
+      w = play.rest_m ? moved.map((v, k) => v + play.rest_m[k % P]) : moved,
+      level = bridge.water_level_m ?? 0,
       force = array(play.force_n),
       state = array(play.state),
       front = array(play.front_x_m);
@@ -131,7 +133,7 @@
         reach = 34;
       bars = barTop + reach + 6;
       const height = bars + reach + 22,
-        water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick;
+        water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick - level * E * s;
       const ticks = d3
         .scaleLinear([0, length], [0, 1])
         .ticks(Math.max(3, Math.round(width / 110)))
@@ -234,7 +236,7 @@
         el(
           'p',
           { class: 'sub scale' },
-          `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of the unloaded bridge.' : 'The water line is drawn at half the depth.'}`,
+          `Displacements are drawn ${E} ${E === 1 ? 'time' : 'times'} as large as they are, the depth of the modules ${tall === 1 ? 'as it is' : `${tall} times`}. ${bridge.draft_m > 0 ? 'The water line is that of modules that float by themselves.' : 'The water line is drawn at half the depth.'}${play.rest_m ? ' The dashed line is where they would float; the bridge starts from its dead state.' : ''}`,
         ),
       );
       part.node = node;
@@ -326,12 +328,12 @@
       let deep = 0,
         high2 = 0;
       for (let i = 1; i < P; i++) {
-        const v = between(w, f, i, P);
-        if (v > between(w, f, deep, P)) deep = i;
-        if (v < between(w, f, high2, P)) high2 = i;
+        const v = between(moved, f, i, P);
+        if (v > between(moved, f, deep, P)) deep = i;
+        if (v < between(moved, f, high2, P)) high2 = i;
       }
-      const wd = between(w, f, deep, P),
-        wu = -between(w, f, high2, P),
+      const wd = between(moved, f, deep, P),
+        wu = -between(moved, f, high2, P),
         N = j => numbers.quantity(Math.abs(between(force, f, j, J)), 'N', 4);
       return [
         `${time.toFixed(2)} s`,

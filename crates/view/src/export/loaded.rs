@@ -12,7 +12,7 @@ use super::whole::WholeFolder;
 use super::{ExportError, Part, check_size};
 use pontoon_core::analysis::crossing::CrossingSettings;
 use pontoon_core::analysis::snapshot::Snapshot;
-use pontoon_core::analysis::statics::StaticSolver;
+use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
 use pontoon_core::bridge::{BridgeStresses, Ends};
 use pontoon_core::response::Record;
 use pontoon_plan::input::Refusal;
@@ -88,9 +88,13 @@ pub(super) fn statics(
 ) -> Result<[Part; 3], ExportError> {
     let ready = Ready::new(&subject.design, wanted.model, Ends::Supported, subject.stresses)?;
     let solver = StaticSolver::new(&ready.bridge)?;
-    let state = solver.state(&wanted.vehicle, &wanted.case)?;
+    let case = StaticCase {
+        dead: solver.dead_state(&wanted.dead)?,
+        ..wanted.case.clone()
+    };
+    let state = solver.state(&wanted.vehicle, &case)?;
     let peak = solver
-        .solve(&wanted.vehicle, &wanted.case)?
+        .solve(&wanted.vehicle, &case)?
         .deflection_m
         .into_iter()
         .fold(0.0, f64::max);
@@ -162,7 +166,13 @@ impl Passage<'_> {
         let pictures = Pictures::of(self.ready);
         let solver = self.ready.solver(settings)?;
         let crossing = self.wanted.crossing()?;
-        let input = crossing.input(Record::default());
+        let job = crossing.job;
+        let mut dead = None;
+        if job.bridge.design.has_dead_load() {
+            let case = DeadCase::new(&job.bridge.design, job.connection, job.laws_at_rest());
+            dead = StaticSolver::new(&self.ready.bridge)?.dead_state(&case)?;
+        }
+        let input = crossing.input(Record::default(), dead);
         let mut under = solver.begin(crossing.vehicle(), &input);
         let steps = under.steps();
         let instants = 1 + steps.div_ceil(every);

@@ -3,7 +3,7 @@
 //! Knows what can be asked of which, and refuses the rest. Does not know how anything is solved.
 
 use super::{ExportError, LoadRequest, Request};
-use pontoon_core::analysis::statics::StaticCase;
+use pontoon_core::analysis::statics::{DeadCase, StaticCase};
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::bound;
@@ -55,6 +55,8 @@ pub(super) struct ModesWanted {
 pub(super) struct StaticWanted {
     pub model: Model,
     pub vehicle: Vehicle,
+    /// Under it, where it has a dead load.
+    pub dead: DeadCase,
     pub case: StaticCase,
 }
 
@@ -239,11 +241,13 @@ fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<Stati
             case: StaticCase {
                 connection: job.connection,
                 connector_stiffness_n_m: design.connectors.stiffness_n_m,
-                own_laws: job.own_laws(),
+                own_laws: job.laws_at_rest(),
                 load_n: job.load_n,
                 load_x_m: load.x_m,
                 places_x_m: Vec::new(),
+                dead: None,
             },
+            dead: DeadCase::new(design, job.connection, job.laws_at_rest()),
         })),
         (Some(load), _) => static_case(source, design, vehicle.clone(), load).map(Some),
         (None, _) => Ok(None),
@@ -336,16 +340,19 @@ fn static_case(
     let connection = if load.linear { Connection::Linear } else { connection };
     let of_bridge = |refused| Refusal::of(source, "", refused);
     design.check_held().map_err(of_bridge)?;
+    let own_laws = design.own_laws(connection, None).map_err(of_bridge)?;
     Ok(StaticWanted {
         model: ModelSpec::SuperElement.into(),
         vehicle,
+        dead: DeadCase::new(design, connection, own_laws.clone()),
         case: StaticCase {
             connection,
             connector_stiffness_n_m: connectors.stiffness_n_m,
-            own_laws: design.own_laws(connection, None).map_err(of_bridge)?,
+            own_laws,
             load_n: load.load_n,
             load_x_m,
             places_x_m: Vec::new(),
+            dead: None,
         },
     })
 }

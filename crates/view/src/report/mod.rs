@@ -138,6 +138,9 @@ pub struct BridgeNote {
     pub module_heights_m: Vec<[f64; 4]>,
     /// How deep it floats `[m]`, where the bridge says so.
     pub draft_m: Option<f64>,
+    /// How much the river has risen `[m]`.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub water_level_m: f64,
     /// Places of the positions `[m]`.
     pub position_x_m: Vec<f64>,
     /// Numbers of the joints.
@@ -151,6 +154,12 @@ pub struct BridgeNote {
     /// Banks that press upward.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub banks: Vec<BankNote>,
+}
+
+// serde asks for a reference
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 /// A bank that presses upward, as a page draws it.
@@ -175,6 +184,7 @@ impl BridgeNote {
             depth_m,
             module_heights_m: heights_m(design),
             draft_m,
+            water_level_m: design.risen_m(),
             position_x_m: (1..=design.positions())
                 .map(|position| design.position_x_m(position))
                 .collect(),

@@ -52,7 +52,10 @@ pub struct Play {
     pub axles: Vec<AxlePatch>,
     /// Its weight `[N]`.
     pub load_n: f64,
-    /// Deflection of each position, frame after frame, positive downward `[m]`.
+    /// Deflection of each position at rest, from where the modules float by themselves `[m]`; empty without a dead load.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rest_m: Vec<f64>,
+    /// Deflection of each position from rest, frame after frame, positive downward `[m]`.
     pub deflection_m: Scaled,
     /// Force of each joint, its connectors added, tension positive `[N]`.
     pub force_n: Scaled,
@@ -206,6 +209,12 @@ fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
         front_x_m: Packed::numbers(frames.iter().map(|frame| Some(speed_m_s * time(frame)))),
         axles,
         load_n: job.load_n,
+        rest_m: record
+            .dead
+            .iter()
+            .filter(|row| row.quantity == "deflection_m")
+            .map(|row| row.value)
+            .collect(),
         deflection_m: Scaled::new(&flat(&deflections)),
         state: Packed::U8(force.iter().map(state).collect()),
         force_n: Scaled::new(&force),
