@@ -21,6 +21,7 @@ WHEN = {
     "verify": "; with `verify`",
     "pins": "; where pins are recorded",
     "sections": "; where sections are recorded",
+    "freeboards": "; where freeboards are recorded",
     "place_histories": "; with histories of places",
     "pin_histories": "; with histories of pins",
 }
