@@ -88,7 +88,7 @@
     const banks = bridge.banks ?? [];
     const moved = array(play.deflection_m),
       w = play.rest_m ? moved.map((v, k) => v + play.rest_m[k % P]) : moved,
-      level = bridge.water_level_m ?? 0,
+      river = bridge.water_level_m ?? 0,
       force = array(play.force_n),
       state = array(play.state),
       front = array(play.front_x_m);
@@ -133,7 +133,7 @@
         reach = 34;
       bars = barTop + reach + 6;
       const height = bars + reach + 22,
-        water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick - level * E * s;
+        water = base - (bridge.draft_m > 0 ? bridge.draft_m / bridge.depth_m : 0.5) * thick - river * E * s;
       const ticks = d3
         .scaleLinear([0, length], [0, 1])
         .ticks(Math.max(3, Math.round(width / 110)))

@@ -68,7 +68,8 @@ function check(data, play, f, d) {
     J = bridge.joints.length,
     length = xs.at(-1),
     s = (d.right - d.left) / length;
-  const w = list(play.deflection_m).slice(f * P, (f + 1) * P),
+  const moved = list(play.deflection_m).slice(f * P, (f + 1) * P),
+    w = Array.from(moved, (v, i) => v + (play.rest_m?.[i] ?? 0)),
     force = list(play.force_n),
     F = force.slice(f * J, (f + 1) * J),
     state = list(play.state).slice(f * J, (f + 1) * J),
@@ -220,6 +221,22 @@ test('a bank stands under the end of the bridge that it carries', () =>
     const [x, y] = banks[0][1].slice(1).split('h')[0].split(' ').map(Number);
     assert.ok(Math.abs(x + 6 - left) < 0.02, 'under the left end');
     assert.ok(Math.abs(y - (base + 0.05 * scale * px)) < 0.02, 'its clearance below the bridge');
+  }));
+
+test('a bridge with a dead load starts from its dead state, in the river where it has risen', () =>
+  on(sample('crossing'), {}, async page => {
+    const play = sample('crossing').data.plays[3];
+    await page.selectOption('#play-job', String(play.job));
+    await scrub(page, 0);
+    const now = await drawing(page),
+      { px, scale, water } = await page.$eval('svg.bridge', node => ({
+        px: Number(node.dataset.pxM),
+        scale: Number(node.dataset.scale),
+        water: Number(node.querySelector('.waterline').getAttribute('y1')),
+      }));
+    const tall = now.modules[0][0][1] - now.modules[0][3][1];
+    assert.ok(Math.abs(now.rest - water - ((0.2 / 1.07) * tall + 0.03 * scale * px)) < 0.05, 'the river');
+    check(sample('crossing').data, play, 0, now);
   }));
 
 test('modules that slope are drawn with the heights of their corners, and the bank beyond them at their deck', () =>

@@ -361,6 +361,9 @@ export function crossing() {
     lost_joints: [7],
     banks: [{ bank: 0, position: 1, clearance_m: 0.05 }],
   };
+  // it starts from its dead state, the river 3 cm higher
+  data.plays[3].bridge = { ...bridge, draft_m: 0.2, water_level_m: 0.03 };
+  data.plays[3].rest_m = bridge.position_x_m.map((_, i) => 0.01 + 0.002 * i);
   // a ramp that falls to its right end: its bottom as deep as it goes, its deck half as high
   data.plays[1].bridge = {
     ...bridge,

@@ -67,5 +67,7 @@ pub(super) fn deepest_m(design: &BridgeDesign) -> (f64, Option<f64>) {
     let kinds = design.row.iter().flat_map(ModuleRow::kinds_in_row);
     let each = kinds.map(|kind| (kind.module.outline().largest_depth_m(), kind.draft_m));
     let first = (design.module.outline().largest_depth_m(), design.draft_m);
-    each.fold(first, |a, b| if b.0 > a.0 { b } else { a })
+    // of equal depths one whose draft is known
+    let better = |a: (f64, Option<f64>), b: (f64, Option<f64>)| b.0 > a.0 || (b.0 == a.0 && a.1.is_none());
+    each.fold(first, |a, b| if better(a, b) { b } else { a })
 }
