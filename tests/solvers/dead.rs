@@ -486,3 +486,35 @@ fn a_mirrored_dead_load_gives_mirrored_answers() {
     let [right, wrong] = [1.0, 1.05].map(|factor| apart(&numbers(&solve(&mirrored(factor), -9.0), true), &expected));
     held("mirrored dead load", 1e-9, right, wrong);
 }
+
+/// The creeping load of a bridge with a dead state: its peaks are the largest deflections of static cases at its places, a quarter of
+/// an element apart. 1e-9 of the largest. Twin: a load 5 % heavier.
+#[test]
+fn a_load_creeps_from_the_dead_state() {
+    let design = on_banks(1.0);
+    let ready = Ready::new(&design, Model::SuperElement);
+    let vehicle = footprint(&[-1.4, 1.4], Inertia::None);
+    let statics = ready.statics(&vehicle);
+    let case = standing(&ready, GAPS, PAPER_LOAD_N, 0.0);
+    let places = 4 * design.module.mesh.elements_along * design.modules;
+    let at = |place: usize, factor: f64| {
+        let case = StaticCase {
+            load_x_m: design.length_m() * place as f64 / places as f64,
+            load_n: factor * case.load_n,
+            ..case.clone()
+        };
+        most(
+            &statics
+                .solve(&case)
+                .expect("solved")
+                .deflection_m
+                .iter()
+                .map(|w| w.max(0.0))
+                .collect::<Vec<_>>(),
+        )
+    };
+    let largest_m = |factor: f64| (0..=places).map(|place| at(place, factor)).fold(0.0, f64::max);
+    let crept_m = statics.creeping_peak_m(&case).expect("solved");
+    let [right, wrong] = [1.0, 1.05].map(|factor| miss(crept_m, largest_m(factor)));
+    held("creeping from rest", 1e-9, right, wrong);
+}
