@@ -34,6 +34,8 @@ impl LaneDead {
 
     /// Takes the forces at rest out of the small system of a step (D3): `e` and the riders' measures are then those without more
     /// forces than at rest.
+    // the step of a crossing without a dead load stays short
+    #[inline(never)]
     pub(super) fn begin_step(
         &mut self,
         (step_s, weight): (f64, f64),
@@ -55,6 +57,7 @@ impl LaneDead {
     }
 
     /// Leaves of the scaled forces found what they are beyond those at rest.
+    #[inline(never)]
     pub(super) fn end_step(&self, forces: &mut [f64]) {
         for (force, at_rest) in forces.iter_mut().zip(self.scaled.iter()) {
             *force -= at_rest;

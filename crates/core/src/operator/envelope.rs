@@ -167,7 +167,11 @@ impl Envelope {
             *z = o.add(*z, *r);
         }
         self.update_peaks(o, connectors);
-        self.update_corners(o);
+        if self.from_rest.contains(&true) {
+            self.update_corners::<S, true>(o);
+        } else {
+            self.update_corners::<S, false>(o);
+        }
         self.update_edges(o, operator, constants, energy, lanes);
     }
 
@@ -209,9 +213,9 @@ impl Envelope {
         }
     }
 
-    /// Corners: module after module, left and right end, right and left edge.
+    /// Corners: module after module, left and right end, right and left edge; `FROM_REST` where a lane has a dead state.
     #[inline(always)]
-    fn update_corners<S: Simd>(&mut self, o: Ops<S>) {
+    fn update_corners<S: Simd, const FROM_REST: bool>(&mut self, o: Ops<S>) {
         let Observed {
             positions,
             corners,
@@ -225,7 +229,6 @@ impl Envelope {
         let of_corners = observed[positions..][..corners].chunks_exact(4);
         let modules = self.of_module.vectors_mut::<S>().iter_mut().zip(&self.beyond_m);
         let edge = &mut self.edge.vectors_mut::<S>()[0];
-        let from_rest = self.from_rest.contains(&true);
         let risen = self.risen.vectors::<S>();
         for (j, ((module, [freeboard, _]), ends)) in modules.zip(of_corners).enumerate() {
             let mut down = o.neg(ends[0]);
@@ -237,7 +240,7 @@ impl Envelope {
             }
             *module = down;
             *edge = o.max(*edge, down);
-            let under = if from_rest {
+            let under = if FROM_REST {
                 let corners = ends
                     .iter()
                     .zip(&risen[4 * j..])
@@ -255,7 +258,7 @@ impl Envelope {
         for (j, ([_, draft], ends)) in self.beyond_m.iter().zip(of_bottom).enumerate() {
             let draft = o.splat(*draft);
             for (i, &z) in ends.iter().enumerate() {
-                let z = if from_rest {
+                let z = if FROM_REST {
                     o.add(z, risen[corners + 4 * j + i])
                 } else {
                     z
