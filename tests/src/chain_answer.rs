@@ -68,6 +68,15 @@ fn dead_state(
     StaticSolver::new(bridge)?.dead_state(&DeadCase::new(design, connection, own_laws.clone()))
 }
 
+/// Force of each bank of a scenario, its places added; `places` are bank, place across `[m]` and force `[N]`.
+fn of_banks(scenario: &ChainScenario, places: &[(usize, f64, f64)]) -> Vec<Value> {
+    let sum = |bank: usize| places.iter().filter(|of| of.0 == bank).map(|of| of.2).sum::<f64>();
+    let banks = 0..scenario.design.banks.len();
+    banks
+        .map(|bank| json!({ "bank": bank, "force_n": sum(bank) }))
+        .collect()
+}
+
 /// An answer with what the bridge does at rest.
 fn with_dead(scenario: &ChainScenario, mut found: Value, dead: Option<&DeadState>) -> Value {
     let Some(dead) = dead else { return found };
@@ -81,15 +90,7 @@ fn with_dead(scenario: &ChainScenario, mut found: Value, dead: Option<&DeadState
         .zip(of_joints)
         .map(|(joint, forces)| json!({ "joint": joint, "force_n": forces.iter().sum::<f64>() }))
         .collect();
-    let of_bank = |bank: usize| {
-        dead.banks
-            .iter()
-            .filter(move |of| of.0 == bank)
-            .map(|of| of.2)
-            .sum::<f64>()
-    };
-    let banks = (0..scenario.design.banks.len()).map(|bank| json!({ "bank": bank, "force_n": of_bank(bank) }));
-    let banks: Vec<_> = banks.collect();
+    let banks = of_banks(scenario, &dead.banks);
     found["dead"] = json!({ "positions": positions, "joints": joints, "banks": banks });
     found
 }
@@ -184,16 +185,7 @@ fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticRespo
         json!({ "joint": joint, "x_n": sum(0), "z_n": sum(2), "angle_rad": sections[Section::Angle as usize] })
     });
     let pins: Vec<_> = pins.collect();
-    let of_bank = |bank: usize| {
-        response
-            .banks
-            .iter()
-            .filter(move |of| of.0 == bank)
-            .map(|of| of.2)
-            .sum::<f64>()
-    };
-    let banks = (0..scenario.design.banks.len()).map(|bank| json!({ "bank": bank, "force_n": of_bank(bank) }));
-    let banks: Vec<_> = banks.collect();
+    let banks = of_banks(scenario, &response.banks);
     let (positions, joints): (Vec<_>, Vec<_>) = (positions.collect(), joints.collect());
     let mut largest = Map::new();
     for (key, list, of, sign, place) in [
