@@ -12,6 +12,7 @@ use pontoon_core::operator::InstructionPath;
 use pontoon_core::response::Record;
 use pontoon_core::vehicle::Inertia;
 use pontoon_tests::scenario::{Scenario, vehicle};
+use pontoon_tests::{SolvesSingle, solve_side_by_side};
 use std::sync::LazyLock;
 
 static SCENARIO: LazyLock<Scenario> = LazyLock::new(Scenario::new);
@@ -24,7 +25,7 @@ fn main() {
 #[divan::bench(args = [Inertia::None, Inertia::Local], sample_count = 50)]
 fn operator_lone(bencher: Bencher<'_, '_>, inertia: &Inertia) {
     let (vehicle, crossing) = (vehicle(*inertia), SCENARIO.crossing(SPEED_M_S, Record::default()));
-    let solve = || SCENARIO.solver.solve(&vehicle, &crossing).expect("a crossing");
+    let solve = || SCENARIO.solver.solve_single(&vehicle, &crossing).expect("a crossing");
     bencher
         .counter(ItemsCount::new(SCENARIO.steps(&vehicle, &crossing)))
         .bench_local(solve);
@@ -34,7 +35,7 @@ fn operator_lone(bencher: Bencher<'_, '_>, inertia: &Inertia) {
 fn operator_full_lanes(bencher: Bencher<'_, '_>, inertia: &Inertia) {
     let (vehicle, crossing) = (vehicle(*inertia), SCENARIO.crossing(SPEED_M_S, Record::default()));
     let jobs = vec![(&vehicle, &crossing); 4 * InstructionPath::of_this_machine().lanes];
-    let solve = || SCENARIO.solver.solve_all(&jobs, 0);
+    let solve = || solve_side_by_side(&SCENARIO.solver, &jobs, 0);
     let steps = jobs.len() * SCENARIO.steps(&vehicle, &crossing);
     bencher.counter(ItemsCount::new(steps)).bench_local(solve);
 }
@@ -43,7 +44,7 @@ fn operator_full_lanes(bencher: Bencher<'_, '_>, inertia: &Inertia) {
 fn reference(bencher: Bencher<'_, '_>, inertia: &Inertia) {
     let (vehicle, crossing) = (vehicle(*inertia), SCENARIO.crossing(SPEED_M_S, Record::default()));
     let solver = CrossingSolver::new(&SCENARIO.ready.bridge, &SCENARIO.settings).expect("factors");
-    let solve = || solver.solve(&vehicle, &crossing).expect("a crossing");
+    let solve = || solver.solve_single(&vehicle, &crossing).expect("a crossing");
     bencher
         .counter(ItemsCount::new(SCENARIO.steps(&vehicle, &crossing)))
         .bench_local(solve);

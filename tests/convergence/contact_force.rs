@@ -6,7 +6,7 @@ use pontoon_core::connector::Connection;
 use pontoon_core::operator::BridgeOperator;
 use pontoon_core::vehicle::Inertia;
 use pontoon_tests::scenario::OPERATOR_TOLERANCE;
-use pontoon_tests::{PAPER_LOAD_N, Ready, axles, design, settings};
+use pontoon_tests::{PAPER_LOAD_N, Ready, SolvesSingle, axles, design, settings};
 use std::sync::Arc;
 
 /// With a linear connection the smallest contact force of a `local` vehicle is no number of the time step: from 5 ms on it is
@@ -30,7 +30,7 @@ fn smallest_contact_force_converges_with_the_step() {
             let settings = settings(ready.rayleigh(), time_step_s, 0.9);
             let solver = OperatorSolver::new(&ready.bridge, &operator, &settings);
             solver
-                .solve(&vehicle, &crossing(load_n))
+                .solve_single(&vehicle, &crossing(load_n))
                 .expect("solved")
                 .min_contact_force_n
         };
@@ -48,7 +48,7 @@ fn smallest_contact_force_converges_with_the_step() {
             "a wrong weight passes"
         );
         let reference = CrossingSolver::new(&ready.bridge, &settings(ready.rayleigh(), 0.005, 0.9)).expect("a solver");
-        let reference = reference.solve(&vehicle, &crossing(PAPER_LOAD_N)).expect("solved");
+        let reference = reference.solve_single(&vehicle, &crossing(PAPER_LOAD_N)).expect("solved");
         let apart = (reference.min_contact_force_n - by_operator(0.005, PAPER_LOAD_N)).abs() / PAPER_LOAD_N;
         assert!(
             apart < 5e-3,

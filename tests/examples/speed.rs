@@ -14,11 +14,11 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::operator::{InstructionPath, StepClock, StepPart};
 use pontoon_core::response::{CrossingResponse, Quantity};
 use pontoon_core::vehicle::{Inertia, Vehicle};
 use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, vehicle, vehicle_off_centre};
+use pontoon_tests::{SingleCrossing, SolvesSingle, solve_side_by_side};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::{Value, json};
 use std::hint::black_box;
@@ -85,13 +85,13 @@ impl Sizes {
 }
 
 /// Seconds a step of a crossing alone and beside its likes.
-fn figures(scenario: &Scenario, sizes: &Sizes, vehicle: &Vehicle, crossing: &Crossing, seconds: f64) -> Value {
+fn figures(scenario: &Scenario, sizes: &Sizes, vehicle: &Vehicle, crossing: &SingleCrossing, seconds: f64) -> Value {
     let solver = &scenario.solver;
-    let answer = solver.solve(vehicle, crossing).expect("a crossing");
+    let answer = solver.solve_single(vehicle, crossing).expect("a crossing");
     let steps = answer.statistics.steps as f64;
     let jobs = vec![(vehicle, crossing); ROUNDS * InstructionPath::of_this_machine().lanes];
-    let lone_s = least_s(seconds, || drop(black_box(solver.solve(vehicle, crossing))));
-    let full_s = least_s(seconds, || drop(black_box(solver.solve_all(&jobs, 0))));
+    let lone_s = least_s(seconds, || drop(black_box(solver.solve_single(vehicle, crossing))));
+    let full_s = least_s(seconds, || drop(black_box(solve_side_by_side(solver, &jobs, 0))));
     let active = mean_active(
         &answer,
         sizes.connectors as f64 / (scenario.ready.design.modules - 1) as f64,
@@ -133,12 +133,15 @@ fn breakdown(scenario: &Scenario, seconds: f64) -> Vec<Value> {
 }
 
 /// Seconds and operations of each part of a step, of one crossing of those that are solved side by side.
-fn parts(scenario: &Scenario, jobs: &[(&Vehicle, &Crossing)], seconds: f64) -> Vec<Value> {
+fn parts(scenario: &Scenario, jobs: &[(&Vehicle, &SingleCrossing)], seconds: f64) -> Vec<Value> {
     let begun = Instant::now();
+    let traffics: Vec<_> = jobs.iter().map(|(vehicle, crossing)| crossing.traffic(vehicle)).collect();
+    let crossings: Vec<_> = jobs.iter().map(|(_, crossing)| crossing.crossing()).collect();
+    let list: Vec<_> = traffics.iter().zip(&crossings).collect();
     let mut least: Option<Laps> = None;
     while least.is_none() || begun.elapsed().as_secs_f64() < seconds {
         let mut laps = Laps::default();
-        black_box(scenario.solver.solve_all_timed(jobs, 0, &mut laps));
+        black_box(scenario.solver.solve_all_timed(&list, 0, &mut laps));
         if least.as_ref().is_none_or(|known| laps.total_s() < known.total_s()) {
             least = Some(laps);
         }

@@ -2,7 +2,6 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::Model;
 use pontoon_core::connector::Connection;
@@ -23,7 +22,7 @@ fn smoke() -> &'static Ready {
     READY.get_or_init(|| Ready::new(&design("smoke"), Model::SuperElement))
 }
 
-fn recorded(mut crossing: Crossing) -> Crossing {
+fn recorded(mut crossing: SingleCrossing) -> SingleCrossing {
     crossing.record = Record {
         positions: vec![1, 2, 3, 4],
         joints: vec![2, 3],
@@ -32,7 +31,7 @@ fn recorded(mut crossing: Crossing) -> Crossing {
     crossing
 }
 
-fn cross(vehicle: &Vehicle, h: f64, change: impl FnOnce(&mut Crossing)) -> CrossingResponse {
+fn cross(vehicle: &Vehicle, h: f64, change: impl FnOnce(&mut SingleCrossing)) -> CrossingResponse {
     let ready = smoke();
     let mut crossing = recorded(ready.crossing(Connection::Linear, LOAD_N, 8.0));
     change(&mut crossing);
@@ -82,7 +81,7 @@ fn creeping_vehicle_meets_the_static_peak() {
     for connection in [Connection::Linear, NARROW] {
         let expected = static_peak_m(connection, LOAD_N);
         let creeping = |load_n: f64| {
-            let crossing = |x: &mut Crossing| {
+            let crossing = |x: &mut SingleCrossing| {
                 (x.connection, x.speed_m_s, x.load_n) = (connection, 0.2, load_n);
             };
             cross(&two_tracks(Inertia::Local), 0.02, crossing)
@@ -118,7 +117,7 @@ fn closed_gaps_of_twice_the_stiffness_are_the_linear_connection() {
     let vehicle = two_tracks(Inertia::Local);
     let linear = curves(&cross(&vehicle, 0.01, |_| {}));
     let closed = |factor: f64, gap_m: f64| {
-        let crossing = |x: &mut Crossing| {
+        let crossing = |x: &mut SingleCrossing| {
             x.connection = gaps(gap_m, gap_m);
             x.connector_stiffness_n_m *= factor;
         };
@@ -134,7 +133,7 @@ fn wide_gaps_are_no_connectors() {
     let vehicle = two_tracks(Inertia::Local);
     let none = curves(&cross(&vehicle, 0.01, |x| x.connector_stiffness_n_m = 1e-6));
     let wide = |load_n: f64| {
-        let crossing = |x: &mut Crossing| (x.connection, x.load_n) = (gaps(10.0, 10.0), load_n);
+        let crossing = |x: &mut SingleCrossing| (x.connection, x.load_n) = (gaps(10.0, 10.0), load_n);
         apart(&curves(&cross(&vehicle, 0.01, crossing)), &none)
     };
     held("wide gaps", 1e-9, wide(LOAD_N), wide(1.05 * LOAD_N));
@@ -202,10 +201,8 @@ fn deflections_are_reciprocal() {
     let point = Axle {
         behind_front_m: 0.0,
         share: Some(1.0),
-        load_n: None,
-        patch_length_m: 0.0,
-        patch_width_m: 0.0,
         track_y_m: vec![0.0],
+        ..Axle::default()
     };
     let vehicle = VehicleDesign {
         axles: Some(vec![point]),

@@ -4,7 +4,6 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::Model;
 use pontoon_core::connector::Connection;
@@ -139,7 +138,7 @@ fn damping_of_joints_is_that_of_the_core() {
     });
     let ready = chain.module.ready(&design, Model::Full);
     let connection = chain.connection(false);
-    let crossing = Crossing {
+    let crossing = SingleCrossing {
         own_laws: design.own_laws(connection, None).expect("laws"),
         tail_s: 1.0,
         ..ready.crossing(connection, chain.weight_n, 12.0)

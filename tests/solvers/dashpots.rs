@@ -4,7 +4,6 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::response::{CrossingResponse, Record};
@@ -40,9 +39,9 @@ fn damped(factor: f64) -> BridgeDesign {
 }
 
 /// The crossing with its design's dashpots.
-fn crossing(design: &BridgeDesign, plain: Crossing) -> Crossing {
+fn crossing(design: &BridgeDesign, plain: SingleCrossing) -> SingleCrossing {
     let own_laws = design.own_laws(plain.connection, None).expect("laws");
-    Crossing { own_laws, ..plain }
+    SingleCrossing { own_laws, ..plain }
 }
 
 /// Every mode in the operator: one motion through both solvers, as many solutions and switches, energies that close. Steps of
@@ -70,7 +69,7 @@ fn operator_takes_dashpots_as_the_reference_does() {
                 ..Record::default()
             };
             let [found, expected] = both.solve(&vehicle, &crossing(&right, plain.clone())).expect("solved");
-            let twin = both.operated.solve(&vehicle, &crossing(&wrong, plain)).expect("solved");
+            let twin = both.operated.solve_single(&vehicle, &crossing(&wrong, plain)).expect("solved");
             let [of, wrong] = [&found, &twin].map(|r| Apart::of(r, &expected, PAPER_LOAD_N).most());
             held(&format!("{connection:?}, {inertia:?}, {h} s"), ROUNDING, of, wrong);
             assert_eq!(found.statistics, expected.statistics);
@@ -105,17 +104,17 @@ fn lanes_with_dashpots_change_nothing_beside_them() {
                 None => plain,
             }
         };
-        let mixed: Vec<Crossing> = (0..15).map(of).collect();
+        let mixed: Vec<SingleCrossing> = (0..15).map(of).collect();
         let alone: Vec<_> = mixed
             .iter()
-            .map(|crossing| both.operated.solve(&vehicle, crossing))
+            .map(|crossing| both.operated.solve_single(&vehicle, crossing))
             .collect();
         for turned in 0..3 {
             let order: Vec<usize> = (0..mixed.len())
                 .map(|i| (i * (2 * turned + 2) + turned) % mixed.len())
                 .collect();
             let asked: Vec<_> = order.iter().map(|&i| (&vehicle, &mixed[i])).collect();
-            for (together, &i) in both.operated.solve_all(&asked, 0).into_iter().zip(&order) {
+            for (together, &i) in solve_side_by_side(&both.operated, &asked, 0).into_iter().zip(&order) {
                 assert_eq!(together, alone[i], "{h} s, crossing {i}");
             }
         }
@@ -148,7 +147,7 @@ fn dashpots_that_are_none_change_nothing() {
         // which is no test of nothing: a crossing does have them
         let crossings = ready.crossings(&vehicle, &settings(ready.rayleigh(), 0.01, 0.9));
         let asked = ready.crossing(connection, PAPER_LOAD_N, 9.0);
-        let solved = |asked: &Crossing| -> CrossingResponse { crossings.solve(asked).expect("solved") };
+        let solved = |asked: &SingleCrossing| -> CrossingResponse { crossings.solve(asked).expect("solved") };
         assert_ne!(solved(&crossing(&some, asked.clone())), solved(&asked));
     }
 }
@@ -169,7 +168,7 @@ fn forces_of_strong_dashpots_converge() {
         let operator = operator(&ready, 1e-3);
         move |h: f64| {
             let both = Both::new(&ready, &operator, &settings(ready.rayleigh(), h, 0.9));
-            let r = both.operated.solve(&vehicle, &asked).expect("solved");
+            let r = both.operated.solve_single(&vehicle, &asked).expect("solved");
             assert_eq!(r.statistics.bisections, 0);
             [forces(&r), deflections(&r)]
         }

@@ -4,7 +4,6 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
 use pontoon_core::analysis::{AnalysisError, DeadFault};
@@ -39,8 +38,8 @@ pub(crate) fn standing(ready: &Ready, connection: Connection, load_n: f64, x_m: 
     }
 }
 
-pub(crate) fn moving(ready: &Ready, connection: Connection, load_n: f64) -> Crossing {
-    Crossing {
+pub(crate) fn moving(ready: &Ready, connection: Connection, load_n: f64) -> SingleCrossing {
+    SingleCrossing {
         own_laws: ready.design.own_laws(connection, None).expect("laws"),
         dead: dead(ready, connection).expect("a dead state"),
         ..ready.crossing(connection, load_n, 9.0)
@@ -216,7 +215,7 @@ fn a_bridge_at_rest_stays_there() {
     let settings = settings(ready.rayleigh(), 0.01, 0.9);
     let crossing = |factor: f64| {
         let state = dead(&Ready::new(&on_banks(factor), Model::SuperElement), GAPS);
-        Crossing {
+        SingleCrossing {
             dead: state.expect("a dead state"),
             ..moving(&ready, GAPS, 1e-6)
         }
@@ -280,7 +279,7 @@ fn operator_starts_where_the_reference_solver_does() {
     let both = Both::new(&ready, &Arc::new(operator), &settings);
     for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
         let vehicle = footprint(&[-0.4, 2.4], inertia);
-        let crossing = Crossing {
+        let crossing = SingleCrossing {
             record: record(),
             ..moving(&ready, GAPS, PAPER_LOAD_N)
         };
@@ -305,11 +304,11 @@ fn operator_starts_where_the_reference_solver_does() {
                 .chain(histories)
                 .collect()
         };
-        let wrong = Crossing {
+        let wrong = SingleCrossing {
             dead: dead(&Ready::new(&on_banks(1.05), Model::SuperElement), GAPS).expect("a dead state"),
             ..crossing
         };
-        let wrong = both.operated.solve(&vehicle, &wrong).expect("solved");
+        let wrong = both.operated.solve_single(&vehicle, &wrong).expect("solved");
         let off = |found: &CrossingResponse| {
             let pairs = numbers(found).into_iter().zip(numbers(&expected));
             largest(pairs.map(|(a, b)| if a == b { 0.0 } else { apart(&a, &b) }))
@@ -334,7 +333,7 @@ fn a_linear_bridge_superposes() {
         joints: vec![2, 3],
         ..Record::default()
     };
-    let crossing = |ready: &Ready| Crossing {
+    let crossing = |ready: &Ready| SingleCrossing {
         record: record(),
         ..moving(ready, Connection::Linear, PAPER_LOAD_N)
     };
@@ -459,7 +458,7 @@ fn a_mirrored_dead_load_gives_mirrored_answers() {
     let settings = settings(Ready::new(&design("smoke"), Model::SuperElement).rayleigh(), 0.01, 0.9);
     let solve = |design: &BridgeDesign, speed_m_s: f64| {
         let ready = Ready::new(design, Model::SuperElement);
-        let crossing = Crossing {
+        let crossing = SingleCrossing {
             speed_m_s,
             ..moving(&ready, GAPS, PAPER_LOAD_N)
         };

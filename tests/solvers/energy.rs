@@ -94,7 +94,8 @@ fn wrong_sum_shows_in_the_summary() {
         balance.take(&StepEnergies {
             kinetic: 1.0,
             strain: 1.0,
-            connectors: 0.5,
+            connectors: 0.25,
+            vehicles: 0.25,
             rayleigh: factor * 4.0,
             dashpots: 1.0,
             numerical: 0.5,

@@ -4,7 +4,6 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
@@ -34,9 +33,9 @@ fn case(design: &BridgeDesign, plain: StaticCase) -> StaticCase {
 }
 
 /// The crossing with the laws of its design's joints.
-fn crossing(design: &BridgeDesign, plain: Crossing) -> Crossing {
+fn crossing(design: &BridgeDesign, plain: SingleCrossing) -> SingleCrossing {
     let own_laws = design.own_laws(plain.connection, None).expect("laws");
-    Crossing { own_laws, ..plain }
+    SingleCrossing { own_laws, ..plain }
 }
 
 /// Six modules of smoke's.
@@ -67,7 +66,7 @@ fn operator_takes_unlike_joints_as_the_reference_does() {
     for connection in [PAPER_GAPS, Connection::Linear] {
         let plain = ready.crossing(connection, PAPER_LOAD_N, 8.0);
         let [found, expected] = both.solve(&vehicle, &crossing(&right, plain.clone())).expect("solved");
-        let twin = both.operated.solve(&vehicle, &crossing(&wrong, plain)).expect("solved");
+        let twin = both.operated.solve_single(&vehicle, &crossing(&wrong, plain)).expect("solved");
         let [of, wrong] = [&found, &twin].map(|r| Apart::of(r, &expected, PAPER_LOAD_N).most());
         held(&format!("{connection:?}"), ROUNDING, of, wrong);
         assert_eq!(found.statistics, expected.statistics);
@@ -87,7 +86,7 @@ fn unlike_joints_change_nothing_beside_them() {
     let both = Both::new(&ready, &operator(&ready, 1e-3), &settings(ready.rayleigh(), 0.01, 0.9));
     let vehicle = footprint(&[-0.4, 2.4], Inertia::Local);
     let plain = |speed: f64| ready.crossing(PAPER_GAPS, PAPER_LOAD_N, speed);
-    let mixed: Vec<Crossing> = (0..6)
+    let mixed: Vec<SingleCrossing> = (0..6)
         .map(|i| 6.0 + f64::from(i))
         .map(|speed| {
             if speed > 8.5 {
@@ -98,8 +97,8 @@ fn unlike_joints_change_nothing_beside_them() {
         })
         .collect();
     let asked: Vec<_> = mixed.iter().map(|crossing| (&vehicle, crossing)).collect();
-    for (together, crossing) in both.operated.solve_all(&asked, 0).into_iter().zip(&mixed) {
-        assert_eq!(together, both.operated.solve(&vehicle, crossing));
+    for (together, crossing) in solve_side_by_side(&both.operated, &asked, 0).into_iter().zip(&mixed) {
+        assert_eq!(together, both.operated.solve_single(&vehicle, crossing));
     }
 }
 

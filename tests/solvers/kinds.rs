@@ -4,7 +4,7 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::{Crossing, OperatorSolver};
+use pontoon_core::analysis::crossing::OperatorSolver;
 use pontoon_core::bridge::{BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
 use pontoon_core::operator::{BridgeOperator, Followed};
 use pontoon_core::response::{CrossingResponse, Record, Section};
@@ -236,7 +236,7 @@ fn is_in_equilibrium(design: &BridgeDesign) {
 }
 
 /// What a crossing of unlike modules records, pins included.
-fn recorded(ready: &Ready) -> Crossing {
+fn recorded(ready: &Ready) -> SingleCrossing {
     let mut crossing = ready.crossing(gaps(0.002, 0.001), PAPER_LOAD_N, 8.0);
     crossing.record = Record {
         positions: vec![1, 2, 4],
@@ -292,7 +292,7 @@ fn is_the_reference_solver(what: &str, ramp: RampOf, limits: &[(f64, f64)]) {
         for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
             let vehicle = footprint(&[-0.4, 3.9], inertia);
             let [found, expected] = both.solve(&vehicle, &crossing).expect("solved");
-            let wrong = twin.solve(&vehicle, &crossing).expect("solved");
+            let wrong = twin.solve_single(&vehicle, &crossing).expect("solved");
             let miss = |r: &CrossingResponse| {
                 let peaks = Apart::of(r, &expected, PAPER_LOAD_N).most();
                 peaks.max(apart(&pins(r), &pins(&expected)))

@@ -170,8 +170,9 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
         let mut crossing = setup.crossing(GAPS, 2e5, 8.0);
         crossing.record.positions = vec![2, 3];
         crossing.record.joints = vec![2];
-        let solved = solver.solve(&vehicle, &crossing).expect("a crossing");
-        let mut under = solver.begin(&vehicle, &crossing);
+        let solved = solver.solve_single(&vehicle, &crossing).expect("a crossing");
+        let (traffic, asked) = (crossing.traffic(&vehicle), crossing.crossing());
+        let mut under = solver.begin(&traffic, &asked);
         let (mut states, mut smallest) = (vec![under.snapshot()], f64::INFINITY);
         while under.step().expect("a step") {
             states.push(under.snapshot());

@@ -4,7 +4,7 @@
 #![allow(clippy::expect_used)]
 
 use pontoon_core::analysis::AnalysisError;
-use pontoon_core::analysis::crossing::{Crossing, OperatorSolver};
+use pontoon_core::analysis::crossing::OperatorSolver;
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::{BridgeDesign, Direction, Model};
 use pontoon_core::connector::Connection;
@@ -66,10 +66,10 @@ fn agree(
     what: &str,
     (both, twin): &(Both, OperatorSolver),
     vehicle: &Vehicle,
-    crossing: &Crossing,
+    crossing: &SingleCrossing,
 ) -> [CrossingResponse; 2] {
     let [found, expected] = both.solve(vehicle, crossing).expect("solved");
-    let wrong = twin.solve(vehicle, crossing).expect("solved");
+    let wrong = twin.solve_single(vehicle, crossing).expect("solved");
     let [right, wrong] = [&found, &wrong].map(|r| Apart::of(r, &expected, crossing.load_n).most());
     held(what, ROUNDING, right, wrong);
     assert_eq!(
@@ -101,7 +101,7 @@ fn agree(
     [found, expected]
 }
 
-fn crossing(pair: &Pair, connection: Connection) -> Crossing {
+fn crossing(pair: &Pair, connection: Connection) -> SingleCrossing {
     let mut crossing = pair.right.crossing(connection, LOAD_N, 8.0);
     crossing.record = Record {
         positions: vec![1, 2, 3, 4],
@@ -201,7 +201,7 @@ fn edge_inside_a_module_is_not_missed() {
                 let bridge = Ready::new(&above, Model::SuperElement).bridge;
                 let settings = settings(pair.right.rayleigh(), 0.01, 0.9);
                 let operated = OperatorSolver::new(&bridge, &pair.operators[0], &settings);
-                let again = operated.solve(&footprint(&[y_m], inertia), &crossing).expect("solved");
+                let again = operated.solve_single(&footprint(&[y_m], inertia), &crossing).expect("solved");
                 assert_eq!(edge(&again), edge(&found), "{what}: a freeboard moves nothing");
                 inside += usize::from(again.deck_submerged == Some(false));
             }
@@ -243,8 +243,8 @@ fn unsettled_contact_is_the_reference_solvers() {
         for inertia in KINDS {
             let (vehicle, crossing) = (footprint(&[-1.4, 1.4], inertia), crossing(smoke(), gaps(0.001, 0.0005)));
             let [found, expected] = [
-                both.operated.solve(&vehicle, &crossing),
-                both.reference.solve(&vehicle, &crossing),
+                both.operated.solve_single(&vehicle, &crossing),
+                both.reference.solve_single(&vehicle, &crossing),
             ];
             let named = matches!(expected, Err(AnalysisError::NotConverged { bisections, .. }) if bisections == bisection_limit);
             assert!(named, "{expected:?}");

@@ -2,7 +2,7 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, OperatorSolver};
+use pontoon_core::analysis::crossing::{CrossingSettings, OperatorSolver};
 use pontoon_core::bridge::Model;
 use pontoon_core::connector::Connection;
 use pontoon_core::operator::BridgeOperator;
@@ -38,7 +38,7 @@ fn cross(h: f64, vehicle: &Vehicle, connection: Connection, speed_m_s: f64) -> [
         joints: (2..=ready.design.modules).collect(),
         ..Record::default()
     };
-    let heavy = Crossing {
+    let heavy = SingleCrossing {
         load_n: 1.05 * PAPER_LOAD_N,
         ..crossing.clone()
     };
@@ -46,7 +46,7 @@ fn cross(h: f64, vehicle: &Vehicle, connection: Connection, speed_m_s: f64) -> [
     [
         operated,
         reference,
-        both.operated.solve(vehicle, &heavy).expect("solved"),
+        both.operated.solve_single(vehicle, &heavy).expect("solved"),
     ]
 }
 
@@ -116,7 +116,7 @@ fn contacts_of_the_default_bridge_are_close() {
         let softer = OperatorSolver::new(&ready.bridge, operator, &settings(ready.rayleigh(), 0.01, 0.855));
         let mut crossing = ready.crossing(PAPER_GAPS, PAPER_LOAD_N, 15.0);
         crossing.tail_s = 0.5;
-        let softer = softer.solve(&vehicle, &crossing).expect("solved").energy;
+        let softer = softer.solve_single(&vehicle, &crossing).expect("solved").energy;
         let away = [energy, softer].map(|e| miss(e.numerical_dissipation, reference.numerical_dissipation));
         held(&format!("{what}, numerical dissipation"), 0.1, away[0], away[1]);
     }
@@ -136,12 +136,12 @@ fn halved_steps_are_as_near() {
     for inertia in KINDS {
         let vehicle = footprint(&[-0.4, 2.4], inertia);
         let crossing = ready.crossing(gaps(0.0005, 0.0002), PAPER_LOAD_N, 13.0);
-        let heavy = Crossing {
+        let heavy = SingleCrossing {
             load_n: 1.05 * PAPER_LOAD_N,
             ..crossing.clone()
         };
         let [found, expected] = both.solve(&vehicle, &crossing).expect("solved");
-        let wrong = both.operated.solve(&vehicle, &heavy).expect("solved");
+        let wrong = both.operated.solve_single(&vehicle, &heavy).expect("solved");
         let halved = [&found, &expected].map(|r| r.statistics.bisections);
         println!("{inertia:?}: {halved:?} halved");
         assert!(halved.iter().all(|&count| count > 0), "{inertia:?}: {halved:?} halved");
@@ -183,7 +183,7 @@ fn cut_off_keeps_what_it_says() {
     let settings = settings(ready.rayleigh(), 0.01, 0.9);
     let vehicle = footprint(&[-0.4, 2.4], Inertia::Local);
     let crossing = ready.crossing(Connection::Linear, PAPER_LOAD_N, 12.0);
-    let heavy = Crossing {
+    let heavy = SingleCrossing {
         load_n: 1.05 * PAPER_LOAD_N,
         ..crossing.clone()
     };
@@ -197,7 +197,7 @@ fn cut_off_keeps_what_it_says() {
         );
         let both = Both::new(&ready, &operator, &settings);
         let [found, expected] = both.solve(&vehicle, &crossing).expect("solved");
-        let wrong = both.operated.solve(&vehicle, &heavy).expect("solved");
+        let wrong = both.operated.solve_single(&vehicle, &heavy).expect("solved");
         let of = |r: &CrossingResponse| {
             let apart = Apart::of(r, &expected, PAPER_LOAD_N);
             largest([apart.deflection, apart.force, apart.edge])

@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used)]
 
 use pontoon_core::analysis::AnalysisError;
-use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, OperatorSolver};
+use pontoon_core::analysis::crossing::{CrossingSettings, OperatorSolver};
 use pontoon_core::bridge::Model;
 use pontoon_core::connector::Connection;
 use pontoon_core::response::{CrossingResponse, Record};
@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 type Answer = Result<CrossingResponse, AnalysisError>;
 
 /// A vehicle and its crossing.
-type Job = (Vehicle, Crossing);
+type Job = (Vehicle, SingleCrossing);
 
 fn long() -> &'static Ready {
     static READY: OnceLock<Ready> = OnceLock::new();
@@ -68,14 +68,14 @@ fn jobs() -> Vec<Job> {
 
 fn alone(solver: &OperatorSolver, jobs: &[Job]) -> Vec<Answer> {
     jobs.iter()
-        .map(|(vehicle, crossing)| solver.solve(vehicle, crossing))
+        .map(|(vehicle, crossing)| solver.solve_single(vehicle, crossing))
         .collect()
 }
 
 /// Answers to the jobs in an order of their numbers.
 fn together(solver: &OperatorSolver, jobs: &[Job], order: &[usize]) -> Vec<Answer> {
     let list: Vec<_> = order.iter().map(|&i| (&jobs[i].0, &jobs[i].1)).collect();
-    solver.solve_all(&list, 0)
+    solve_side_by_side(solver, &list, 0)
 }
 
 fn shuffled(count: usize, numbers: &mut Numbers) -> Vec<usize> {
@@ -122,7 +122,7 @@ fn answer_does_not_depend_on_what_shares_the_lanes() {
     let mut other = jobs[0].clone();
     other.1.load_n = other.1.load_n.next_up();
     assert_ne!(
-        solver.solve(&other.0, &other.1),
+        solver.solve_single(&other.0, &other.1),
         expected[0],
         "one unit in the last place of the load"
     );
@@ -178,9 +178,9 @@ fn refined_crossing_is_that_of_the_shorter_step() {
         .iter()
         .map(|(vehicle, crossing)| (vehicle, crossing))
         .collect();
-    let expected = fine.solve_all(&list, 0);
-    assert_eq!(coarse.solve_all(&list, 2), expected);
-    assert_ne!(coarse.solve_all(&list, 3), expected);
+    let expected = solve_side_by_side(&fine, &list, 0);
+    assert_eq!(solve_side_by_side(&coarse, &list, 2), expected);
+    assert_ne!(solve_side_by_side(&coarse, &list, 3), expected);
 }
 
 /// Where no step may be halved and a single Newton solution must do, a connector that closes ends its crossing, at the time
@@ -212,8 +212,8 @@ fn crossing_that_fails_leaves_the_others_alone() {
     let both = Both::new(long(), &operator(long(), 0.0), &settings);
     for (vehicle, crossing) in jobs.iter().step_by(3) {
         let [operated, reference] = [
-            both.operated.solve(vehicle, crossing),
-            both.reference.solve(vehicle, crossing),
+            both.operated.solve_single(vehicle, crossing),
+            both.reference.solve_single(vehicle, crossing),
         ];
         assert!(
             matches!(reference, Err(AnalysisError::NotConverged { bisections: 0, .. })),

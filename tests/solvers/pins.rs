@@ -4,7 +4,7 @@
 
 #![allow(clippy::expect_used)]
 
-use pontoon_core::analysis::crossing::{Crossing, OperatorSolver};
+use pontoon_core::analysis::crossing::OperatorSolver;
 use pontoon_core::analysis::statics::StaticSolver;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::Connection;
@@ -30,9 +30,9 @@ fn operator(ready: &Ready, tolerance: f64) -> Arc<BridgeOperator> {
 const PLACES_X_M: [f64; 3] = [6.7, 9.4, 39.9];
 
 /// A crossing that records its pins and all that comes with them.
-fn with_pins(crossing: Crossing) -> Crossing {
+fn with_pins(crossing: SingleCrossing) -> SingleCrossing {
     let watched = |of: PeakOf, number: Option<usize>| WatchedPeak { of, number };
-    Crossing {
+    SingleCrossing {
         record: Record {
             pins: true,
             sections: true,
@@ -87,12 +87,12 @@ fn six() -> BridgeDesign {
 }
 
 /// Both solvers' answers.
-fn both(ready: &Ready, tolerance: f64, vehicle: &Vehicle, crossing: &Crossing) -> [CrossingResponse; 2] {
+fn both(ready: &Ready, tolerance: f64, vehicle: &Vehicle, crossing: &SingleCrossing) -> [CrossingResponse; 2] {
     let settings = settings(ready.rayleigh(), 0.01, 0.9);
     let operated = OperatorSolver::new(&ready.bridge, &operator(ready, tolerance), &settings);
     let reference = ready.crossings(vehicle, &settings);
     [
-        operated.solve(vehicle, crossing).expect("solved"),
+        operated.solve_single(vehicle, crossing).expect("solved"),
         reference.solve(crossing).expect("solved"),
     ]
 }
@@ -144,7 +144,7 @@ fn operator_finds_the_pins_of_the_reference_solver() {
         for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
             let vehicle = footprint(&[-0.4, 2.4], inertia);
             let asked = with_pins(ready.crossing(gaps(0.002, 0.001), PAPER_LOAD_N, 8.0));
-            let heavy = Crossing {
+            let heavy = SingleCrossing {
                 load_n: 1.05 * asked.load_n,
                 ..asked.clone()
             };

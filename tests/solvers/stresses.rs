@@ -404,7 +404,8 @@ fn a_crossing_has_the_full_models_stresses() {
         let solver = CrossingSolver::new(&stressed.bridge, &settings(setup.rayleigh(), 0.01, 0.9)).expect("a solver");
         let crossing = setup.crossing(gaps(0.0, 0.0055), 2e5, 10.0);
         let vehicle = footprint(&[-1.4, 1.4], Inertia::Local);
-        let mut under = solver.begin(&vehicle, &crossing);
+        let (traffic, asked) = (crossing.traffic(&vehicle), crossing.crossing());
+        let mut under = solver.begin(&traffic, &asked);
         let mut states = Vec::new();
         while under.step().expect("a step") {
             let mut state = under.snapshot();

@@ -133,10 +133,9 @@ impl BeamModule {
         let axle = Axle {
             behind_front_m: 0.0,
             share: Some(1.0),
-            load_n: None,
             patch_length_m,
-            patch_width_m: 0.0,
             track_y_m: self.lines().to_vec(),
+            ..Axle::default()
         };
         let design = VehicleDesign {
             axles: Some(vec![axle]),

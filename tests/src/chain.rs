@@ -4,7 +4,6 @@
 
 use crate::beams::BeamModule;
 use crate::{Ready, gaps, settings, with};
-use pontoon_core::analysis::crossing::Crossing;
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::{BridgeDesign, Direction, Model, ModuleKind, ModuleRow, ModuleRun, PreparedModule};
 use pontoon_core::connector::Connection;
@@ -224,7 +223,7 @@ impl Chain {
             track_y_m: Some(self.module.lines().to_vec()),
             inertia: Inertia::None,
             patch_points: self.points,
-            axles: None,
+            ..VehicleDesign::default()
         };
         design.check(self.module.breadth_m).expect("a load")
     }
@@ -245,7 +244,7 @@ impl Chain {
         let (ready, vehicle) = (self.ready(), self.vehicle());
         let solver = ready.crossings(&vehicle, &settings(self.rayleigh, time_step_s, 0.9));
         let solve = |&(linear, speed_m_s): &(bool, f64)| {
-            let mut crossing: Crossing = ready.crossing(self.connection(linear), self.weight_n, speed_m_s);
+            let mut crossing = ready.crossing(self.connection(linear), self.weight_n, speed_m_s);
             crossing.tail_s = self.tail_s;
             solver.solve(&crossing).expect("a crossing")
         };

@@ -37,6 +37,7 @@ pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
             ))
         }
         ChainTask::Crossing {
+            traffic,
             crossing,
             time_step_s,
             spectral_radius,
@@ -47,7 +48,7 @@ pub fn answer(scenario: &ChainScenario) -> Result<Value, AnalysisError> {
                 dead: dead.clone(),
                 ..crossing.clone()
             };
-            let response = CrossingSolver::new(&ready.bridge, &settings)?.solve(&scenario.vehicle, &crossing)?;
+            let response = CrossingSolver::new(&ready.bridge, &settings)?.solve(traffic, &crossing)?;
             let found = of_crossing(scenario, *time_step_s, &response);
             Ok(with_dead(scenario, found, dead.as_deref()))
         }

@@ -10,6 +10,7 @@ use pontoon_core::bridge::{BankPlace, BankSpec, BridgeDesign, BridgeEnd, DeadSpe
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{Found, InvalidInput, Problem, bound, not_negative, positive, within};
 use pontoon_core::response::Record;
+use pontoon_core::traffic::Traffic;
 use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
 use pontoon_plan::Refusal;
 use pontoon_plan::input::{Document, typed_value};
@@ -99,6 +100,8 @@ pub struct ChainScenario {
 pub enum ChainTask {
     /// It crosses.
     Crossing {
+        /// What drives.
+        traffic: Traffic,
         /// How.
         crossing: Crossing,
         /// Time step `[s]`.
@@ -167,8 +170,6 @@ impl ChainScenario {
                     connection,
                     connector_stiffness_n_m: stiffness,
                     own_laws,
-                    load_n,
-                    speed_m_s,
                     tail_s: not_negative("analysis.tail_s", analysis.tail_s.unwrap_or(chain.tail_s))?,
                     record: Record {
                         pins: true,
@@ -179,7 +180,13 @@ impl ChainScenario {
                 };
                 let radius = analysis.spectral_radius.unwrap_or(0.9);
                 ChainTask::Crossing {
-                    time_step_s: time_step(time_step_s.or(analysis.time_step_s), &design, &vehicle, &crossing)?,
+                    time_step_s: time_step(
+                        time_step_s.or(analysis.time_step_s),
+                        &design,
+                        &vehicle,
+                        (speed_m_s, crossing.tail_s),
+                    )?,
+                    traffic: Traffic::single(&vehicle, load_n, speed_m_s),
                     spectral_radius: within("analysis.spectral_radius", radius, 0.0, 1.0)?,
                     crossing,
                 }
@@ -320,17 +327,17 @@ fn time_step(
     asked_s: Option<f64>,
     design: &BridgeDesign,
     vehicle: &Vehicle,
-    crossing: &Crossing,
+    (speed_m_s, tail_s): (f64, f64),
 ) -> Result<f64, InvalidInput> {
     let key = "analysis.time_step_s";
     let step = positive(key, asked_s.unwrap_or(TIME_STEP_S))?;
-    let passage = design.shortest_module_m() / crossing.speed_m_s;
+    let passage = design.shortest_module_m() / speed_m_s;
     if step > passage {
         let allowed = format!("at most {}, the passage of one module", bound(passage));
         return Err(InvalidInput::new(key, step, allowed).because(Problem::Conflict));
     }
     let way = design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
-    let steps = (way / crossing.speed_m_s + crossing.tail_s) / step;
+    let steps = (way / speed_m_s + tail_s) / step;
     if steps > MOST_STEPS {
         let allowed = format!("a crossing of at most {MOST_STEPS} steps");
         return Err(InvalidInput::new(

@@ -14,13 +14,14 @@ pub mod oscillator;
 pub mod scenario;
 
 use pontoon_core::analysis::AnalysisError;
-use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
+use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::{Mode, Rayleigh, bending_frequencies_hz, modes, rayleigh};
 use pontoon_core::analysis::statics::{StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, BridgeDesign, Condensation, Ends, Model, PreparedModule};
-use pontoon_core::connector::Connection;
-use pontoon_core::response::{CrossingResponse, Quantity, Record, StaticResponse};
+use pontoon_core::connector::{Connection, OwnLaws};
+use pontoon_core::response::{CrossingResponse, DeadState, Quantity, Record, StaticResponse};
 use pontoon_core::stop::Stop;
+use pontoon_core::traffic::Traffic;
 use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
 use std::path::Path;
 use std::sync::Arc;
@@ -170,8 +171,8 @@ impl Ready {
     }
 
     /// A crossing with the design's trusses and no histories, one second of tail.
-    pub fn crossing(&self, connection: Connection, load_n: f64, speed_m_s: f64) -> Crossing {
-        Crossing {
+    pub fn crossing(&self, connection: Connection, load_n: f64, speed_m_s: f64) -> SingleCrossing {
+        SingleCrossing {
             connection,
             connector_stiffness_n_m: self.design.connectors.stiffness_n_m,
             own_laws: [].into(),
@@ -182,6 +183,81 @@ impl Ready {
             dead: None,
         }
     }
+}
+
+/// A crossing of one vehicle at constant speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SingleCrossing {
+    /// How the connectors work.
+    pub connection: Connection,
+    /// Stiffness of one truss `[N/m]`.
+    pub connector_stiffness_n_m: f64,
+    /// Connectors that have laws of their own.
+    pub own_laws: OwnLaws,
+    /// Weight of the vehicle `[N]`.
+    pub load_n: f64,
+    /// Speed, below 0 from the right end `[m/s]`.
+    pub speed_m_s: f64,
+    /// How long to go on behind it `[s]`.
+    pub tail_s: f64,
+    /// What to keep.
+    pub record: Record,
+    /// The state at rest.
+    pub dead: Option<Arc<DeadState>>,
+}
+
+impl SingleCrossing {
+    /// The crossing without its vehicle.
+    pub fn crossing(&self) -> Crossing {
+        Crossing {
+            connection: self.connection,
+            connector_stiffness_n_m: self.connector_stiffness_n_m,
+            own_laws: self.own_laws.clone(),
+            tail_s: self.tail_s,
+            record: self.record.clone(),
+            dead: self.dead.clone(),
+        }
+    }
+
+    /// The vehicle as it drives.
+    pub fn traffic(&self, vehicle: &Vehicle) -> Traffic {
+        Traffic::single(vehicle, self.load_n, self.speed_m_s)
+    }
+}
+
+/// What solves crossings of one vehicle.
+pub trait SolvesSingle {
+    /// Solves one.
+    ///
+    /// # Errors
+    /// The solver's.
+    fn solve_single(&self, vehicle: &Vehicle, crossing: &SingleCrossing) -> Result<CrossingResponse, AnalysisError>;
+}
+
+impl SolvesSingle for CrossingSolver {
+    fn solve_single(&self, vehicle: &Vehicle, crossing: &SingleCrossing) -> Result<CrossingResponse, AnalysisError> {
+        self.solve(&crossing.traffic(vehicle), &crossing.crossing())
+    }
+}
+
+impl SolvesSingle for OperatorSolver {
+    fn solve_single(&self, vehicle: &Vehicle, crossing: &SingleCrossing) -> Result<CrossingResponse, AnalysisError> {
+        self.solve(&crossing.traffic(vehicle), &crossing.crossing())
+    }
+}
+
+/// Solves crossings side by side by the operator, at the time step halved `refinement` times.
+pub fn solve_side_by_side(
+    solver: &OperatorSolver,
+    asked: &[(&Vehicle, &SingleCrossing)],
+    refinement: usize,
+) -> Vec<Result<CrossingResponse, AnalysisError>> {
+    let each: Vec<(Traffic, Crossing)> = asked
+        .iter()
+        .map(|(vehicle, crossing)| (crossing.traffic(vehicle), crossing.crossing()))
+        .collect();
+    let list: Vec<_> = each.iter().map(|(traffic, crossing)| (traffic, crossing)).collect();
+    solver.solve_all(&list, refinement)
 }
 
 /// Static cases of one vehicle.
@@ -230,8 +306,8 @@ impl Crossings {
     ///
     /// # Errors
     /// The solver's.
-    pub fn solve(&self, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
-        self.solver.solve(&self.vehicle, crossing)
+    pub fn solve(&self, crossing: &SingleCrossing) -> Result<CrossingResponse, AnalysisError> {
+        self.solver.solve_single(&self.vehicle, crossing)
     }
 }
 

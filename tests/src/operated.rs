@@ -2,9 +2,9 @@
 //!
 //! Knows both solvers and the scales of what they answer. Does not know which differences are expected.
 
-use crate::{Ready, apart, largest};
+use crate::{Ready, SingleCrossing, SolvesSingle, apart, largest};
 use pontoon_core::analysis::AnalysisError;
-use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
+use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::operator::BridgeOperator;
 use pontoon_core::response::{CrossingResponse, ForcePeaks, Peak, Quantity};
 use pontoon_core::vehicle::{Axle, Inertia, Vehicle, VehicleDesign};
@@ -34,9 +34,9 @@ impl Both {
     ///
     /// # Errors
     /// Either's.
-    pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<[CrossingResponse; 2], AnalysisError> {
-        let operated = self.operated.solve(vehicle, crossing)?;
-        Ok([operated, self.reference.solve(vehicle, crossing)?])
+    pub fn solve(&self, vehicle: &Vehicle, crossing: &SingleCrossing) -> Result<[CrossingResponse; 2], AnalysisError> {
+        let operated = self.operated.solve_single(vehicle, crossing)?;
+        Ok([operated, self.reference.solve_single(vehicle, crossing)?])
     }
 }
 
@@ -58,10 +58,10 @@ pub fn wide_axles(list: &[(f64, f64, f64, f64, [f64; 2])], inertia: Inertia, pat
         |&(behind_front_m, share, patch_length_m, patch_width_m, track_y_m): &(f64, f64, f64, f64, [f64; 2])| Axle {
             behind_front_m,
             share: Some(share),
-            load_n: None,
             patch_length_m,
             patch_width_m,
             track_y_m: track_y_m.to_vec(),
+            ..Axle::default()
         };
     let design = VehicleDesign {
         axles: Some(list.iter().map(axle).collect()),

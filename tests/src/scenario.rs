@@ -2,8 +2,8 @@
 //!
 //! Knows what benchmarks run. Does not know a clock.
 
-use crate::{PAPER_GAPS, PAPER_LOAD_N, Ready, design, footprint, gaps, settings};
-use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
+use crate::{PAPER_GAPS, PAPER_LOAD_N, Ready, SingleCrossing, design, footprint, gaps, settings};
+use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::bridge::Model;
 use pontoon_core::operator::BridgeOperator;
 use pontoon_core::response::{CrossingResponse, Record};
@@ -50,8 +50,8 @@ impl Scenario {
     }
 
     /// The paper's crossing at a speed.
-    pub fn crossing(&self, speed_m_s: f64, record: Record) -> Crossing {
-        Crossing {
+    pub fn crossing(&self, speed_m_s: f64, record: Record) -> SingleCrossing {
+        SingleCrossing {
             record,
             tail_s: TAIL_S,
             ..self.ready.crossing(PAPER_GAPS, PAPER_LOAD_N, speed_m_s)
@@ -69,7 +69,7 @@ impl Scenario {
     }
 
     /// A grid of gap, gap, speed and load.
-    pub fn sweep(&self, [tensions, compressions, speeds, loads]: [usize; 4]) -> Vec<Crossing> {
+    pub fn sweep(&self, [tensions, compressions, speeds, loads]: [usize; 4]) -> Vec<SingleCrossing> {
         let along = |from: f64, to: f64, count: usize| {
             (0..count).map(move |i| from + (to - from) * i as f64 / (count.max(2) - 1) as f64)
         };
@@ -78,7 +78,7 @@ impl Scenario {
             for compression_m in along(0.0, 0.018, compressions) {
                 for speed_m_s in along(3.0, 15.0, speeds) {
                     for load_n in along(100e3, 400e3, loads) {
-                        crossings.push(Crossing {
+                        crossings.push(SingleCrossing {
                             connection: gaps(tension_m, compression_m),
                             load_n,
                             ..self.crossing(speed_m_s, Record::default())
@@ -91,20 +91,20 @@ impl Scenario {
     }
 
     /// Time steps of a crossing, bisections apart.
-    pub fn steps(&self, vehicle: &Vehicle, crossing: &Crossing) -> usize {
+    pub fn steps(&self, vehicle: &Vehicle, crossing: &SingleCrossing) -> usize {
         let length_m = self.ready.design.length_m();
-        CrossingSolver::steps(length_m, vehicle, TIME_STEP_S, crossing.speed_m_s, crossing.tail_s)
+        CrossingSolver::steps(length_m, &crossing.traffic(vehicle), TIME_STEP_S, crossing.tail_s)
     }
 
     /// Solves crossings of one vehicle on some threads, each taking part of what is left at a time.
     ///
     /// # Panics
     /// Where a crossing fails.
-    pub fn solve(&self, vehicle: &Vehicle, crossings: &[Crossing], threads: usize) -> Vec<CrossingResponse> {
-        let chunks: Vec<&[Crossing]> = crossings.chunks(CHUNK).collect();
-        let answers = |chunk: &&[Crossing]| -> Vec<CrossingResponse> {
+    pub fn solve(&self, vehicle: &Vehicle, crossings: &[SingleCrossing], threads: usize) -> Vec<CrossingResponse> {
+        let chunks: Vec<&[SingleCrossing]> = crossings.chunks(CHUNK).collect();
+        let answers = |chunk: &&[SingleCrossing]| -> Vec<CrossingResponse> {
             let jobs: Vec<_> = chunk.iter().map(|crossing| (vehicle, crossing)).collect();
-            let answers = self.solver.solve_all(&jobs, 0).into_iter();
+            let answers = crate::solve_side_by_side(&self.solver, &jobs, 0).into_iter();
             answers.map(|answer| answer.expect("a crossing")).collect()
         };
         crate::on_threads(threads, &chunks, answers).concat()

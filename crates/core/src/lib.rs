@@ -8,8 +8,8 @@
 //! | 0 | [`conventions`], [`input`], [`response`], [`stop`] | axes, units, signs; what a refused number looks like; whether to stop; peaks, histories and the energy balance, data that every floor above fills |
 //! | 1 | [`fem`] | shells, beams, assembly, factorisation, eigenvalues; has never heard of a bridge |
 //! | 2 | [`module`], [`water`], [`superelement`] | the pontoon's geometry to finite elements, hydrostatics and added mass, condensation |
-//! | 3 | [`connector`], [`vehicle`], [`bridge`] | the gap law, the wheels, and the one place where they all meet |
-//! | 4 | `scheme`, `flexibility`, `contact`, [`operator`] | time integration, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
+//! | 3 | [`connector`], [`vehicle`], [`road`], [`traffic`], [`bridge`] | the gap law, the wheels, what they drive on and how, and the one place where they all meet |
+//! | 4 | `scheme`, `riding`, `flexibility`, `contact`, [`operator`] | time integration, vehicles on springs in a step, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
 //! | 5 | [`analysis`] | modes, statics, crossings |
 
 pub mod analysis;
@@ -23,8 +23,11 @@ pub mod input;
 pub mod module;
 pub mod operator;
 pub mod response;
+pub mod road;
+mod riding;
 mod scheme;
 pub mod stop;
 pub mod superelement;
+pub mod traffic;
 pub mod vehicle;
 pub mod water;

@@ -14,12 +14,12 @@ pub mod statics;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AnalysisError {
     /// The contact did not settle at any step size allowed.
-    #[error("contact not settled at t = {time_s:.6} s in {link} after {bisections} bisections")]
+    #[error("contact not settled at t = {time_s:.6} s in {} after {bisections} bisections", place_of(*link))]
     NotConverged {
         /// Time of the step's end `[s]`.
         time_s: f64,
-        /// A link that changes its state without end.
-        link: LinkPlace,
+        /// A link that changes its state without end; none where that is a wheel on springs.
+        link: Option<LinkPlace>,
         /// Bisections made.
         bisections: usize,
     },
@@ -51,6 +51,10 @@ pub enum AnalysisError {
         /// How many were searched.
         searched: usize,
     },
+}
+
+fn place_of(link: Option<LinkPlace>) -> String {
+    link.map_or_else(|| "a wheel on its spring".to_owned(), |link| link.to_string())
 }
 
 /// Why a bridge has no dead state.

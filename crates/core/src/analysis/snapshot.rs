@@ -3,7 +3,7 @@
 //! Knows what moves, what the connectors do and with which force each wheel point stands on the deck. Does not know which
 //! solver found it, nor where nodes are.
 
-use crate::bridge::{Bridge, Load, PinRow, Track};
+use crate::bridge::{Bridge, Load, PinRow, Rider, Track};
 use crate::connector::State;
 use crate::fem::SparseRow;
 use crate::response::DeadState;
@@ -23,8 +23,10 @@ pub struct Snapshot {
     pub inertial: Option<Vec<f64>>,
     /// The connectors in the bridge's order.
     pub connectors: Vec<ConnectorNow>,
-    /// The vehicle's points, patch after patch.
+    /// The vehicles' points, patch after patch.
     pub wheels: Vec<WheelNow>,
+    /// The vehicles on springs.
+    pub rides: Vec<RideNow>,
     /// The dead state, which the motion contains.
     pub dead: Option<Arc<DeadState>>,
 }
@@ -66,9 +68,24 @@ pub struct ConnectorNow {
     pub elongation_m: f64,
 }
 
-/// A point of the vehicle at one time.
+/// A vehicle on springs at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RideNow {
+    /// Its number, from 0.
+    pub vehicle: usize,
+    /// How far each of its motions is from rest on a level road, in their order, upward `[m, rad]`.
+    pub moved: Vec<f64>,
+    /// Their accelerations `[m/s^2, rad/s^2]`.
+    pub accelerations: Vec<f64>,
+    /// Force of each wheel's spring on the deck or the road beside it `[N]`.
+    pub wheels_n: Vec<f64>,
+}
+
+/// A point of a vehicle at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WheelNow {
+    /// Number of its vehicle, from 0.
+    pub vehicle: usize,
     /// Number of its axle, from 0.
     pub axle: usize,
     /// Number of its patch, from 0.
@@ -93,36 +110,58 @@ pub(super) fn connectors(states: &[State], forces: &[f64], elongations: &[f64]) 
     .collect()
 }
 
-/// The points of a vehicle of weight `load_n` whose load on the track is `load`; `inertia` is the inertia force of each of the
-/// load's riders `[N]`: a point's own, or its share of the patch's.
-pub(super) fn wheels(track: &Track, vehicle: &Vehicle, load_n: f64, load: &Load, inertia: &[f64]) -> Vec<WheelNow> {
-    debug_assert_eq!(load.riders.len(), inertia.len());
-    let placement = &load.placement;
-    let mut inertia = inertia.iter().copied();
+/// The points of vehicles and their weights whose load on the track is `load`; `forces` are those of each of the load's riders
+/// `[N]`: a point's own, or to be shared by the points of a patch.
+pub(super) fn wheels<'a>(
+    track: &Track,
+    vehicles: impl IntoIterator<Item = (&'a Vehicle, f64)>,
+    load: &Load,
+    forces: &[f64],
+) -> Vec<WheelNow> {
+    debug_assert_eq!(load.riders.len(), forces.len());
+    let mut riders = load.riders.iter().zip(forces).peekable();
     let mut wheels = Vec::new();
-    for (number, patch) in vehicle.patches.iter().enumerate() {
-        let share_on = placement.share_on(patch);
-        let of_patch = if vehicle.inertia == Inertia::Convective && share_on > 0.0 {
-            inertia.next().unwrap_or_default()
-        } else {
-            0.0
-        };
-        for point in &patch.points {
-            let row = placement.row(track, point);
-            let contact_force_n = match (&row, vehicle.inertia) {
-                (None, _) => 0.0,
-                (Some(_), Inertia::None) => load_n * point.share,
-                (Some(_), Inertia::Local) => load_n * point.share + inertia.next().unwrap_or_default(),
-                (Some(_), Inertia::Convective) => (load_n + of_patch / share_on) * point.share,
+    for (number, (vehicle, load_n)) in vehicles.into_iter().enumerate() {
+        let placement = &load.placements[number];
+        for (patch_number, patch) in vehicle.patches.iter().enumerate() {
+            let points: Vec<Option<SparseRow>> = patch.points.iter().map(|p| placement.row(track, p)).collect();
+            // a rider a point where its mass moves with the deck under that
+            let mut of_points = vec![0.0; points.len()];
+            if vehicle.inertia == Inertia::Local && patch.rigid > 0.0 {
+                let on = of_points.iter_mut().zip(&points).filter(|(_, row)| row.is_some());
+                on.for_each(|(to, _)| *to = riders.next().map_or(0.0, |(_, force)| *force));
+            }
+            let share_on = placement.share_on(patch);
+            let mut shared = |is: fn(&Rider) -> bool, shares: f64| {
+                riders
+                    .next_if(|(rider, _)| rider.vehicle == number && is(rider))
+                    .map_or(0.0, |(_, force)| force / shares)
             };
-            wheels.push(WheelNow {
-                axle: patch.axle,
-                patch: number,
-                x_m: placement.x_m(point),
-                y_m: point.y_m,
-                row,
-                contact_force_n,
-            });
+            let mut per_share = 0.0;
+            if vehicle.inertia == Inertia::Convective && patch.rigid > 0.0 && share_on > 0.0 {
+                per_share += shared(|rider| !rider.is_spring(), share_on);
+            }
+            let rigid = load_n * patch.rigid + per_share;
+            let spring = if vehicle.springs.is_some() {
+                shared(Rider::is_spring, patch.share)
+            } else {
+                0.0
+            };
+            for ((point, row), own) in patch.points.iter().zip(points).zip(of_points) {
+                let contact_force_n = match row {
+                    None => 0.0,
+                    Some(_) => (rigid + spring) * point.share + own,
+                };
+                wheels.push(WheelNow {
+                    vehicle: number,
+                    axle: patch.axle,
+                    patch: patch_number,
+                    x_m: placement.x_m(point),
+                    y_m: point.y_m,
+                    row,
+                    contact_force_n,
+                });
+            }
         }
     }
     wheels

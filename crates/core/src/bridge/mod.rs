@@ -38,13 +38,13 @@ pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, Joi
 pub use kinds::{ModuleKind, ModuleRow, ModuleRun};
 pub use link_row::LinkPlace;
 pub(crate) use link_row::SpringPlace;
-pub(crate) use load::{Load, Rider};
+pub(crate) use load::{Load, Rider, Rides};
 pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 pub(crate) use module_place::ModulePlace;
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
 pub(crate) use pins::{PinPlace, PinRow, joint_parts};
-pub(crate) use placement::{VehiclePlacement, front_x_m};
+pub(crate) use placement::{Heading, VehiclePlacement};
 pub use prepared::PreparedModule;
 #[cfg(test)]
 pub(crate) use prepared::Side;

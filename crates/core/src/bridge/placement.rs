@@ -6,13 +6,47 @@
 use super::Track;
 use super::track::DeckCell;
 use crate::fem::SparseRow;
+use crate::traffic::Drive;
 use crate::vehicle::{Patch, Vehicle, WheelPoint};
 
-/// Where the front of a vehicle is at a time, which is at the end of the bridge that it comes from at time 0 `[m]`.
-#[inline(always)]
-pub(crate) fn front_x_m(track: &Track, speed_m_s: f64, time_s: f64) -> f64 {
-    let from_m = if speed_m_s < 0.0 { track.length_m() } else { 0.0 };
-    from_m + speed_m_s * time_s
+/// Where the front of a vehicle is and how it moves along x.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Heading {
+    /// Place of the front `[m]`.
+    pub front_x_m: f64,
+    /// Speed along x, below 0 toward x = 0 `[m/s]`.
+    pub speed_m_s: f64,
+    /// Acceleration along x `[m/s^2]`.
+    pub acceleration_m_s2: f64,
+    /// Whether it drives toward x = 0.
+    pub backward: bool,
+}
+
+impl Heading {
+    /// That of a vehicle at a time.
+    #[inline(always)]
+    pub(crate) fn of(track: &Track, drive: &Drive, time_s: f64) -> Self {
+        let now = drive.at(time_s);
+        let (from_m, sign) = if drive.backward {
+            (track.length_m(), -1.0)
+        } else {
+            (0.0, 1.0)
+        };
+        Self {
+            front_x_m: from_m + sign * now.way_m,
+            speed_m_s: sign * now.speed_m_s,
+            acceleration_m_s2: sign * now.acceleration_m_s2,
+            backward: drive.backward,
+        }
+    }
+
+    /// A vehicle that stands with its front at a place.
+    pub(crate) fn standing(front_x_m: f64) -> Self {
+        Self {
+            front_x_m,
+            ..Self::default()
+        }
+    }
 }
 
 /// How long a point has to be on a module before its contact force tells anything `[s]`. It comes onto the module at rest, with
@@ -23,36 +57,33 @@ const SETTLING_S: f64 = 0.05;
 /// Equation (V1).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VehiclePlacement {
-    /// Place of the vehicle's front `[m]`.
-    pub front_x_m: f64,
+    /// Where its front is and how it moves.
+    pub heading: Heading,
     /// The cell at each of the vehicle's places along; none off the bridge.
     cells: Vec<Option<DeckCell>>,
     /// Distance that a point covers on a module while its contact force settles `[m]`.
     settling_m: f64,
-    /// Whether it drives toward x = 0.
-    backward: bool,
 }
 
 impl VehiclePlacement {
-    /// A vehicle with its front at `front_x_m`, moving at `speed_m_s`; a vehicle of a speed below 0 drives toward x = 0.
-    pub(crate) fn new(track: &Track, vehicle: &Vehicle, front_x_m: f64, speed_m_s: f64) -> Self {
+    /// A vehicle where it is heading.
+    pub(crate) fn new(track: &Track, vehicle: &Vehicle, heading: Heading) -> Self {
         let mut placement = Self::default();
-        placement.place(track, vehicle, front_x_m, speed_m_s);
+        placement.place(track, vehicle, heading);
         placement
     }
 
-    /// Puts the vehicle's front at `front_x_m`, moving at `speed_m_s`.
+    /// Puts the vehicle where it is heading.
     #[inline(always)]
-    pub(crate) fn place(&mut self, track: &Track, vehicle: &Vehicle, front_x_m: f64, speed_m_s: f64) {
-        self.front_x_m = front_x_m;
-        self.settling_m = SETTLING_S * speed_m_s.abs();
-        self.backward = speed_m_s < 0.0;
+    pub(crate) fn place(&mut self, track: &Track, vehicle: &Vehicle, heading: Heading) {
+        self.heading = heading;
+        self.settling_m = SETTLING_S * heading.speed_m_s.abs();
         self.cells.clear();
         for ahead_m in &vehicle.along_m {
-            let cell = if self.backward {
-                track.cell_before(front_x_m - ahead_m)
+            let cell = if heading.backward {
+                track.cell_before(heading.front_x_m - ahead_m)
             } else {
-                track.cell(front_x_m + ahead_m)
+                track.cell(heading.front_x_m + ahead_m)
             };
             self.cells.push(cell);
         }
@@ -68,7 +99,7 @@ impl VehiclePlacement {
     #[inline(always)]
     pub(crate) fn is_settled(&self, along: usize) -> bool {
         let covered_m = |cell: DeckCell| {
-            if self.backward {
+            if self.heading.backward {
                 cell.module_m - cell.in_module_m
             } else {
                 cell.in_module_m
@@ -84,12 +115,18 @@ impl VehiclePlacement {
 
     /// The place so far ahead of the front `[m]`.
     #[inline(always)]
-    fn place_m(&self, ahead_m: f64) -> f64 {
-        if self.backward {
-            self.front_x_m - ahead_m
+    pub(crate) fn place_m(&self, ahead_m: f64) -> f64 {
+        if self.heading.backward {
+            self.heading.front_x_m - ahead_m
         } else {
-            self.front_x_m + ahead_m
+            self.heading.front_x_m + ahead_m
         }
+    }
+
+    /// Whether any point is on the bridge.
+    #[inline(always)]
+    pub(crate) fn is_on_bridge(&self) -> bool {
+        self.cells.iter().any(Option::is_some)
     }
 
     /// The track's row under a point; none off the bridge.

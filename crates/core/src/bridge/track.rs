@@ -103,8 +103,12 @@ impl Track {
 
     /// Its derivative along x `[1/m]`; none off the bridge.
     pub(crate) fn slope_row(&self, x_m: f64, y_m: f64) -> Option<SparseRow> {
-        let cell = self.cell(x_m)?;
-        Some(self.on_lines(cell.station, y_m, (-1.0 / cell.length_m, 1.0 / cell.length_m)))
+        self.cell(x_m).map(|cell| self.slope_row_in(cell, y_m))
+    }
+
+    /// That derivative in a cell and at y.
+    pub(crate) fn slope_row_in(&self, cell: DeckCell, y_m: f64) -> SparseRow {
+        self.on_lines(cell.station, y_m, (-1.0 / cell.length_m, 1.0 / cell.length_m))
     }
 
     /// Factors of a station and the next, on the lines beside y.

@@ -33,12 +33,14 @@ pub(crate) struct ContactProblem<'a> {
     pub riders: DMatrix<f64>,
     /// Riders' measure without forces.
     pub riders_free: DVector<f64>,
+    /// The riders that only press: wheels on springs, which leave the deck where their force would pull.
+    pub one_sided: Vec<usize>,
 }
 
 /// The answer of the small system.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactSolution {
-    /// State of each connector.
+    /// State of each connector, then of each one-sided rider: at work in compression, or open.
     pub states: Vec<State>,
     /// Force of each connector, tension positive `[N]`.
     pub forces: Vec<f64>,
@@ -53,14 +55,14 @@ pub(crate) struct ContactSolution {
 /// The active set came back to one it had been before, or the limit was reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NotSettled {
-    /// A connector that still wanted to change.
+    /// A connector that still wanted to change; beyond their number a one-sided rider.
     pub connector: usize,
     /// Newton solutions made.
     pub iterations: usize,
 }
 
 impl ContactProblem<'_> {
-    /// Solves from a first guess of the states.
+    /// Solves from a first guess of the states, those of one-sided riders behind those of connectors.
     ///
     /// # Errors
     /// [`NotSettled`] on a cycle, after `limit` solutions, or where the small matrix is singular.
@@ -69,10 +71,19 @@ impl ContactProblem<'_> {
             State::Both => State::Both,
             _ => first,
         };
-        let mut states: Vec<State> = laws.iter().zip(first).map(guess).collect();
+        let of_riders = first[laws.len()..].iter().copied();
+        let mut states: Vec<State> = laws.iter().zip(first).map(guess).chain(of_riders).collect();
         let mut system = UnderLaws { problem: self, laws };
         let (solution, iterations) = settle(&mut system, &mut states, &mut Vec::new(), limit)?;
         Ok(ContactSolution { iterations, ..solution })
+    }
+
+    /// What a rider without force is measured by under the forces of the others: above 0 it would press.
+    fn left_over(&self, rider: usize, found: &ContactSolution) -> f64 {
+        let of_riders: f64 = (0..).zip(&found.riders).map(|(j, q)| self.riders[(rider, j)] * q).sum();
+        let of_links = (0..).zip(&found.forces);
+        let of_links: f64 = of_links.map(|(i, n)| self.riders_connectors[(rider, i)] * self.weight * n).sum();
+        self.riders_free[rider] - of_riders - of_links
     }
 
     /// The problem where the structure feels what the links' forces are beyond those at rest `[N]`.
@@ -92,7 +103,9 @@ impl ContactProblem<'_> {
     /// One Newton solution: the linear system of an active set.
     /// Equation (C2).
     fn linear(&self, laws: &[LinkLaw], states: &[State]) -> Option<ContactSolution> {
-        let active: Vec<usize> = (0..states.len()).filter(|&i| states[i] != State::Open).collect();
+        let active: Vec<usize> = (0..laws.len()).filter(|&i| states[i] != State::Open).collect();
+        let off = self.one_sided.iter().zip(&states[laws.len()..]);
+        let off: Vec<usize> = off.filter(|(_, state)| **state == State::Open).map(|(r, _)| *r).collect();
         let (na, nr) = (active.len(), self.riders_free.len());
         let branches: Vec<_> = states.iter().zip(laws).map(|(&s, law)| law.branch(s)).collect();
         let mut a = DMatrix::zeros(na + nr, na + nr);
@@ -110,6 +123,12 @@ impl ContactProblem<'_> {
         }
         a.view_mut((na, na), (nr, nr)).copy_from(&self.riders);
         b.rows_mut(na, nr).copy_from(&self.riders_free);
+        for r in off {
+            // a wheel that is off the deck has no force
+            a.row_mut(na + r).fill(0.0);
+            a.column_mut(na + r).fill(0.0);
+            (a[(na + r, na + r)], b[na + r]) = (1.0, 0.0);
+        }
         let x = if na + nr == 0 { b } else { a.lu().solve(&b)? };
         let riders: Vec<f64> = x.rows(na, nr).iter().copied().collect();
         let mut elongations = self.e_free.clone();
@@ -125,7 +144,7 @@ impl ContactProblem<'_> {
                 .map(|(r, q)| self.connectors_riders[(i, r)] * q)
                 .sum::<f64>();
         }
-        let mut forces = vec![0.0; states.len()];
+        let mut forces = vec![0.0; laws.len()];
         for (p, &i) in active.iter().enumerate() {
             forces[i] = x[p] / self.weight;
             // the active line holds exactly: the elongation follows from the force, without cancellation
@@ -152,7 +171,15 @@ impl PiecewiseLinear for UnderLaws<'_> {
 
     fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<ContactSolution> {
         let solution = self.problem.linear(self.laws, states)?;
-        ask(self.laws, &solution.elongations, asked);
+        let (of_links, of_riders) = asked.split_at_mut(self.laws.len());
+        ask(self.laws, &solution.elongations, of_links);
+        for ((&r, is), asked) in self.problem.one_sided.iter().zip(&states[self.laws.len()..]).zip(of_riders) {
+            let presses = match is {
+                State::Open => self.problem.left_over(r, &solution) > 0.0,
+                _ => solution.riders[r] > 0.0,
+            };
+            *asked = if presses { State::Compression } else { State::Open };
+        }
         Some(solution)
     }
 }

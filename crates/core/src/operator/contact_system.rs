@@ -12,8 +12,9 @@ use nalgebra::DMatrix;
 /// The small system of one lane, kept from step to step.
 #[derive(Debug)]
 pub(super) struct ContactSystem {
-    /// State of each link.
+    /// State of each link, behind them of each one-sided rider: at work in compression, or open.
     pub(super) states: Vec<State>,
+    links: usize,
     /// The states before, and active sets met in this step, one after the other.
     before: Vec<State>,
     seen: Vec<State>,
@@ -66,7 +67,10 @@ impl PiecewiseLinear for OfStep<'_> {
     fn solve(&mut self, states: &[State], asked: &mut [State]) -> Option<()> {
         self.linear.solve(states, self.input);
         self.linear.elongate(states, self.input);
-        ask(self.input.laws, &self.linear.found, asked);
+        let links = self.input.laws.len();
+        let (of_links, of_riders) = asked.split_at_mut(links);
+        ask(self.input.laws, &self.linear.found, of_links);
+        self.linear.ask_riders(&states[links..], of_riders, self.input.riders);
         Some(())
     }
 }
@@ -77,6 +81,7 @@ impl ContactSystem {
         let open = vec![State::Open; links];
         Self {
             states: open.clone(),
+            links,
             before: open.clone(),
             seen: Vec::with_capacity(links * (newton_limit + 1)),
             linear: LinearSystem {
@@ -98,6 +103,14 @@ impl ContactSystem {
         self.linear.factored = false;
     }
 
+    /// Begins a step whose one-sided riders press or are off the deck.
+    #[inline(always)]
+    pub(super) fn begin_riders(&mut self, pressing: impl Iterator<Item = bool>) {
+        self.states.truncate(self.links);
+        self.states
+            .extend(pressing.map(|presses| if presses { State::Compression } else { State::Open }));
+    }
+
     /// Operations of a solution with so many riders: factors, substitutions and elongations of each Newton solution; factors
     /// that were kept are counted as if they were made.
     pub(super) fn flop(&self, riders: usize, solved: &Result<(usize, usize), NotSettled>) -> f64 {
@@ -105,7 +118,7 @@ impl ContactSystem {
             Ok((solutions, _)) => *solutions,
             Err(stuck) => stuck.iterations,
         };
-        let (c, n) = (self.states.len(), self.linear.active.len() + riders);
+        let (c, n) = (self.links, self.linear.active.len() + riders);
         (solutions * (n * n * n / 3 + 2 * n * n + 2 * c * n)) as f64
     }
 
@@ -114,7 +127,7 @@ impl ContactSystem {
     /// as before.
     #[inline(always)]
     pub(super) fn solve(&mut self, input: ContactInput, limit: usize) -> Result<(usize, usize), NotSettled> {
-        self.before.copy_from_slice(&self.states);
+        self.before.clone_from(&self.states);
         let mut system = OfStep {
             linear: &mut self.linear,
             input,
@@ -141,6 +154,7 @@ impl LinearSystem {
     fn solve(&mut self, states: &[State], input: ContactInput) {
         let (laws, riders) = (input.laws, input.riders);
         let nr = riders.count();
+        let (states, of_riders) = states.split_at(laws.len());
         if !(nr == 0 && self.factored && self.factored_states == states) {
             self.active.clear();
             for (i, state) in states.iter().enumerate() {
@@ -149,12 +163,18 @@ impl LinearSystem {
                 }
             }
             self.assemble(states, input);
+            for (r, _) in lifted(of_riders, nr) {
+                self.lift(r, nr + self.active.len());
+            }
             self.matrix.factor(nr + self.active.len(), riders.symmetric());
             self.factored_states.copy_from_slice(states);
             self.factored = nr == 0;
         }
         let n = nr + self.active.len();
         self.rhs[..nr].copy_from_slice(riders.free());
+        for (r, _) in lifted(of_riders, nr) {
+            self.rhs[r] = 0.0;
+        }
         for (p, &i) in self.active.iter().enumerate() {
             let branch = laws[i].branch(states[i]);
             self.rhs[nr + p] = self.e[i] - branch.offset / branch.stiffness;
@@ -201,6 +221,37 @@ impl LinearSystem {
         }
     }
 
+    /// Takes a rider that is off the deck out of the matrix of order `n`.
+    #[cold]
+    fn lift(&mut self, rider: usize, n: usize) {
+        for i in 0..n {
+            self.matrix.row_mut(i, n)[rider] = 0.0;
+        }
+        let row = self.matrix.row_mut(rider, n);
+        row.fill(0.0);
+        row[rider] = 1.0;
+    }
+
+    /// The states that the one-sided riders ask for: one that presses stays while its force does, one that is off the deck comes
+    /// back where it would press.
+    #[inline(always)]
+    fn ask_riders(&self, states: &[State], asked: &mut [State], riders: &RiderBlock) {
+        let first = riders.count() - states.len();
+        for ((r, is), asked) in (first..).zip(states).zip(asked) {
+            let presses = match is {
+                State::Open => self.left_over(r, riders) > 0.0,
+                _ => self.riders[r] > 0.0,
+            };
+            *asked = if presses { State::Compression } else { State::Open };
+        }
+    }
+
+    /// What a rider without force is measured by under the forces of the others.
+    fn left_over(&self, r: usize, riders: &RiderBlock) -> f64 {
+        let sum = |seen: &[f64], forces: &[f64]| seen.iter().zip(forces).map(|(a, b)| a * b).sum::<f64>();
+        riders.free()[r] - sum(riders.among(r), &self.riders) - sum(riders.of_links(r), &self.forces)
+    }
+
     /// Elongations under the forces found. On an active branch they follow from the force, without cancellation.
     #[inline(always)]
     fn elongate(&mut self, states: &[State], input: ContactInput) {
@@ -216,6 +267,13 @@ impl LinearSystem {
             self.found[i] = (self.forces[i] / input.weight + branch.offset) / branch.stiffness;
         }
     }
+}
+
+/// The one-sided riders that are off the deck, of so many riders the last.
+#[inline(always)]
+fn lifted(states: &[State], riders: usize) -> impl Iterator<Item = (usize, &State)> {
+    let first = riders - states.len();
+    (first..).zip(states).filter(|(_, state)| **state == State::Open)
 }
 
 /// A column of the compliance, which is a row, the matrix being symmetric.
@@ -276,6 +334,7 @@ mod tests {
             riders_connectors: DMatrix::from_fn(riders, n, |r, i| coupling(r, i, symmetric, false)),
             riders: among.clone(),
             riders_free: DVector::from_element(riders, free),
+            one_sided: Vec::new(),
         };
         let reference = problem.solve(&laws, &[State::Open; 4], 20).expect("settled");
         let mut block = RiderBlock::new(2, n);

@@ -10,7 +10,7 @@ use super::energy::{Energy, Terms};
 use super::envelope::{Envelope, LanePeaks, MOST_LANES};
 use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
-use super::loads::{Loads, StationForce, apply_forces};
+use super::loads::{Loads, StationForce, apply_forces, sum_forces};
 use super::local_residual::LocalResidual;
 use super::modes::Modes;
 use super::panel::InstructionPath;
@@ -22,6 +22,7 @@ use super::wheel_lines::WheelCompliance;
 use crate::connector::State;
 use crate::contact::NotSettled;
 use crate::response::{DeadState, JointReading, PinPeaks, Reading, Statistics};
+use crate::riding::{Ride, RidingStep};
 use pulp::Simd;
 use std::sync::Arc;
 
@@ -46,6 +47,9 @@ pub(crate) struct Saved {
     states: Vec<State>,
     local: LocalResidual,
     mass_forces: Vec<StationForce>,
+    spring_forces: Vec<StationForce>,
+    /// Motion of each vehicle on springs.
+    rides: Vec<Ride>,
     statistics: Statistics,
     /// Length of the last step, where dashpots ask for it `[s]`.
     before_s: f64,
@@ -55,11 +59,11 @@ pub(crate) struct Saved {
 pub(super) type Unsettled = Option<Vec<(usize, Saved)>>;
 
 impl Crossings {
-    /// As many lanes as this machine's vectors have, with room for vehicles of `most_nodes` nodes.
+    /// As many lanes as this machine's vectors have, with room for traffic of `most_nodes` nodes.
     pub(crate) fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
         let width = InstructionPath::of_this_machine().lanes;
         let sizes = &operator.sizes;
-        let lane = || Lane::new(sizes.modes, sizes.connectors, most_nodes, newton_limit);
+        let lane = || Lane::new(sizes, most_nodes, newton_limit);
         Self {
             most_nodes,
             modes: Modes::new(sizes, width),
@@ -100,7 +104,7 @@ impl Crossings {
         of.unloaded = 0;
         of.masses.leave();
         of.mass_forces.clear();
-        of.take(crossing);
+        of.take(crossing, operator.track.length_m());
         of.place(time_s);
         of.place_loads(lane, operator, &mut self.loads);
         self.loads.weights.copy_lane(lane, &self.loads.weights_now);
@@ -138,6 +142,9 @@ impl Crossings {
         of.dead = None;
         of.weights.clear();
         of.mass_forces.clear();
+        of.spring_forces.clear();
+        of.rides.clear();
+        of.leave();
     }
 
     /// Zeros in a lane.
@@ -172,6 +179,8 @@ impl Crossings {
             states: of.contact.states.clone(),
             local: of.masses.local_residual().clone(),
             mass_forces: of.mass_forces.clone(),
+            spring_forces: of.spring_forces.clone(),
+            rides: of.rides.iter().map(|of| of.ride.clone()).collect(),
             statistics: of.statistics,
             before_s: of.dashpots.as_ref().map_or(f64::INFINITY, |of| of.before_s),
         }
@@ -183,32 +192,42 @@ impl Crossings {
         places.zip(&saved.numbers).for_each(|(x, saved)| *x = *saved);
         let of = &mut self.lanes[lane];
         of.contact.forget();
-        of.contact.states.copy_from_slice(&saved.states);
+        of.contact.states.clone_from(&saved.states);
         of.statistics = saved.statistics;
         if let Some(dashpots) = &mut of.dashpots {
             dashpots.before_s = saved.before_s;
         }
         of.masses.put_local_residual(&saved.local);
         of.mass_forces.clone_from(&saved.mass_forces);
+        of.spring_forces.clone_from(&saved.spring_forces);
+        for (of, saved) in of.rides.iter_mut().zip(&saved.rides) {
+            of.ride.clone_from(saved);
+        }
         // the load's traces in the step under way are written anew
         of.unloaded = 0;
     }
 
     /// Takes up a crossing that was saved elsewhere, with the small compliances of its step length.
-    pub(crate) fn resume(&mut self, lane: usize, crossing: CrossingInput, saved: &Saved) {
+    pub(crate) fn resume(&mut self, operator: &BridgeOperator, lane: usize, crossing: CrossingInput, saved: &Saved) {
         // a crossing without riding masses writes no inertia forces, so that none may be left of the one before
         self.rest(lane);
         self.take_connectors(lane, &crossing);
-        self.lanes[lane].take(crossing);
+        self.lanes[lane].take(crossing, operator.track.length_m());
         self.restore(lane, saved);
     }
 
     /// Changes to another step length.
-    pub(crate) fn take_compliance(&mut self, lane: usize, compliance: Arc<WheelCompliance>) {
+    pub(crate) fn take_step(&mut self, lane: usize, compliance: Arc<WheelCompliance>, riding: &Arc<[Option<Arc<RidingStep>>]>) {
         let of = &mut self.lanes[lane];
         of.contact.forget();
         if let Some(crossing) = &mut of.crossing {
             crossing.compliance = compliance;
+            crossing.riding = Arc::clone(riding);
+        }
+        for ride in &mut of.rides {
+            if let Some(step) = &riding[ride.vehicle] {
+                ride.take_step(step);
+            }
         }
     }
 
@@ -237,14 +256,22 @@ impl Crossings {
             let Some(crossing) = &of.crossing else { continue };
             let (wheels, [weights, inertia]) = (&crossing.wheels, self.pins.loads_now());
             let width = wheels.influence_width;
-            apply_forces((&wheels.weights, width, first), &of.weights, weights, lane);
-            apply_forces((&wheels.masses, width, first), &of.mass_forces, inertia, lane);
+            apply_forces((&wheels.weights[..], width, first), &of.weights, weights, lane);
+            apply_forces((&wheels.nodes[..], width, first), &of.mass_forces, inertia, lane);
+            if !of.spring_forces.is_empty() {
+                let rows = weights.rows();
+                sum_forces((&wheels.nodes[..], width, first), &of.spring_forces, rows, |from, sums| {
+                    for (row, sum) in weights.rows_from_mut(from).zip(sums) {
+                        row[lane] += sum;
+                    }
+                });
+            }
         }
         let end_s = &end_s[..self.lanes.len()];
         self.pins.update(o, constants, &self.modes, &self.connectors, end_s);
     }
 
-    /// Whether any lane's vehicle has masses that ride along.
+    /// Whether anything rides along in any lane.
     #[inline(always)]
     pub(super) fn any_mass(&self) -> bool {
         self.lanes.iter().any(Lane::has_masses)
@@ -294,7 +321,7 @@ impl Crossings {
             let of = &mut self.lanes[lane];
             if of.solve(lane, (operator, constants, newton_limit), parts, clock) {
                 if of.crossing.is_some() {
-                    self.envelope.record_axles(lane, &of.axles, &of.inertia);
+                    self.envelope.record_axles(lane, &of.axles, &of.beyond_weight);
                 }
             } else {
                 let saved = self.save(lane);
@@ -341,6 +368,9 @@ impl Crossings {
         self.residual
             .correct(o, constants, &self.loads, &self.connectors, &mut terms);
         self.connectors.correct(o, constants, &mut terms);
+        for (lane, of) in self.lanes.iter_mut().enumerate() {
+            of.end_step(lane, constants, &mut self.loads);
+        }
         self.loads.end_step();
         clock.lap(StepPart::Residual, || self.residual.flop_of_correction());
         terms

@@ -7,6 +7,7 @@ use super::lane_array::LaneArray;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
 use crate::response::EnergySummary;
+use crate::riding::RideEnergies;
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -122,6 +123,10 @@ pub(super) struct Energy {
     kinetic: LaneArray,
     strain: LaneArray,
     springs: LaneArray,
+    /// What vehicles on springs have taken up since the crossing began, and over the step: what dampers and scheme dissipate, work.
+    vehicles: LaneArray,
+    ridden: LaneArray,
+    any_ride: bool,
     /// Rayleigh damping and dashpots, numerical dissipation, work; largest work, largest gap of the balance, largest numerical dissipation.
     sums: LaneArray,
     /// `sum of omega^2 q^2`, `s^T R s`.
@@ -136,6 +141,9 @@ impl Energy {
             kinetic: zeros(1),
             strain: zeros(1),
             springs: zeros(1),
+            vehicles: zeros(1),
+            ridden: zeros(3),
+            any_ride: false,
             sums: zeros(6),
             modal_strain: zeros(1),
             residual_strain: zeros(1),
@@ -143,8 +151,29 @@ impl Energy {
     }
 
     /// What a lane carries from step to step.
-    pub(super) fn carried(&mut self) -> [&mut LaneArray; 4] {
-        [&mut self.kinetic, &mut self.strain, &mut self.springs, &mut self.sums]
+    pub(super) fn carried(&mut self) -> [&mut LaneArray; 5] {
+        [
+            &mut self.kinetic,
+            &mut self.strain,
+            &mut self.springs,
+            &mut self.vehicles,
+            &mut self.sums,
+        ]
+    }
+
+    /// Takes what vehicles on springs do over the step, lane after lane; nothing where there are none.
+    #[inline(always)]
+    pub(super) fn take_rides(&mut self, any: bool, ridden: impl Iterator<Item = RideEnergies>) {
+        self.any_ride = any;
+        if !any {
+            return;
+        }
+        for (lane, of) in ridden.enumerate() {
+            *self.vehicles.at_mut(0, lane) += of.stored;
+            for (row, value) in [of.dampers, of.numerical, of.work].into_iter().enumerate() {
+                *self.ridden.at_mut(row, lane) = value;
+            }
+        }
     }
 
     /// Whether a lane's energies are finite.
@@ -184,6 +213,14 @@ impl Energy {
         sums[0] = o.add(sums[0], o.add(rayleigh, terms.dashpots));
         sums[1] = o.add(sums[1], numerical);
         sums[2] = o.add(sums[2], terms.work);
+        let mut stored = stored;
+        if self.any_ride {
+            let ridden = self.ridden.vectors::<S>();
+            for (sum, of_rides) in sums.iter_mut().zip(ridden) {
+                *sum = o.add(*sum, *of_rides);
+            }
+            stored = o.add(stored, self.vehicles.vectors::<S>()[0]);
+        }
         let gap = o.sub(o.add(stored, o.add(sums[0], sums[1])), sums[2]);
         sums[3] = o.max(sums[3], o.abs(sums[2]));
         sums[4] = o.max(sums[4], o.abs(gap));

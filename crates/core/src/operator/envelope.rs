@@ -11,6 +11,7 @@ use super::modes::Modes;
 use super::panel::{lanes, lanes_mut};
 use super::residual::Residual;
 use super::step_constants::StepConstants;
+use super::wheel_lines::DeckNode;
 use super::vector::Ops;
 use crate::response::{DeadState, EnergySummary, ForcePeaks, JointPeaks, Peak};
 use crate::scheme::Arithmetic;
@@ -283,7 +284,7 @@ impl Envelope {
     ) {
         let mut loads = [0.0; MOST_LANES];
         for (load, of) in loads.iter_mut().zip(each) {
-            for (.., force) in of.weights.iter().chain(&of.mass_forces) {
+            for (.., force) in of.weights.iter().chain(&of.mass_forces).chain(&of.spring_forces) {
                 *load += force.abs();
             }
         }
@@ -329,10 +330,11 @@ impl Envelope {
             let (place, side) = (of_module.places[i / 2], i % 2);
             let straight = (1.0 - place) * corner(side) + place * corner(2 + side);
             let mut z = straight + self.inside.at(i, lane);
-            for (lines, forces) in [(&wheels.weights, &of.weights), (&wheels.masses, &of.mass_forces)] {
-                for &(line, station, force) in forces {
-                    z -= force * lines[line].influence(station, wheels.influence_width)[first + i];
-                }
+            for &(line, station, force) in &of.weights {
+                z -= force * wheels.weights[line].influence[station * wheels.influence_width + first + i];
+            }
+            for &(line, station, force) in of.mass_forces.iter().chain(&of.spring_forces) {
+                z -= force * wheels.influence(DeckNode { line, station })[first + i];
             }
             let edge = self.edge.at_mut(0, lane);
             *edge = edge.max(-z);

@@ -32,6 +32,8 @@ pub(super) struct LocalResidual {
     /// Of the weights at the step under way; the change of x without new inertia and connector forces.
     weights_now: Vec<f64>,
     free: Vec<f64>,
+    /// Of wheels on springs at the step under way; of the last one they are among the weights.
+    springs: Vec<f64>,
 }
 
 impl Clone for LocalResidual {
@@ -55,8 +57,9 @@ impl Clone for LocalResidual {
 pub(super) struct StepForces<'a> {
     /// Lines of the weights.
     pub weights: &'a [StationForce],
-    /// Lines of the masses, at the last step.
+    /// Of masses and of wheels on springs, on lines of nodes, at the last step.
     pub masses: &'a [StationForce],
+    pub springs: &'a [StationForce],
     /// Connectors, at the last step.
     pub n: &'a [f64],
 }
@@ -75,9 +78,9 @@ impl LocalResidual {
         new
     }
 
-    fn lists(&mut self) -> [&mut Vec<f64>; 8] {
+    fn lists(&mut self) -> [&mut Vec<f64>; 9] {
         let [x, v, a] = &mut self.x;
-        let (now, free) = (&mut self.weights_now, &mut self.free);
+        let (now, free, springs) = (&mut self.weights_now, &mut self.free, &mut self.springs);
         [
             x,
             v,
@@ -87,12 +90,13 @@ impl LocalResidual {
             &mut self.contact,
             now,
             free,
+            springs,
         ]
     }
 
-    fn listed(&self) -> [&Vec<f64>; 8] {
-        let ([x, v, a], now, free) = (&self.x, &self.weights_now, &self.free);
-        [x, v, a, &self.weights, &self.inertia, &self.contact, now, free]
+    fn listed(&self) -> [&Vec<f64>; 9] {
+        let ([x, v, a], now, free, springs) = (&self.x, &self.weights_now, &self.free, &self.springs);
+        [x, v, a, &self.weights, &self.inertia, &self.contact, now, free, springs]
     }
 
     /// No nodes.
@@ -186,29 +190,32 @@ impl LocalResidual {
         for station in (run.first..lo).chain(hi..run.first + run.count) {
             let (i, line) = (run.from + station - run.first, run.line);
             self.weights[i] = self.weights_now[i];
-            for &(other, at, force) in pressing.masses {
-                let row = wheels.residual(other, at, line);
-                let seen = row.get((station + wheels.band).wrapping_sub(at));
-                self.inertia[i] += force * seen.copied().unwrap_or(0.0);
+            for (forces, to) in [
+                (pressing.masses, &mut self.inertia[i]),
+                (pressing.springs, &mut self.weights[i]),
+            ] {
+                for &(other, at, force) in forces {
+                    let row = wheels.residual(other, at, line);
+                    let seen = row.get((station + wheels.residual_band()).wrapping_sub(at));
+                    *to += force * seen.copied().unwrap_or(0.0);
+                }
             }
             self.contact[i] = of_connectors(wheels, line, station, modes, pressing.n);
             self.x[0][i] = -(self.weights[i] + self.inertia[i] + self.contact[i]);
         }
     }
 
-    /// Takes the nodes to the end of the step, inertia and connector forces found.
+    /// Takes the nodes to the end of the step, forces of masses, springs and connectors found.
     #[inline(always)]
-    pub(super) fn lead(
-        &mut self,
-        wheels: &WheelLines,
-        constants: &StepConstants,
-        modes: usize,
-        masses: &[StationForce],
-        n: &[f64],
-    ) {
+    pub(super) fn lead(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, found: StepForces) {
+        let n = found.n;
         self.inertia.fill(0.0);
-        for &(line, at, force) in masses {
+        for &(line, at, force) in found.masses {
             press(&self.runs, &mut self.inertia, wheels, line, at, force);
+        }
+        self.springs.fill(0.0);
+        for &(line, at, force) in found.springs {
+            press(&self.runs, &mut self.springs, wheels, line, at, force);
         }
         for run in &self.runs {
             for (i, contact) in self.contact[run.from..][..run.count].iter_mut().enumerate() {
@@ -218,13 +225,16 @@ impl LocalResidual {
         let s = &constants.scheme;
         let count = self.free.len();
         let (inertia, contact, free) = (&self.inertia[..count], &self.contact[..count], &self.free[..count]);
+        let springs = &self.springs[..count];
         let [x, v, a] = self.x.each_mut().map(|x| &mut x[..count]);
         let newmark = Newmark::of(Scalar, s);
         for i in 0..count {
-            let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * contact[i];
+            let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * (contact[i] + springs[i]);
             [x[i], v[i], a[i]] = newmark.advance(Scalar, free[i] - constants.rho * late, [x[i], v[i], a[i]]);
         }
-        self.weights.copy_from_slice(&self.weights_now);
+        for ((to, weight), spring) in self.weights.iter_mut().zip(&self.weights_now).zip(&self.springs) {
+            *to = weight + spring;
+        }
     }
 
     /// A node's acceleration, velocity and displacement at the end of the step without new inertia and connector forces.
@@ -245,7 +255,7 @@ impl LocalResidual {
 /// Adds what nodes see of a force on a station.
 #[inline(always)]
 fn press(runs: &[NodeRun], seen: &mut [f64], wheels: &WheelLines, line: usize, station: usize, force: f64) {
-    let band = wheels.band;
+    let band = wheels.residual_band();
     for run in runs {
         let lo = run.first.max(station.saturating_sub(band));
         let hi = (run.first + run.count).min(station + band + 1);
@@ -259,6 +269,6 @@ fn press(runs: &[NodeRun], seen: &mut [f64], wheels: &WheelLines, line: usize, s
 /// What a node sees of the connectors.
 #[inline(always)]
 fn of_connectors(wheels: &WheelLines, line: usize, station: usize, modes: usize, n: &[f64]) -> f64 {
-    let influence = wheels.masses[line].influence(station, wheels.influence_width);
+    let influence = wheels.influence(DeckNode { line, station });
     dot(&influence[modes..][..n.len()], n)
 }

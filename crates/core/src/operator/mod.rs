@@ -7,7 +7,7 @@
 //! `u = Phi q + K^-1 (what the modes leave out)`: the modes obey `q'' + (a omega^2 + b) q' + omega^2 q = Phi^T f`, the
 //! rest answers without mass, `K (u + a u') = f`, which leaves residual flexibilities R between connectors B, deck L and
 //! observed rows V. [`BridgeOperator`] holds them, `StepConstants` what one step length makes of them,
-//! `WheelLines` what a vehicle sees of the deck, `Crossings` the motion.
+//! `WheelLines` what vehicles see of the deck, `Crossings` the motion.
 
 mod basis;
 mod clock;
@@ -34,6 +34,7 @@ mod pins;
 mod residual;
 mod residual_rows;
 mod rider_block;
+mod rides;
 mod small_matrix;
 mod step;
 mod step_constants;

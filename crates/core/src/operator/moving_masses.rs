@@ -1,6 +1,6 @@
-//! The masses that ride along in one lane: where they are, what they see of each other and of the connectors.
+//! What rides along in one lane, masses and wheels on springs: where they are, what they see of each other and of the connectors.
 //!
-//! Knows one vehicle's place at one instant, laid out once so that a step allocates nothing. Does not know the scheme but
+//! Knows the vehicles' places at one instant, laid out once so that a step allocates nothing. Does not know the scheme but
 //! for its factors.
 
 use super::lane_array::LaneArray;
@@ -8,17 +8,21 @@ use super::line_mass::LineMass;
 use super::loads::StationForce;
 use super::local_residual::{LocalResidual, StepForces};
 use super::rider_block::RiderBlock;
+use super::rides::{LaneRide, WheelOnDeck};
 use super::step_constants::StepConstants;
 use super::sums::{add_to, dot};
-use super::wheel_lines::{DeckNode, WheelCompliance, WheelLine, WheelLines};
-use crate::bridge::{Track, VehiclePlacement};
+use super::wheel_lines::{DeckNode, LinePoint, VehicleLines, WheelCompliance, WheelLines};
+use crate::bridge::{Heading, Track, VehiclePlacement};
 use crate::vehicle::{GRAVITY_M_S2, Inertia};
 
-/// A mass and its rows on nodes.
+/// A mass or a wheel on its spring, and its rows on nodes.
 #[derive(Debug, Clone, Copy)]
 struct MovingMass {
+    /// Mass; 0 of a wheel `[kg]`.
     mass_kg: f64,
     axle: usize,
+    /// Speed and acceleration along x.
+    heading: Heading,
     /// Entries of its row r.
     force: (usize, usize),
     /// Entries of its rows r_x and r_xx, where convective.
@@ -74,12 +78,15 @@ impl FreeMotion {
     }
 }
 
-/// The masses of one lane at one instant. Those of [`LineMass`] stand for the points of a `local` vehicle.
+/// What rides along in one lane at one instant. Masses of [`LineMass`] stand for the points of a `local` vehicle.
 #[derive(Debug)]
 pub(super) struct MovingMasses {
     connectors: usize,
     nodes: Vec<DeckNode>,
+    /// Masses, behind them wheels on springs; the first of these.
     list: Vec<MovingMass>,
+    first_wheel: usize,
+    wheels: Vec<WheelOnDeck>,
     points: Vec<MassPoint>,
     force: Vec<(usize, f64)>,
     slopes: Vec<(usize, f64, f64)>,
@@ -107,6 +114,8 @@ impl MovingMasses {
             connectors,
             nodes: Vec::with_capacity(nodes),
             list: Vec::with_capacity(nodes),
+            first_wheel: 0,
+            wheels: Vec::new(),
             points: Vec::new(),
             force: Vec::new(),
             slopes: Vec::new(),
@@ -129,7 +138,7 @@ impl MovingMasses {
     /// Operations of [`MovingMasses::follow`] and [`MovingMasses::couple`] on so many modes.
     pub(super) fn flop_of_coupling(&self, modes: usize) -> f64 {
         let (n, r, c) = (self.nodes.len(), self.list.len(), self.connectors);
-        let motions = if self.slopes.is_empty() { 1 } else { 3 };
+        let motions = if self.needs_motion() { 3 } else { 1 };
         let entries = self.force.len() + self.slopes.len();
         (2 * motions * modes * n + 2 * n * r + entries * 2 * (r + c) + 12 * n) as f64
     }
@@ -140,50 +149,112 @@ impl MovingMasses {
         (2 * n * rows + 2 * n * (r + c) + 2 * n * c + 2 * self.force.len() + 14 * n) as f64
     }
 
-    /// Puts the vehicle's masses where they are: nodes, masses and their rows.
+    /// Puts what rides along where it is: nodes, masses, wheels on springs and their rows.
     #[inline(always)]
-    pub(super) fn place(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, placement: &VehiclePlacement) {
+    pub(super) fn place(
+        &mut self,
+        wheels: &WheelLines,
+        track: &Track,
+        loads_n: impl Fn(usize) -> f64,
+        placements: &[VehiclePlacement],
+        rides: &[LaneRide],
+    ) {
         self.nodes.clear();
         self.list.clear();
+        self.wheels.clear();
         self.points.clear();
         self.force.clear();
         self.slopes.clear();
         self.runs.clear();
         self.nexts.clear();
-        match wheels.vehicle.inertia {
-            Inertia::None => {}
-            Inertia::Local => {
-                for (line, of) in wheels.masses.iter().enumerate() {
-                    self.place_line(line, of, load_n, placement);
+        for (number, (of, placement)) in wheels.vehicles.iter().zip(placements).enumerate() {
+            match of.vehicle.inertia {
+                Inertia::None => {}
+                Inertia::Local => {
+                    for (line, points) in &of.masses {
+                        self.place_line(*line, points, loads_n(number), placement);
+                    }
                 }
+                Inertia::Convective => self.place_patches(of, track, loads_n(number), placement),
             }
-            Inertia::Convective => self.place_patches(wheels, track, load_n, placement),
+        }
+        // rows of any form are looked at one by one
+        let pairs = self.slopes.is_empty();
+        self.first_wheel = self.list.len();
+        for ride in rides {
+            self.place_wheels(&wheels.vehicles[ride.vehicle], &placements[ride.vehicle], ride);
+        }
+        if !pairs || self.list.len() > self.first_wheel {
+            self.runs.clear();
         }
         self.block.begin(self.list.len(), self.slopes.is_empty());
     }
 
+    /// Wheels on springs: the mean over a patch's points, and the slope where a damper asks for it.
+    #[inline(always)]
+    fn place_wheels(&mut self, of: &VehicleLines, placement: &VehiclePlacement, ride: &LaneRide) {
+        if !ride.is_awake() {
+            return;
+        }
+        for (wheel, (patch, lines)) in of.vehicle.patches.iter().zip(&of.points).enumerate() {
+            let on_deck = ride.wheel(wheel, placement);
+            let (forces, slopes) = (self.force.len(), self.slopes.len());
+            for (p, &line) in patch.points.iter().zip(lines) {
+                if let Some(place) = placement.cell(p.along) {
+                    let w = p.share / patch.share;
+                    for (station, part, slope) in [
+                        (place.station, 1.0 - place.fraction, -w / place.length_m),
+                        (place.station + 1, place.fraction, w / place.length_m),
+                    ] {
+                        let node = self.node(DeckNode { line, station });
+                        if part != 0.0 {
+                            add(&mut self.force, forces, node, w * part);
+                        }
+                        if on_deck.by_slope != 0.0 {
+                            self.slopes.push((node, slope, 0.0));
+                        }
+                    }
+                }
+            }
+            self.list.push(MovingMass {
+                mass_kg: 0.0,
+                axle: of.first_axle + patch.axle,
+                heading: placement.heading,
+                force: (forces, self.force.len()),
+                slopes: (slopes, self.slopes.len()),
+            });
+            self.wheels.push(on_deck);
+        }
+    }
+
+    /// Whether rows ask for velocities and displacements too.
+    #[inline(always)]
+    pub(super) fn needs_motion(&self) -> bool {
+        !self.slopes.is_empty() || !self.wheels.is_empty()
+    }
+
     /// `u''` of the deck under each point: the line's mass matrix and its factors.
     #[inline(always)]
-    fn place_line(&mut self, line: usize, of: &WheelLine, load_n: f64, placement: &VehiclePlacement) {
-        let first = self.gather_line(of, load_n, placement);
+    fn place_line(&mut self, line: usize, points: &[LinePoint], load_n: f64, placement: &VehiclePlacement) {
+        let first = self.gather_line(points, load_n, placement);
         let base = self.nodes.len();
         for at in 0..self.line.stations() {
             let station = first + at;
             self.nodes.push(DeckNode { line, station });
             let [mass_kg, next] = self.line.factor(at);
             if mass_kg > 0.0 {
-                self.add_mass(DeckNode { line, station }, base + at, mass_kg, next);
+                self.add_mass(DeckNode { line, station }, base + at, mass_kg, next, placement.heading);
             }
         }
     }
 
     /// The mass matrix of a line's points, and its first station.
     #[inline(always)]
-    fn gather_line(&mut self, of: &WheelLine, load_n: f64, placement: &VehiclePlacement) -> usize {
+    fn gather_line(&mut self, points: &[LinePoint], load_n: f64, placement: &VehiclePlacement) -> usize {
         self.line.clear();
         let base = self.nodes.len();
         let mut first = 0;
-        for point in &of.points {
+        for point in points {
             let Some(cell) = placement.cell(point.along) else {
                 continue;
             };
@@ -204,7 +275,14 @@ impl MovingMasses {
 
     /// A mass on the row of a station and of the next, to which the matrix has the entry `next`.
     #[inline(always)]
-    fn add_mass(&mut self, DeckNode { line, station }: DeckNode, node: usize, mass_kg: f64, next: f64) {
+    fn add_mass(
+        &mut self,
+        DeckNode { line, station }: DeckNode,
+        node: usize,
+        mass_kg: f64,
+        next: f64,
+        heading: Heading,
+    ) {
         let from = self.force.len();
         self.force.push((node, 1.0));
         if next != 0.0 {
@@ -223,6 +301,7 @@ impl MovingMasses {
         self.list.push(MovingMass {
             mass_kg,
             axle: 0,
+            heading,
             force: (from, self.force.len()),
             slopes: (0, 0),
         });
@@ -231,10 +310,10 @@ impl MovingMasses {
     /// The patches' means, measured by `r u'' + 2 V r_x u' + V^2 r_xx u`; the derivatives are differences of the row and of
     /// its slope between the ends of the patch.
     #[inline(always)]
-    fn place_patches(&mut self, wheels: &WheelLines, track: &Track, load_n: f64, placement: &VehiclePlacement) {
-        for (patch, lines) in wheels.vehicle.patches.iter().zip(&wheels.point_lines) {
+    fn place_patches(&mut self, of: &VehicleLines, track: &Track, load_n: f64, placement: &VehiclePlacement) {
+        for (patch, lines) in of.vehicle.patches.iter().zip(&of.points) {
             let share = placement.share_on(patch);
-            if share <= 0.0 {
+            if share <= 0.0 || patch.rigid == 0.0 {
                 continue;
             }
             let forces = self.force.len();
@@ -272,8 +351,9 @@ impl MovingMasses {
                 }
             }
             self.list.push(MovingMass {
-                mass_kg: load_n * share / GRAVITY_M_S2,
-                axle: patch.axle,
+                mass_kg: load_n * (share * patch.rigid) / GRAVITY_M_S2,
+                axle: of.first_axle + patch.axle,
+                heading: placement.heading,
                 force: (forces, self.force.len()),
                 slopes: (slopes, self.slopes.len()),
             });
@@ -289,8 +369,9 @@ impl MovingMasses {
         })
     }
 
-    /// The masses' part of the small system, from the free motion at the step's end. Measured in displacement:
-    /// `q' / ((1 - alpha_m) m c_a) = r u'' / c_a + (2 V / c_a) r_x u' + (V^2 / c_a) r_xx u` with `q' = (1 - alpha_m) q`.
+    /// The part of the small system that rides along, from the free motion at the step's end. Masses are measured in displacement:
+    /// `q' / ((1 - alpha_m) m c_a) = r u'' / c_a + (2 V / c_a) r_x u' + ((V^2 r_xx + V' r_x) / c_a) u` with
+    /// `q' = (1 - alpha_m) q`; wheels on springs by [`WheelOnDeck`].
     #[inline(always)]
     pub(super) fn couple(
         &mut self,
@@ -298,7 +379,7 @@ impl MovingMasses {
         compliance: &WheelCompliance,
         constants: &StepConstants,
         modes: usize,
-        speed_m_s: f64,
+        rides: &[LaneRide],
         free: &FreeMotion,
     ) {
         let nr = self.list.len();
@@ -306,14 +387,13 @@ impl MovingMasses {
             return;
         }
         let s = &constants.scheme;
-        let (on_x, on_xx) = (2.0 * speed_m_s / s.c_a, speed_m_s * speed_m_s / s.c_a);
         self.free_nodes(wheels, constants, modes, free);
         if self.runs.is_empty() {
             self.see_rows(compliance);
         } else {
             self.see_pairs(compliance);
         }
-        for (i, mass) in self.list.iter().enumerate() {
+        for (i, mass) in self.list[..self.first_wheel].iter().enumerate() {
             let row = self.block.row_mut(i);
             let mut free = 0.0;
             for &(node, w) in &self.force[mass.force.0..mass.force.1] {
@@ -324,26 +404,96 @@ impl MovingMasses {
                 add_to(row.on_links, w, there);
                 free += w * self.dots[node][0] / s.c_a;
             }
+            let (speed, rate) = (mass.heading.speed_m_s, mass.heading.acceleration_m_s2);
+            let (on_x, on_xx) = (2.0 * speed / s.c_a, speed * speed / s.c_a);
             for &(node, r_x, r_xx) in &self.slopes[mass.slopes.0..mass.slopes.1] {
-                let (w, DeckNode { line, station }) = (on_x * s.c_v * r_x + on_xx * r_xx, self.nodes[node]);
+                let of_u = on_xx * r_xx + rate / s.c_a * r_x;
+                let (w, DeckNode { line, station }) = (on_x * s.c_v * r_x + of_u, self.nodes[node]);
                 add_to(row.among, w, &self.seen[node * nr..][..nr]);
                 add_to(row.of_links, w, compliance.with_connectors(line, station));
-                free += on_x * r_x * self.dots[node][1] + on_xx * r_xx * self.dots[node][2];
+                free += on_x * r_x * self.dots[node][1] + of_u * self.dots[node][2];
             }
             row.among[i] += 1.0 / ((1.0 - s.alpha_m) * mass.mass_kg * s.c_a);
             *row.free = free;
+        }
+        for (i, wheel) in (self.first_wheel..).zip(&self.wheels) {
+            let (row, of) = (self.block.row_mut(i), self.list[i]);
+            let mut free = wheel.known;
+            for &(node, w) in &self.force[of.force.0..of.force.1] {
+                let DeckNode { line, station } = self.nodes[node];
+                add_to(row.among, w, &self.seen[node * nr..][..nr]);
+                let there = compliance.with_connectors(line, station);
+                add_to(row.of_links, w, there);
+                add_to(row.on_links, w, there);
+                let [_, v, x] = self.dots[node];
+                free += w * (wheel.of_spring * x + wheel.of_damper * v);
+            }
+            for &(node, r_x, _) in &self.slopes[of.slopes.0..of.slopes.1] {
+                let (w, DeckNode { line, station }) = (wheel.by_slope * r_x, self.nodes[node]);
+                add_to(row.among, w, &self.seen[node * nr..][..nr]);
+                add_to(row.of_links, w, compliance.with_connectors(line, station));
+                free += w * self.dots[node][2];
+            }
+            *row.free = free;
+        }
+        let mut from = self.first_wheel;
+        for ride in rides.iter().filter(|ride| ride.is_awake()) {
+            let many = ride.wheels();
+            for w in 0..many {
+                let row = self.block.row_mut(from + w);
+                ride.add_among(w, &mut row.among[from..][..many]);
+                row.among[from + w] += self.wheels[from + w - self.first_wheel].own;
+            }
+            from += many;
+        }
+    }
+
+    /// Number of wheels on springs; they are the last riders.
+    #[inline(always)]
+    pub(super) fn wheels_on_springs(&self) -> usize {
+        self.wheels.len()
+    }
+
+    /// Height of the deck under each wheel on springs at the step's end and its rate `[m, m/s]`, given the scaled forces of riders
+    /// and connectors.
+    #[inline(always)]
+    pub(super) fn under_wheels(
+        &mut self,
+        compliance: &WheelCompliance,
+        constants: &StepConstants,
+        scaled: &[f64],
+        connectors: &[f64],
+        mut tell: impl FnMut(usize, &WheelOnDeck, [f64; 2]),
+    ) {
+        let (nr, s) = (self.list.len(), &constants.scheme);
+        for (node, DeckNode { line, station }) in self.nodes.iter().enumerate() {
+            let from_riders = dot(&self.seen[node * nr..][..nr], scaled);
+            let from_connectors = dot(compliance.with_connectors(*line, *station), connectors);
+            self.on_nodes[node] = from_riders + from_connectors;
+        }
+        for (number, of) in self.list[self.first_wheel..].iter().enumerate() {
+            let (mut height_m, mut rate_m_s) = (0.0, 0.0);
+            for &(node, w) in &self.force[of.force.0..of.force.1] {
+                let ([_, v, x], down) = (self.dots[node], self.on_nodes[node]);
+                height_m += w * (x - down);
+                rate_m_s += w * (v - s.c_v * down);
+            }
+            for &(node, r_x, _) in &self.slopes[of.slopes.0..of.slopes.1] {
+                rate_m_s += of.heading.speed_m_s * r_x * (self.dots[node][2] - self.on_nodes[node]);
+            }
+            tell(number, &self.wheels[number], [height_m, rate_m_s]);
         }
     }
 
     /// Free motion of the nodes, without new connector and inertia forces.
     #[inline(always)]
     fn free_nodes(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, free: &FreeMotion) {
-        let convective = !self.slopes.is_empty();
+        let all = self.needs_motion();
         self.dots.clear();
         for node in &self.nodes {
-            let phi = &wheels.masses[node.line].influence(node.station, wheels.influence_width)[..modes];
+            let phi = &wheels.influence(*node)[..modes];
             let [a, v, x] = self.local.free(*node, &constants.scheme);
-            self.dots.push(if convective {
+            self.dots.push(if all {
                 [a + dot(phi, &free.a), v + dot(phi, &free.v), x + dot(phi, &free.q)]
             } else {
                 [a + dot(phi, &free.a), 0.0, 0.0]
@@ -359,6 +509,11 @@ impl MovingMasses {
             let seen = &mut self.seen[a * nr..][..nr];
             for (seen, mass) in seen.iter_mut().zip(&self.list) {
                 let row = &self.force[mass.force.0..mass.force.1];
+                if row.is_empty() {
+                    // a wheel on the road beside the bridge
+                    *seen = 0.0;
+                    continue;
+                }
                 let first = self.nodes[row[0].0];
                 // rows lie on few lines, their nodes side by side
                 let (mut line, mut there) = (first.line, compliance.row(node.line, node.station, first.line));
@@ -415,15 +570,8 @@ impl MovingMasses {
 
     /// Takes the nodes near the vehicle to the end of the step, see [`LocalResidual::lead`].
     #[inline(always)]
-    pub(super) fn lead(
-        &mut self,
-        wheels: &WheelLines,
-        constants: &StepConstants,
-        modes: usize,
-        masses: &[StationForce],
-        n: &[f64],
-    ) {
-        self.local.lead(wheels, constants, modes, masses, n);
+    pub(super) fn lead(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, found: StepForces) {
+        self.local.lead(wheels, constants, modes, found);
     }
 
     /// The nodes near the vehicle.
@@ -441,12 +589,32 @@ impl MovingMasses {
         self.local.clear();
     }
 
-    /// Force on each node from the masses' forces times `factor`: line, station, force.
+    /// Force on each node from the masses' scaled forces times `factor`: line, station, force.
     #[inline(always)]
-    pub(super) fn on_nodes(&mut self, masses: &[f64], factor: f64, forces: &mut Vec<StationForce>) {
+    pub(super) fn masses_on_nodes(&mut self, scaled: &[f64], factor: f64, forces: &mut Vec<StationForce>) {
+        self.put_on_nodes((0, self.first_wheel), scaled, factor, forces);
+    }
+
+    /// Force on each node from the scaled forces of wheels on springs times `factor`.
+    #[inline(always)]
+    pub(super) fn springs_on_nodes(&mut self, scaled: &[f64], factor: f64, forces: &mut Vec<StationForce>) {
+        self.put_on_nodes((self.first_wheel, self.list.len()), scaled, factor, forces);
+    }
+
+    #[inline(always)]
+    fn put_on_nodes(
+        &mut self,
+        (from, end): (usize, usize),
+        scaled: &[f64],
+        factor: f64,
+        forces: &mut Vec<StationForce>,
+    ) {
+        if from == end {
+            return;
+        }
         let nn = self.nodes.len();
         self.on_nodes[..nn].fill(0.0);
-        for (mass, q) in self.list.iter().zip(masses) {
+        for (mass, q) in self.list[from..end].iter().zip(&scaled[from..end]) {
             for &(node, w) in &self.force[mass.force.0..mass.force.1] {
                 self.on_nodes[node] += w * q;
             }
@@ -456,9 +624,10 @@ impl MovingMasses {
         }
     }
 
-    /// Adds each axle's inertia force `m u''` to `axles`, given the scaled forces of masses and connectors.
+    /// Adds each axle's force beyond its weight to `axles`: inertia force `m u''`, force of springs, given the scaled forces of
+    /// riders and connectors.
     #[inline(always)]
-    pub(super) fn add_inertia(
+    pub(super) fn add_forces(
         &mut self,
         compliance: &WheelCompliance,
         constants: &StepConstants,
@@ -467,10 +636,14 @@ impl MovingMasses {
         axles: &mut [f64],
     ) {
         let (nr, s) = (self.list.len(), &constants.scheme);
-        if !self.slopes.is_empty() {
-            for (mass, q) in self.list.iter().zip(scaled) {
-                axles[mass.axle] += q / (1.0 - s.alpha_m);
-            }
+        for (wheel, q) in self.list.iter().zip(scaled).skip(self.first_wheel) {
+            axles[wheel.axle] += q / (1.0 - s.alpha_f);
+        }
+        let patches = self.list[..self.first_wheel].iter().zip(scaled);
+        for (mass, q) in patches.filter(|(mass, _)| mass.slopes.0 != mass.slopes.1) {
+            axles[mass.axle] += q / (1.0 - s.alpha_m);
+        }
+        if self.points.is_empty() {
             return;
         }
         for (node, DeckNode { line, station }) in self.nodes.iter().enumerate() {

@@ -4,8 +4,11 @@
 
 use super::basis::{BridgeOperator, OperatedModule};
 use super::panel::Panel;
+use crate::riding::RidingStep;
 use crate::scheme::{Arithmetic, Rayleigh, Scheme};
+use crate::vehicle::Springs;
 use nalgebra::DMatrix;
+use std::sync::Arc;
 
 /// Constants of a step, one a mode where they are lists. With `d = q_1 - q_0`, a mode steps by
 ///
@@ -109,6 +112,13 @@ impl StepConstants {
             c,
             panels: Panels::new(operator),
         }
+    }
+}
+
+impl StepConstants {
+    /// A vehicle's springs at this step length.
+    pub(crate) fn riding(&self, springs: &Arc<Springs>) -> RidingStep {
+        RidingStep::new(springs, self.scheme)
     }
 }
 

@@ -1,36 +1,41 @@
-//! What a vehicle sees of the deck: its points on lines along the bridge, and what a force there does.
+//! What vehicles see of the deck: their points on lines along the bridge, and what a force there does.
 //!
-//! Knows one vehicle on one operator. Does not know loads, speeds or steps but for the flexibilities that it is asked for.
+//! Knows the traffic of a crossing on one operator. Does not know loads, speeds or steps but for the flexibilities that it is asked
+//! for.
 
 use super::basis::BridgeOperator;
 use super::step_constants::StepConstants;
 use crate::bridge::Track;
+use crate::traffic::Traffic;
 use crate::vehicle::{Inertia, Vehicle};
 use nalgebra::DMatrix;
+use std::sync::Arc;
 
 /// A wheel point on its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LinePoint {
     /// Number of its place along the vehicle.
     pub along: usize,
-    /// Share of the vehicle's weight.
+    /// Share of the vehicle's weight that lies on the deck without a spring.
     pub share: f64,
-    /// Its axle.
+    /// Its axle, numbered through all vehicles.
     pub axle: usize,
 }
 
-/// Wheel points on one line along the bridge, or on several that carry the same.
+/// Wheel points of one vehicle on one line along the bridge, or on several that carry the same.
 #[derive(Debug)]
 pub(super) struct WheelLine {
-    /// Lines of the masses that carry these points.
+    /// Number of the vehicle.
+    pub vehicle: usize,
+    /// Lines of nodes that carry these points.
     pub lines: Vec<usize>,
     /// Points in the order of x.
     pub points: Vec<LinePoint>,
     /// For each station the influence of a unit force there: `phi`, `R_BL`, `R_VL`, edges inside modules.
-    pub influence: Vec<f64>,
+    pub influence: Arc<[f64]>,
 }
 
-/// A node of the deck under the vehicle: line of [`WheelLines`] and station.
+/// A node of the deck under the vehicles: line of [`WheelLines`] and station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct DeckNode {
     pub line: usize,
@@ -39,108 +44,177 @@ pub(super) struct DeckNode {
 
 /// A vehicle on an operator's deck.
 #[derive(Debug)]
+pub(super) struct VehicleLines {
+    pub vehicle: Arc<Vehicle>,
+    /// Lines of nodes under its points that carry mass without a spring, and these points in the order of x.
+    pub masses: Vec<(usize, Vec<LinePoint>)>,
+    /// Line of nodes of each point of each patch.
+    pub points: Vec<Vec<usize>>,
+    /// The first of its axles among those of all vehicles.
+    pub first_axle: usize,
+}
+
+/// The vehicles of a crossing on an operator's deck.
+#[derive(Debug)]
 pub(crate) struct WheelLines {
-    pub(super) vehicle: Vehicle,
-    /// Lines for the weights, those that carry the same taken together.
+    pub(super) vehicles: Vec<VehicleLines>,
+    /// Lines for the weights, those of a vehicle that carry the same taken together.
     pub(super) weights: Vec<WheelLine>,
-    /// Lines for the masses, one a place across; none where the mass stays out.
-    pub(super) masses: Vec<WheelLine>,
-    /// Line of `masses` of each point of each patch.
-    pub(super) point_lines: Vec<Vec<usize>>,
-    /// What the modes leave out between nodes of the masses' lines: for each node every line from `station - band` on.
+    /// Influences of the lines of nodes, one a place across; none where nothing rides along.
+    pub(super) nodes: Vec<Arc<[f64]>>,
+    /// What the modes leave out between nodes: for each node every line from `station - residual_band` on.
     residual: Vec<f64>,
+    residual_band: usize,
     /// Columns of an influence.
     pub(super) influence_width: usize,
-    /// Stations farther apart than this never carry the vehicle at once.
+    /// Stations farther apart than this never carry the vehicles at once.
     pub(super) band: usize,
     stations: usize,
+    /// Axles of all vehicles.
+    pub(super) axles: usize,
+    /// Nodes that may be under the vehicles at once.
+    most_nodes: usize,
 }
 
 impl WheelLines {
-    /// A vehicle on the deck of an operator, which drives toward x = 0 or away from there.
-    pub(crate) fn new(operator: &BridgeOperator, vehicle: &Vehicle, backward: bool) -> Self {
+    /// The vehicles on the deck of an operator.
+    pub(crate) fn new(operator: &BridgeOperator, traffic: &Traffic) -> Self {
         let track = &operator.track;
-        let mut lines: Vec<(f64, Vec<LinePoint>)> = Vec::new();
-        let mut point_lines = Vec::new();
-        for patch in &vehicle.patches {
-            let mut own = Vec::new();
-            for p in &patch.points {
-                let line = lines.iter().position(|(y, _)| *y == p.y_m).unwrap_or_else(|| {
-                    lines.push((p.y_m, Vec::new()));
-                    lines.len() - 1
-                });
-                lines[line].1.push(LinePoint {
-                    along: p.along,
-                    share: p.share,
-                    axle: patch.axle,
-                });
-                own.push(line);
-            }
-            point_lines.push(own);
-        }
-        for (_, points) in &mut lines {
-            points.sort_by(|a, b| vehicle.along_m[a.along].total_cmp(&vehicle.along_m[b.along]));
-            if backward {
-                points.reverse();
-            }
-        }
-        let mut weights: Vec<WheelLine> = Vec::new();
-        let mut masses = Vec::new();
-        for (number, (y, points)) in lines.iter().enumerate() {
-            let influence = line_influence(operator, *y);
-            match weights.iter_mut().find(|w| w.points == *points) {
-                Some(same) => {
-                    same.lines.push(number);
-                    same.influence.iter_mut().zip(&influence).for_each(|(a, b)| *a += b);
+        let places_y = places_across(traffic);
+        let influences: Vec<Arc<[f64]>> = places_y.iter().map(|y| line_influence(operator, *y).into()).collect();
+        let (mut vehicles, mut weights): (Vec<VehicleLines>, Vec<WheelLine>) = (Vec::new(), Vec::new());
+        let mut axles = 0;
+        for (number, driven) in traffic.vehicles.iter().enumerate() {
+            let vehicle = &driven.vehicle;
+            let mut lines: Vec<(usize, Vec<LinePoint>)> = Vec::new();
+            let mut points = Vec::new();
+            for patch in &vehicle.patches {
+                let mut own = Vec::new();
+                for p in &patch.points {
+                    let line = places_y.iter().position(|y| *y == p.y_m).unwrap_or_default();
+                    own.push(line);
+                    if patch.rigid == 0.0 {
+                        continue;
+                    }
+                    let at = lines.iter().position(|(of, _)| *of == line).unwrap_or_else(|| {
+                        lines.push((line, Vec::new()));
+                        lines.len() - 1
+                    });
+                    lines[at].1.push(LinePoint {
+                        along: p.along,
+                        share: p.share * patch.rigid,
+                        axle: axles + patch.axle,
+                    });
                 }
-                None => weights.push(WheelLine {
-                    lines: vec![number],
-                    points: points.clone(),
-                    influence: influence.clone(),
-                }),
+                points.push(own);
             }
-            if vehicle.inertia != Inertia::None {
-                masses.push(WheelLine {
-                    lines: vec![number],
-                    points: points.clone(),
-                    influence,
-                });
+            for (_, points) in &mut lines {
+                points.sort_by(|a, b| vehicle.along_m[a.along].total_cmp(&vehicle.along_m[b.along]));
+                if driven.drive.backward {
+                    points.reverse();
+                }
             }
+            let first = weights.len();
+            for (line, points) in &lines {
+                match weights[first..].iter_mut().find(|w| w.points == *points) {
+                    Some(same) => {
+                        same.lines.push(*line);
+                        let sum = same.influence.iter().zip(&*influences[*line]).map(|(a, b)| a + b);
+                        same.influence = sum.collect();
+                    }
+                    None => weights.push(WheelLine {
+                        vehicle: number,
+                        lines: vec![*line],
+                        points: points.clone(),
+                        influence: Arc::clone(&influences[*line]),
+                    }),
+                }
+            }
+            // equal vehicles share what they see
+            for at in first..weights.len() {
+                let same = weights[..first].iter().find(|w| w.lines == weights[at].lines);
+                if let Some(influence) = same.map(|w| Arc::clone(&w.influence)) {
+                    weights[at].influence = influence;
+                }
+            }
+            vehicles.push(VehicleLines {
+                vehicle: Arc::clone(vehicle),
+                masses: if vehicle.inertia == Inertia::None { Vec::new() } else { lines },
+                points,
+                first_axle: axles,
+            });
+            axles += vehicle.axles;
         }
-        let band = band(track, vehicle);
-        let across: Vec<_> = lines.iter().map(|(y, _)| track.across(*y)).collect();
-        let residual = if masses.is_empty() {
-            Vec::new()
+        let band = band(track, traffic);
+        let ride = traffic.vehicles.iter().any(|driven| rides(&driven.vehicle));
+        let across: Vec<_> = places_y.iter().map(|y| track.across(*y)).collect();
+        let residual_band = if vehicles.len() > 1 { band.min(operator.near) } else { band };
+        let residual = if ride {
+            residual(operator, &across, residual_band)
         } else {
-            residual(operator, &across, band)
+            Vec::new()
         };
         Self {
             band,
             residual,
-            vehicle: vehicle.clone(),
+            residual_band,
+            most_nodes: Self::most_nodes_of(operator, traffic),
+            vehicles,
             weights,
-            masses,
-            point_lines,
+            nodes: if ride { influences } else { Vec::new() },
             influence_width: operator.sizes.influence(),
             stations: track.stations(),
+            axles,
         }
     }
 
-    /// The most nodes of the deck under the masses at once.
+    /// The most nodes of the deck under what rides at once.
     pub(crate) fn most_nodes(&self) -> usize {
-        self.masses.len() * (self.band + 1)
+        self.most_nodes
     }
 
-    /// No fewer nodes than a vehicle takes that is not on the deck yet.
-    pub(crate) fn most_nodes_of(operator: &BridgeOperator, vehicle: &Vehicle) -> usize {
-        let mut lines: Vec<f64> = vehicle.points().map(|p| p.y_m).collect();
-        lines.sort_by(f64::total_cmp);
-        lines.dedup();
-        match vehicle.inertia {
-            Inertia::None => 0,
-            _ => lines.len() * (band(&operator.track, vehicle) + 1),
+    /// No fewer nodes than vehicles take that are not on the deck yet.
+    pub(crate) fn most_nodes_of(operator: &BridgeOperator, traffic: &Traffic) -> usize {
+        let lines = places_across(traffic).len();
+        let of = |vehicle: &Vehicle| {
+            if rides(vehicle) {
+                let own = lines_across(vehicle).len() * (vehicle_band(&operator.track, vehicle) + 1);
+                own.max(vehicle.patches.len())
+            } else {
+                0
+            }
+        };
+        let sum: usize = traffic.vehicles.iter().map(|driven| of(&driven.vehicle)).sum();
+        debug_assert!(sum == 0 || lines > 0);
+        sum
+    }
+}
+
+/// Whether anything of a vehicle rides along: masses or wheels on springs.
+fn rides(vehicle: &Vehicle) -> bool {
+    vehicle.springs.is_some() || vehicle.inertia != Inertia::None
+}
+
+/// Places of a vehicle's points across, in their order, each once `[m]`.
+fn lines_across(vehicle: &Vehicle) -> Vec<f64> {
+    let mut places_y: Vec<f64> = Vec::new();
+    for point in vehicle.points() {
+        if !places_y.contains(&point.y_m) {
+            places_y.push(point.y_m);
         }
     }
+    places_y
+}
+
+/// Places of all vehicles' points across, each once `[m]`.
+fn places_across(traffic: &Traffic) -> Vec<f64> {
+    let mut places_y: Vec<f64> = Vec::new();
+    for y_m in traffic.vehicles.iter().flat_map(|driven| lines_across(&driven.vehicle)) {
+        if !places_y.contains(&y_m) {
+            places_y.push(y_m);
+        }
+    }
+    places_y
 }
 
 /// Entries of a row from `station - band` to `station + band`, and a zero after the last, for those who look at the next.
@@ -173,11 +247,31 @@ fn residual(operator: &BridgeOperator, across: &[[(usize, f64); 2]], band: usize
 }
 
 impl WheelLines {
-    /// R between a node and the stations of a line, from `station - band` on.
+    /// R between a node and the stations of a line, from `station - residual_band` on.
     #[inline(always)]
     pub(super) fn residual(&self, line: usize, station: usize, other_line: usize) -> &[f64] {
-        let width = row_width(self.band);
-        &self.residual[((line * self.stations + station) * self.masses.len() + other_line) * width..][..width]
+        let width = row_width(self.residual_band);
+        &self.residual[((line * self.stations + station) * self.nodes.len() + other_line) * width..][..width]
+    }
+
+    /// Stations farther apart than this see nothing of each other beside the modes.
+    #[inline(always)]
+    pub(super) fn residual_band(&self) -> usize {
+        self.residual_band
+    }
+
+    /// R between two nodes.
+    fn residual_at(&self, line: usize, station: usize, other_line: usize, other: usize) -> f64 {
+        if station.abs_diff(other) > self.residual_band {
+            return 0.0;
+        }
+        self.residual(line, station, other_line)[other + self.residual_band - station]
+    }
+
+    /// The influence of a node.
+    #[inline(always)]
+    pub(super) fn influence(&self, node: DeckNode) -> &[f64] {
+        &self.nodes[node.line][node.station * self.influence_width..][..self.influence_width]
     }
 
     /// Stations along.
@@ -186,11 +280,23 @@ impl WheelLines {
     }
 }
 
-impl WheelLine {
-    /// The influence of a station.
+/// Lines along the bridge with the influence of each of their stations.
+pub(super) trait DeckLines {
+    /// The influences of a line's stations, one after the other.
+    fn influences(&self, line: usize) -> &[f64];
+}
+
+impl DeckLines for [WheelLine] {
     #[inline(always)]
-    pub(super) fn influence(&self, station: usize, width: usize) -> &[f64] {
-        &self.influence[station * width..][..width]
+    fn influences(&self, line: usize) -> &[f64] {
+        &self[line].influence
+    }
+}
+
+impl DeckLines for [Arc<[f64]>] {
+    #[inline(always)]
+    fn influences(&self, line: usize) -> &[f64] {
+        &self[line]
     }
 }
 
@@ -209,8 +315,16 @@ fn line_influence(operator: &BridgeOperator, y_m: f64) -> Vec<f64> {
         .collect()
 }
 
-/// How many stations the vehicle spans at most, both sides of a joint counted.
-fn band(track: &Track, vehicle: &Vehicle) -> usize {
+/// How many stations the vehicles span at most, both sides of a joint counted: of several all.
+fn band(track: &Track, traffic: &Traffic) -> usize {
+    match traffic.vehicles.as_slice() {
+        [one] => vehicle_band(track, &one.vehicle),
+        _ => track.stations() - 1,
+    }
+}
+
+/// How many stations a vehicle spans at most.
+fn vehicle_band(track: &Track, vehicle: &Vehicle) -> usize {
     let ends = vehicle
         .patches
         .iter()
@@ -227,7 +341,7 @@ fn band(track: &Track, vehicle: &Vehicle) -> usize {
     (stations + joints).min(track.stations() - 1)
 }
 
-/// Small flexibilities of a step at the deck's stations under the masses of one vehicle.
+/// Small flexibilities of a step at the deck's stations under what rides along.
 #[derive(Debug)]
 pub(crate) struct WheelCompliance {
     /// Stations farther apart are not kept.
@@ -242,11 +356,16 @@ pub(crate) struct WheelCompliance {
 }
 
 impl WheelCompliance {
-    /// The flexibilities of a vehicle at a step length.
+    /// The flexibilities of a crossing's vehicles at a step length.
     pub(crate) fn new(operator: &BridgeOperator, constants: &StepConstants, wheels: &WheelLines) -> Self {
         let (m, nc) = (operator.sizes.modes, operator.sizes.connectors);
-        let (lines, stations, band) = (wheels.masses.len(), wheels.stations, wheels.band);
-        let row = |node: usize| wheels.masses[node / stations].influence(node % stations, wheels.influence_width);
+        let (lines, stations, band) = (wheels.nodes.len(), wheels.stations, wheels.band);
+        let row = |node: usize| {
+            wheels.influence(DeckNode {
+                line: node / stations,
+                station: node % stations,
+            })
+        };
         let c_b: DMatrix<f64> = DMatrix::from_fn(m, nc, |k, i| constants.c[k] * operator.b[(i, k)]);
         let mut compliance = Self {
             band,
@@ -276,7 +395,8 @@ impl WheelCompliance {
                     let other = row(line * stations + s);
                     let at = compliance.at(node / stations, station, line, s);
                     let modal: f64 = c_phi.iter().zip(other).map(|(a, b)| a * b).sum();
-                    compliance.among[at] = modal + constants.rho * wheels.residual[at];
+                    let residual = wheels.residual_at(node / stations, station, line, s);
+                    compliance.among[at] = modal + constants.rho * residual;
                 }
             }
         }

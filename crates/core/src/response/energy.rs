@@ -11,17 +11,19 @@ pub struct StepEnergies {
     pub strain: f64,
     /// Strain energy of the connectors at its end.
     pub connectors: f64,
+    /// What masses and springs of vehicles have taken up since the start.
+    pub vehicles: f64,
     /// Dissipated by Rayleigh damping over it.
     pub rayleigh: f64,
-    /// Dissipated by dashpots of connectors over it.
+    /// Dissipated by dashpots of connectors and dampers of vehicles over it.
     pub dashpots: f64,
     /// Dissipated by the scheme over it.
     pub numerical: f64,
-    /// Work of the contact forces on the deck over it.
+    /// Work over it of the contact forces of rigid vehicles on the deck, and of gravity and drive on vehicles with springs.
     pub work: f64,
 }
 
-/// `kinetic + strain + connectors + rayleigh + dashpots + numerical = work`, kept step by step: the dissipations and the work
+/// `kinetic + strain + connectors + vehicles + rayleigh + dashpots + numerical = work`, kept step by step: the dissipations and the work
 /// `integral of p du` are sums since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBalance {
@@ -37,7 +39,7 @@ pub struct EnergyBalance {
 /// What a crossing reports of its balance.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergySummary {
-    /// Largest `|kinetic + strain + connectors + rayleigh + dashpots + numerical - work|` over the largest `|work|`.
+    /// Largest `|kinetic + strain + connectors + vehicles + rayleigh + dashpots + numerical - work|` over the largest `|work|`.
     pub energy_residual: f64,
     /// Largest numerical dissipation over the largest `|work|`.
     pub numerical_dissipation: f64,
@@ -51,7 +53,7 @@ impl EnergyBalance {
         self.dashpots += step.dashpots;
         self.numerical += step.numerical;
         self.work += step.work;
-        let stored = step.kinetic + step.strain + step.connectors;
+        let stored = step.kinetic + step.strain + step.connectors + step.vehicles;
         let gap = stored + self.rayleigh + self.dashpots + self.numerical - self.work;
         self.largest_gap = self.largest_gap.max(gap.abs());
         self.largest_work = self.largest_work.max(self.work.abs());

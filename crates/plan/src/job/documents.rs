@@ -42,7 +42,7 @@ pub struct VehicleEntry {
     /// Its number, from 0, in the order of first use.
     pub id: usize,
     /// The vehicle.
-    pub vehicle: Vehicle,
+    pub vehicle: Arc<Vehicle>,
     /// Its design as a document, defaults filled in.
     pub document: Value,
     /// Equal for vehicles that are equal, whatever study they are of.
@@ -175,7 +175,7 @@ impl Documents {
             read,
             |id, (vehicle, document)| VehicleEntry {
                 id,
-                vehicle,
+                vehicle: Arc::new(vehicle),
                 key: canonical_text(&document).into(),
                 document,
             },

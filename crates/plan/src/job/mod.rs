@@ -36,6 +36,7 @@ use pontoon_core::bridge::JointGaps;
 use pontoon_core::connector::{Connection, ConnectorLaw, OwnLaws};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::response::{DeadState, Record};
+use pontoon_core::traffic::{Drive, Driven, Traffic};
 use pontoon_core::vehicle::Inertia;
 use std::sync::Arc;
 
@@ -133,9 +134,8 @@ impl<'a> CrossingJob<'a> {
     fn steps_of(&self, time_step_s: f64) -> usize {
         CrossingSolver::steps(
             self.job.bridge.design.length_m(),
-            &self.job.vehicle.vehicle,
+            &self.traffic(),
             time_step_s,
-            self.speed_m_s,
             self.analysis.tail_s,
         )
     }
@@ -171,8 +171,6 @@ impl<'a> CrossingJob<'a> {
             connection: self.job.connection,
             connector_stiffness_n_m: self.job.bridge.design.connectors.stiffness_n_m,
             own_laws: self.job.own_laws(),
-            load_n: self.job.load_n,
-            speed_m_s: self.speed_m_s,
             tail_s: self.analysis.tail_s,
             record,
             dead,
@@ -203,9 +201,16 @@ impl<'a> CrossingJob<'a> {
         self.analysis.verify().filter(|verify| verify.takes(self.job.number))
     }
 
-    /// The vehicle that crosses.
-    pub fn vehicle(&self) -> &'a pontoon_core::vehicle::Vehicle {
-        &self.job.vehicle.vehicle
+    /// What drives over the bridge.
+    pub fn traffic(&self) -> Traffic {
+        Traffic {
+            vehicles: vec![Driven {
+                vehicle: Arc::clone(&self.job.vehicle.vehicle),
+                load_n: self.job.load_n,
+                drive: Drive::steady(self.speed_m_s),
+            }],
+            road: None,
+        }
     }
 }
 

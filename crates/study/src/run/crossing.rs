@@ -16,7 +16,7 @@ use pontoon_core::response::{
     AtPeak, BankPeaks, CrossingResponse, DeadState, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record,
     Recorded, Subject,
 };
-use pontoon_core::vehicle::Vehicle;
+use pontoon_core::traffic::Traffic;
 use pontoon_plan::job::{CrossingJob, Job};
 use pontoon_plan::study_file::PeakColumn;
 use pontoon_results::{
@@ -30,7 +30,8 @@ pub(super) type JobResult = Result<JobRecord, JobFailure>;
 /// Solves a crossing by the reference solver.
 pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, models: &SharedModels) -> JobResult {
     let solver = models.crossing(crossing)?;
-    let response = solver.solve(crossing.vehicle(), &crossing.input(record, models.dead(crossing.job)?))?;
+    let input = crossing.input(record, models.dead(crossing.job)?);
+    let response = solver.solve(&crossing.traffic(), &input)?;
     recorded(crossing, response, models)
 }
 
@@ -47,12 +48,12 @@ pub(super) fn again_at_half_step(
         JobFailure::from(failed.failure.clone().said("", &behind))
     })?;
     let dead = models.dead(crossing.job)?;
-    let (vehicle, input) = (crossing.vehicle(), crossing.input(record, dead));
+    let (traffic, input) = (crossing.traffic(), crossing.input(record, dead));
     let again = if crossing.operator_tolerance().is_some() {
-        let mut answers = models.operated(crossing)?.solve_all(&[(vehicle, &input)], 1);
+        let mut answers = models.operated(crossing)?.solve_all(&[(&traffic, &input)], 1);
         answers.pop().ok_or_else(|| JobFailure::of_program("no answer"))?
     } else {
-        models.crossing_at_half_step(crossing)?.solve(vehicle, &input)
+        models.crossing_at_half_step(crossing)?.solve(&traffic, &input)
     };
     let again = again.map_err(|error| {
         let behind = format!("; at half the time step: {error}");
@@ -81,9 +82,11 @@ pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models:
     let started: Vec<(&CrossingJob<'_>, &Crossing)> = started
         .filter_map(|((crossing, _), input)| Some((crossing, input.as_ref().ok()?)))
         .collect();
-    let asked: Vec<(&Vehicle, &Crossing)> = started
+    let traffics: Vec<Traffic> = started.iter().map(|(crossing, _)| crossing.traffic()).collect();
+    let asked: Vec<(&Traffic, &Crossing)> = traffics
         .iter()
-        .map(|(crossing, input)| (crossing.vehicle(), *input))
+        .zip(&started)
+        .map(|(traffic, (_, input))| (traffic, *input))
         .collect();
     let answers = match first.analysis.time_step.tolerance() {
         Some(tolerance) => {
@@ -119,7 +122,7 @@ type SteppedResponse = (CrossingResponse, Option<f64>);
 /// chance where contacts decide. One that may not run at a time step has no finer one.
 fn refined(
     solver: &OperatorSolver,
-    asked: &[(&Vehicle, &Crossing)],
+    asked: &[(&Traffic, &Crossing)],
     tolerance: f64,
     may_run: impl Fn(usize, f64) -> Result<(), Failure>,
 ) -> Vec<Result<SteppedResponse, JobFailure>> {

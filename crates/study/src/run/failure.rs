@@ -116,14 +116,15 @@ fn failure_of(error: &AnalysisError) -> Failure {
             bisections,
         } => {
             let failure = of(FailureKind::ContactNotSettled).with("time_s", *time_s);
-            let (failure, y_m) = match link {
-                LinkPlace::Connector { number, joint, y_m } => {
+            let failure = match link {
+                Some(LinkPlace::Connector { number, joint, y_m }) => {
                     let failure = failure.with("connector", *number as f64).with("joint", *joint as f64);
-                    (failure, y_m)
+                    failure.with("y_m", *y_m)
                 }
-                LinkPlace::Bank { bank, y_m } => (failure.with("bank", *bank as f64), y_m),
+                Some(LinkPlace::Bank { bank, y_m }) => failure.with("bank", *bank as f64).with("y_m", *y_m),
+                None => failure,
             };
-            failure.with("y_m", *y_m).with("bisections", *bisections as f64)
+            failure.with("bisections", *bisections as f64)
         }
         AnalysisError::StaticNotConverged { iterations, load_x_m } => of(FailureKind::StaticContactNotSettled)
             .with("iterations", *iterations as f64)

@@ -15,6 +15,7 @@ use pontoon_core::connector::{Connection, OwnLaws};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::operator::{BridgeOperator, OperatorError};
 use pontoon_core::response::{CrossingResponse, Record};
+use pontoon_core::traffic::Traffic;
 use pontoon_core::vehicle::{Inertia, VehicleDesign};
 use pontoon_journal::fault;
 use std::fmt;
@@ -193,7 +194,7 @@ impl SelfTestCrossing {
             track_y_m: Some(vec![-0.6, 1.4]),
             inertia: Inertia::Local,
             patch_points: 4,
-            axles: None,
+            ..VehicleDesign::default()
         };
         let vehicle = vehicle.check(design.module.breadth_m)?;
         let connectors = &design.connectors;
@@ -204,8 +205,6 @@ impl SelfTestCrossing {
             },
             connector_stiffness_n_m: connectors.stiffness_n_m,
             own_laws: OwnLaws::default(),
-            load_n: self.load_n,
-            speed_m_s: 9.0,
             tail_s: 0.5,
             record: Record::default(),
             dead: None,
@@ -219,14 +218,15 @@ impl SelfTestCrossing {
         };
         let operator = Arc::new(BridgeOperator::new(&bridge, 6e-4)?);
         let operated = OperatorSolver::new(&bridge, &operator, &settings);
+        let traffic = Traffic::single(&vehicle, self.load_n, 9.0);
         let mut answers = Vec::new();
-        for response in operated.solve_all(&[(&vehicle, &crossing); LANES], 0) {
+        for response in operated.solve_all(&[(&traffic, &crossing); LANES], 0) {
             answers.push((TestedSolver::Operator, SelfTestAnswer::of(&response?)));
         }
         let reference = CrossingSolver::new(&bridge, &settings)?;
         answers.push((
             TestedSolver::Reference,
-            SelfTestAnswer::of(&reference.solve(&vehicle, &crossing)?),
+            SelfTestAnswer::of(&reference.solve(&traffic, &crossing)?),
         ));
         Ok(answers)
     }

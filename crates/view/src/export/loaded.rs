@@ -173,7 +173,8 @@ impl Passage<'_> {
             dead = StaticSolver::new(&self.ready.bridge)?.dead_state(&case)?;
         }
         let input = crossing.input(Record::default(), dead);
-        let mut under = solver.begin(crossing.vehicle(), &input);
+        let traffic = crossing.traffic();
+        let mut under = solver.begin(&traffic, &input);
         let steps = under.steps();
         let instants = 1 + steps.div_ceil(every);
         let mut envelope = StressEnvelope::default();

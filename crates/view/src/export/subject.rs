@@ -237,7 +237,7 @@ fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<Stati
         }
         (None, Task::Static(load)) => Ok(Some(StaticWanted {
             model: job.model().into(),
-            vehicle: vehicle.clone(),
+            vehicle: vehicle.as_ref().clone(),
             case: StaticCase {
                 connection: job.connection,
                 connector_stiffness_n_m: design.connectors.stiffness_n_m,
@@ -249,7 +249,7 @@ fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<Stati
             },
             dead: DeadCase::new(design, job.connection, job.laws_at_rest()),
         })),
-        (Some(load), _) => static_case(source, design, vehicle.clone(), load).map(Some),
+        (Some(load), _) => static_case(source, design, vehicle.as_ref().clone(), load).map(Some),
         (None, _) => Ok(None),
     }
 }

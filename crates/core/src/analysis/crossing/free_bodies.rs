@@ -11,6 +11,7 @@ use crate::connector::Connection;
 use crate::fem::SparseRow;
 use crate::response::{Axis, Record, Subject};
 use crate::scheme::Scheme;
+use crate::traffic::Traffic;
 use crate::vehicle::{Inertia, Vehicle, VehicleDesign};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -154,8 +155,6 @@ fn moving_free_bodies_are_in_equilibrium() {
             connection: GAPS,
             connector_stiffness_n_m: setup.design.connectors.stiffness_n_m,
             own_laws: [].into(),
-            load_n: LOAD_N,
-            speed_m_s: 9.0,
             tail_s: 1.0,
             record: Record {
                 more,
@@ -163,7 +162,8 @@ fn moving_free_bodies_are_in_equilibrium() {
             },
             dead: None,
         };
-        let mut run = solver.begin(&vehicle, &crossing);
+        let traffic = Traffic::single(&vehicle, LOAD_N, 9.0);
+        let mut run = solver.begin(&traffic, &crossing);
         let mut states = vec![run.snapshot()];
         while run.step().expect("a step") {
             states.push(run.snapshot());

@@ -1,7 +1,7 @@
 //! Crossings, by two solvers: `step`, `run` and `observe` integrate directly (the reference solver), `operated` goes
 //! through the bridge operator. Both answer a [`Crossing`] with a [`CrossingResponse`].
 //!
-//! Knows one vehicle on one bridge at one time step, on any model. Does not know studies or threads.
+//! Knows the traffic on one bridge at one time step, on any model. Does not know studies or threads.
 
 #[cfg(test)]
 mod free_bodies;
@@ -19,8 +19,9 @@ use crate::contact::{Dashpot, LinkLaw};
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
 use crate::response::{CrossingResponse, DeadState, Record};
+use crate::riding::RidingStep;
 use crate::scheme::Scheme;
-use crate::vehicle::Vehicle;
+use crate::traffic::{Driven, Traffic};
 use observe::Observer;
 pub use operated::{OperatorSolver, REFINEMENTS};
 pub use run::CrossingRun;
@@ -51,11 +52,7 @@ pub struct Crossing {
     pub connector_stiffness_n_m: f64,
     /// Connectors that have laws of their own in place of these.
     pub own_laws: OwnLaws,
-    /// Weight of the vehicle `[N]`.
-    pub load_n: f64,
-    /// Speed `[m/s]`; below 0 the vehicle comes from the right end, its front there at t = 0.
-    pub speed_m_s: f64,
-    /// How long to go on after the last point has left `[s]`.
+    /// How long to go on after the last point has left or stands `[s]`.
     pub tail_s: f64,
     /// Histories to keep.
     pub record: Record,
@@ -94,6 +91,8 @@ pub struct CrossingSolver {
 /// One step length.
 #[derive(Debug)]
 struct StepMatrix {
+    /// How often the time step is halved.
+    halvings: usize,
     scheme: Scheme,
     flexibility: Flexibility,
 }
@@ -116,69 +115,84 @@ impl CrossingSolver {
     }
 
     /// Steps that a crossing will take, bisections apart.
-    pub fn steps(bridge_length_m: f64, vehicle: &Vehicle, time_step_s: f64, speed_m_s: f64, tail_s: f64) -> usize {
-        StepSpan::new(bridge_length_m, vehicle, time_step_s, speed_m_s, tail_s).steps
+    pub fn steps(bridge_length_m: f64, traffic: &Traffic, time_step_s: f64, tail_s: f64) -> usize {
+        StepSpan::new(bridge_length_m, traffic, time_step_s, tail_s).steps
     }
 
-    /// Solves one crossing. The front is at x = 0 at t = 0; the motion starts from rest, the dead state, at the step before the first point
-    /// reaches the bridge.
+    /// Solves one crossing. The motion starts from rest, the dead state, at the step before the first point reaches the bridge, or
+    /// a vehicle on springs its run-in.
     ///
     /// # Errors
     /// [`AnalysisError::NotConverged`] with time and connector, [`AnalysisError::NotFinite`], [`AnalysisError::Factor`].
-    pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
-        let mut under = self.begin(vehicle, crossing);
+    pub fn solve(&self, traffic: &Traffic, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
+        let mut under = self.begin(traffic, crossing);
         while under.step()? {}
         Ok(under.finish())
     }
 
     /// Begins a crossing that can be looked at between its steps; taken to its end it is the one of [`Self::solve`].
-    pub fn begin<'a>(&'a self, vehicle: &'a Vehicle, crossing: &Crossing) -> CrossingRun<'a> {
+    pub fn begin<'a>(&'a self, traffic: &'a Traffic, crossing: &Crossing) -> CrossingRun<'a> {
+        let length_m = self.track.length_m();
+        let at_halvings = |halvings: usize| {
+            let scheme = Scheme::new(self.time_step_s(halvings), self.settings.spectral_radius);
+            let of = |driven: &Driven| Some(RidingStep::new(driven.vehicle.springs.as_ref()?, scheme));
+            traffic.vehicles.iter().map(of).collect()
+        };
         let stepper = Stepper {
             bridge: &self.bridge,
             track: &self.track,
-            vehicle,
-            load_n: crossing.load_n,
-            speed_m_s: crossing.speed_m_s,
+            traffic,
+            presences: traffic.presences(length_m),
+            riding: (0..=self.settings.bisection_limit).map(at_halvings).collect(),
             rayleigh: self.settings.rayleigh,
             laws: crossing.laws(self.bridge.links.len()),
             pins: crossing.record.needs_pins(),
             dashpots: crossing.dashpots(),
             dead: crossing.dead.clone(),
         };
-        let observer = Observer::new(&self.bridge, crossing);
+        let observer = Observer::new(&self.bridge, traffic, crossing);
         CrossingRun::new(self, stepper, observer, crossing.tail_s)
+    }
+
+    /// The time step after some halvings `[s]`.
+    fn time_step_s(&self, halvings: usize) -> f64 {
+        self.settings.time_step_s / (1_u64 << halvings) as f64
     }
 
     fn step_matrix(&self, halvings: usize) -> Result<&StepMatrix, AnalysisError> {
         let matrix = self.step_matrices[halvings].get_or_init(|| {
-            let h = self.settings.time_step_s / (1_u64 << halvings) as f64;
+            let h = self.time_step_s(halvings);
             let scheme = Scheme::new(h, self.settings.spectral_radius);
             let (c_m, c_c, c_k) = scheme.effective();
             let Rayleigh { a, b } = self.settings.rayleigh;
             let matrix = SymmetricMatrix::combine(&[(c_m + c_c * b, &self.bridge.m), (c_k + c_c * a, &self.bridge.k)])?;
             let flexibility = Flexibility::new("matrix of the time step", &matrix, &self.bridge)?;
-            Ok(StepMatrix { scheme, flexibility })
+            Ok(StepMatrix {
+                halvings,
+                scheme,
+                flexibility,
+            })
         });
         matrix.as_ref().map_err(|error| AnalysisError::Factor(error.clone()))
     }
 }
 
-/// The whole steps of a crossing, counted from t = 0, when the front is at x = 0.
+/// The whole steps of a crossing, counted from t = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct StepSpan {
-    /// The step at which it rests, the last before the first point reaches the bridge; negative where that point is ahead of
-    /// the front.
+    /// The step at which it rests, the last before the first vehicle is there; negative where that is before t = 0.
     rest: i64,
     /// Steps from there to the end.
     steps: usize,
 }
 
 impl StepSpan {
-    fn new(bridge_length_m: f64, vehicle: &Vehicle, h: f64, speed_m_s: f64, tail_s: f64) -> Self {
-        let speed_m_s = speed_m_s.abs();
-        let rest = -((vehicle.ahead_m() / speed_m_s / h + 1e-9).floor() as i64 + 1);
-        let seconds = (bridge_length_m + vehicle.behind_m()) / speed_m_s + tail_s;
-        let end = (seconds / h - 1e-9).ceil() as i64;
+    fn new(bridge_length_m: f64, traffic: &Traffic, h: f64, tail_s: f64) -> Self {
+        let presences = traffic.presences(bridge_length_m);
+        let from_s = presences.iter().map(|of| of.from_s).fold(f64::INFINITY, f64::min);
+        let until_s = presences.iter().map(|of| of.until_s).fold(f64::NEG_INFINITY, f64::max);
+        let rest = -((-from_s / h + 1e-9).floor() as i64 + 1);
+        let end = ((until_s + tail_s) / h - 1e-9).ceil() as i64;
         Self {
             rest,
             steps: end.saturating_sub(rest).max(0) as usize,

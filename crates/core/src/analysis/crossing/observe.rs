@@ -11,12 +11,14 @@ use crate::response::{
     CrossingResponse, DeadState, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks,
     PositionPeaks, Reading, Recorder, Statistics,
 };
+use crate::traffic::Traffic;
 use std::sync::Arc;
 
 /// Gathers the response of one crossing.
 #[derive(Debug)]
 pub(super) struct Observer<'a> {
     bridge: &'a Bridge,
+    traffic: &'a Traffic,
     positions: Vec<PositionPeaks>,
     joints: Vec<JointPeaks>,
     pins: PinWatch,
@@ -34,7 +36,7 @@ pub(super) struct Observer<'a> {
 }
 
 impl<'a> Observer<'a> {
-    pub(super) fn new(bridge: &'a Bridge, crossing: &Crossing) -> Self {
+    pub(super) fn new(bridge: &'a Bridge, traffic: &'a Traffic, crossing: &Crossing) -> Self {
         let (design, record) = (bridge.design(), &crossing.record);
         let positions = (1..=design.positions())
             .map(|position| PositionPeaks {
@@ -54,6 +56,7 @@ impl<'a> Observer<'a> {
             .collect();
         Self {
             bridge,
+            traffic,
             positions,
             joints,
             pins: PinWatch::new(bridge, record.needs_pins()),
@@ -118,11 +121,14 @@ impl<'a> Observer<'a> {
         let dead = self.dead.as_deref();
         self.bottom_emerged = ever(self.bottom_emerged, self.bridge.bottom_emerges(u, dead));
         self.deck_submerged = ever(self.deck_submerged, self.bridge.deck_submerges(u, dead));
-        for (axle, &(weight, whole)) in now.load.axles.iter().enumerate() {
-            if whole {
-                let riders = now.load.riders.iter().zip(&now.inertia);
-                let inertia: f64 = riders.filter(|(r, _)| r.axle == axle).map(|(_, q)| q).sum();
-                self.min_contact_force_n = self.min_contact_force_n.min(weight + inertia);
+        for (vehicle, axles) in now.load.axles.iter().enumerate() {
+            for (axle, &(weight, whole)) in axles.iter().enumerate() {
+                if whole {
+                    let riders = now.load.riders.iter().zip(&now.rider_forces);
+                    let of_axle = riders.filter(|(r, _)| r.vehicle == vehicle && r.axle == axle);
+                    let force: f64 = of_axle.map(|(_, q)| q).sum();
+                    self.min_contact_force_n = self.min_contact_force_n.min(weight + force);
+                }
             }
         }
     }

@@ -11,7 +11,8 @@ use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
 };
 use crate::response::{BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder};
-use crate::vehicle::Vehicle;
+use crate::riding::RidingStep;
+use crate::traffic::{Driven, Traffic};
 use std::sync::{Arc, OnceLock};
 
 /// A bridge operator made ready for crossings at one time step and its halves. Shared read-only between threads.
@@ -35,13 +36,24 @@ const VEHICLES_KEPT: usize = 8;
 /// How often a whole crossing may be asked for at half the time step.
 pub const REFINEMENTS: usize = 6;
 
-/// A vehicle on the deck, with its small flexibilities at each step length asked for.
+/// Vehicles on the deck, with their small flexibilities and springs at each step length asked for.
 #[derive(Debug)]
 struct Mount {
-    vehicle: Vehicle,
-    backward: bool,
+    traffic: Arc<Traffic>,
     wheels: Arc<WheelLines>,
-    compliances: Vec<Option<Arc<WheelCompliance>>>,
+    steps: Vec<Option<MountedStep>>,
+}
+
+/// What a step length makes of vehicles on the deck.
+type MountedStep = (Arc<WheelCompliance>, Arc<[Option<Arc<RidingStep>>]>);
+
+impl Mount {
+    /// Whether the vehicles of another traffic see the deck as these do, whatever they weigh and however fast they are.
+    fn fits(&self, traffic: &Traffic) -> bool {
+        let alike = |(a, b): (&Driven, &Driven)| a.vehicle == b.vehicle && a.drive.backward == b.drive.backward;
+        let (own, other) = (&self.traffic.vehicles, &traffic.vehicles);
+        own.len() == other.len() && own.iter().zip(other).all(alike)
+    }
 }
 
 /// Crossings under way.
@@ -59,8 +71,7 @@ struct Crew<'a, C> {
 /// One crossing under way.
 struct Under<'a> {
     index: usize,
-    vehicle: &'a Vehicle,
-    backward: bool,
+    traffic: &'a Traffic,
     record: &'a Record,
     step: usize,
     span: StepSpan,
@@ -93,9 +104,9 @@ impl OperatorSolver {
     ///
     /// # Errors
     /// As [`CrossingSolver::solve`](super::CrossingSolver::solve).
-    pub fn solve(&self, vehicle: &Vehicle, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
+    pub fn solve(&self, traffic: &Traffic, crossing: &Crossing) -> Result<CrossingResponse, AnalysisError> {
         let none = || Err(AnalysisError::NotFinite { time_s: 0.0 });
-        self.solve_all(&[(vehicle, crossing)], 0).pop().unwrap_or_else(none)
+        self.solve_all(&[(traffic, crossing)], 0).pop().unwrap_or_else(none)
     }
 
     /// Solves crossings side by side, each as if it were alone, at the time step halved `refinement` times (at most
@@ -105,7 +116,7 @@ impl OperatorSolver {
     /// Of each as [`CrossingSolver::solve`](super::CrossingSolver::solve).
     pub fn solve_all(
         &self,
-        crossings: &[(&Vehicle, &Crossing)],
+        crossings: &[(&Traffic, &Crossing)],
         refinement: usize,
     ) -> Vec<Result<CrossingResponse, AnalysisError>> {
         self.solve_all_timed(crossings, refinement, &mut ())
@@ -117,13 +128,13 @@ impl OperatorSolver {
     /// As [`Self::solve_all`].
     pub fn solve_all_timed(
         &self,
-        crossings: &[(&Vehicle, &Crossing)],
+        crossings: &[(&Traffic, &Crossing)],
         refinement: usize,
         clock: &mut impl StepClock,
     ) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let most_nodes = crossings
             .iter()
-            .map(|(vehicle, _)| WheelLines::most_nodes_of(&self.operator, vehicle));
+            .map(|(traffic, _)| WheelLines::most_nodes_of(&self.operator, traffic));
         let mut crew = Crew {
             solver: self,
             mounts: Vec::new(),
@@ -157,7 +168,7 @@ impl OperatorSolver {
 }
 
 impl<C: StepClock> Crew<'_, C> {
-    fn run(&mut self, crossings: &[(&Vehicle, &Crossing)]) -> Vec<Result<CrossingResponse, AnalysisError>> {
+    fn run(&mut self, crossings: &[(&Traffic, &Crossing)]) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let mut answers: Vec<Option<Result<CrossingResponse, AnalysisError>>> = vec![None; crossings.len()];
         let mut under: Vec<Option<Under<'_>>> = (0..self.lanes.width()).map(|_| None).collect();
         let mut next = 0;
@@ -202,20 +213,21 @@ impl<C: StepClock> Crew<'_, C> {
         of.span.time_s(steps, self.solver.time_step_s(self.refinement))
     }
 
-    fn begin<'c>(&mut self, lane: usize, index: usize, (vehicle, crossing): (&'c Vehicle, &'c Crossing)) -> Under<'c> {
-        let mount = self.mount(vehicle, crossing.speed_m_s < 0.0);
+    fn begin<'c>(&mut self, lane: usize, index: usize, (traffic, crossing): (&'c Traffic, &'c Crossing)) -> Under<'c> {
+        let mount = self.mount(traffic);
+        let (compliance, riding) = self.mounted_step(mount, self.refinement);
         let crossing_input = CrossingInput {
+            traffic: Arc::new(traffic.clone()),
             wheels: Arc::clone(&self.mounts[mount].wheels),
-            compliance: self.compliance(mount, self.refinement),
+            compliance,
+            riding,
             laws: crossing.laws(self.solver.operator.connectors()).into(),
             dashpots: crossing.dashpots().into(),
-            load_n: crossing.load_n,
-            speed_m_s: crossing.speed_m_s,
             dead: crossing.dead.clone(),
         };
         let h = self.solver.time_step_s(self.refinement);
         let length_m = self.solver.design.length_m();
-        let span = StepSpan::new(length_m, vehicle, h, crossing.speed_m_s, crossing.tail_s);
+        let span = StepSpan::new(length_m, traffic, h, crossing.tail_s);
         let start_s = span.time_s(0, h);
         self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
         let design = &self.solver.design;
@@ -227,8 +239,7 @@ impl<C: StepClock> Crew<'_, C> {
         });
         Under {
             index,
-            vehicle,
-            backward: crossing.speed_m_s < 0.0,
+            traffic,
             record: &crossing.record,
             step: 0,
             span,
@@ -236,17 +247,15 @@ impl<C: StepClock> Crew<'_, C> {
         }
     }
 
-    /// The place of a vehicle among those kept ready.
-    fn mount(&mut self, vehicle: &Vehicle, backward: bool) -> usize {
-        let known = |m: &Mount| m.backward == backward && m.vehicle == *vehicle;
-        if let Some(known) = self.mounts.iter().position(known) {
+    /// The place of a traffic's vehicles among those kept ready.
+    fn mount(&mut self, traffic: &Traffic) -> usize {
+        if let Some(known) = self.mounts.iter().position(|mount| mount.fits(traffic)) {
             return known;
         }
         let mount = Mount {
-            vehicle: vehicle.clone(),
-            backward,
-            wheels: Arc::new(WheelLines::new(&self.solver.operator, vehicle, backward)),
-            compliances: Vec::new(),
+            traffic: Arc::new(traffic.clone()),
+            wheels: Arc::new(WheelLines::new(&self.solver.operator, traffic)),
+            steps: Vec::new(),
         };
         // lanes hold what they need, so that any other may go
         if self.mounts.len() == VEHICLES_KEPT {
@@ -256,22 +265,28 @@ impl<C: StepClock> Crew<'_, C> {
         self.mounts.len() - 1
     }
 
-    fn compliance(&mut self, mount: usize, halvings: usize) -> Arc<WheelCompliance> {
+    fn mounted_step(&mut self, mount: usize, halvings: usize) -> MountedStep {
         let (operator, level) = (&*self.solver.operator, self.solver.constants(halvings));
         let mount = &mut self.mounts[mount];
-        if mount.compliances.len() <= halvings {
-            mount.compliances.resize(halvings + 1, None);
+        if mount.steps.len() <= halvings {
+            mount.steps.resize(halvings + 1, None);
         }
-        let compliance = mount.compliances[halvings]
-            .get_or_insert_with(|| Arc::new(WheelCompliance::new(operator, level, &mount.wheels)));
-        Arc::clone(compliance)
+        let (compliance, riding) = mount.steps[halvings].get_or_insert_with(|| {
+            let compliance = WheelCompliance::new(operator, level, &mount.wheels);
+            let of = |driven: &Driven| Some(Arc::new(level.riding(driven.vehicle.springs.as_ref()?)));
+            (
+                Arc::new(compliance),
+                mount.traffic.vehicles.iter().map(of).collect(),
+            )
+        });
+        (Arc::clone(compliance), Arc::clone(riding))
     }
 
     /// What is to be done with a lane after its step: halve it where it did not settle, record, finish.
     fn after_step(&mut self, lane: usize, of: &mut Under<'_>) -> Option<Result<CrossingResponse, AnalysisError>> {
         let time_s = self.time_s(of);
         if let Some(stuck) = self.lanes.unsettled(lane) {
-            let mount = self.mount(of.vehicle, of.backward);
+            let mount = self.mount(of.traffic);
             let span_s = [self.time_after(of.step - 1, of), time_s];
             if let Err(error) = self.halve((lane, mount), stuck, span_s, &mut of.recorder) {
                 return Some(Err(error));
@@ -310,7 +325,7 @@ impl<C: StepClock> Crew<'_, C> {
             .take()
             .filter(fits)
             .unwrap_or_else(|| Crossings::new(operator, most, limit));
-        solo.resume(0, input, &saved);
+        solo.resume(operator, 0, input, &saved);
         let mut alone = Alone {
             crew: self,
             lane: &mut solo,
@@ -368,8 +383,8 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
 
     fn step(&mut self, to_s: f64, halvings: usize) -> Result<Result<(), NotSettled>, AnalysisError> {
         let halvings = self.crew.refinement + halvings;
-        let compliance = self.crew.compliance(self.mount, halvings);
-        self.lane.take_compliance(0, compliance);
+        let (compliance, riding) = self.crew.mounted_step(self.mount, halvings);
+        self.lane.take_step(0, compliance, &riding);
         self.lane.place(0, to_s);
         let solver = self.crew.solver;
         let limit = solver.settings.newton_limit;
@@ -390,7 +405,7 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
     fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
         AnalysisError::NotConverged {
             time_s,
-            link: self.crew.solver.link_places[stuck.connector],
+            link: self.crew.solver.link_places.get(stuck.connector).copied(),
             bisections,
         }
     }

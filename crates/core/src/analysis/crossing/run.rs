@@ -33,7 +33,7 @@ impl<'a> CrossingRun<'a> {
     ) -> Self {
         let h = solver.settings.time_step_s;
         let length_m = solver.bridge.design().length_m();
-        let span = StepSpan::new(length_m, stepper.vehicle, h, stepper.speed_m_s, tail_s);
+        let span = StepSpan::new(length_m, stepper.traffic, h, tail_s);
         let now = stepper.at_rest(span.time_s(0, h));
         observer.record_history(&now);
         Self {
@@ -83,7 +83,12 @@ impl<'a> CrossingRun<'a> {
             u,
             inertial: Some(sum(&now.a, b, &now.v)),
             connectors: connectors(&now.states, now.connector_forces(), &elongations),
-            wheels: wheels(stepper.track, stepper.vehicle, stepper.load_n, &now.load, &now.inertia),
+            wheels: {
+                let vehicles = stepper.traffic.vehicles.iter();
+                let vehicles = vehicles.map(|driven| (&*driven.vehicle, driven.load_n));
+                wheels(stepper.track, vehicles, &now.load, &now.rider_forces)
+            },
+            rides: stepper.rides_now(now),
             dead: stepper.dead.clone(),
         }
     }
@@ -121,7 +126,7 @@ impl Halving for CrossingRun<'_> {
     fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
         AnalysisError::NotConverged {
             time_s,
-            link: self.solver.bridge.links[stuck.connector].place,
+            link: self.solver.bridge.links.get(stuck.connector).map(|link| link.place),
             bisections,
         }
     }

@@ -1,16 +1,18 @@
-//! One step of the generalized-alpha scheme with contact and riding masses.
+//! One step of the generalized-alpha scheme with contact, riding masses and vehicles on springs.
 //!
 //! Knows the balance at alpha and its energies. Does not know when to stop or what is reported.
 
 use super::StepMatrix;
 use crate::analysis::modes::Rayleigh;
-use crate::bridge::{Bridge, Load, PinPlace, Rider, Track, front_x_m};
+use crate::analysis::snapshot::RideNow;
+use crate::bridge::{Bridge, Heading, Load, PinPlace, Rider, Rides, Track};
 use crate::connector::State;
 use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled, rest_force_n};
 use crate::fem::SparseRow;
 use crate::response::{DeadState, StepEnergies};
+use crate::riding::{FreeRide, Ride, RideEnergies, RidingStep, UnderWheels};
 use crate::scheme::{Newmark, Scalar};
-use crate::vehicle::Vehicle;
+use crate::traffic::{Driven, Presence, Traffic};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
@@ -31,8 +33,10 @@ pub(super) struct Motion {
     pub elongations: Vec<f64>,
     pub dashpots: DashpotTrail,
     pub load: Load,
-    /// Inertia force of each rider, `m (r u'' + ...)` `[N]`.
-    pub inertia: Vec<f64>,
+    /// Force of each rider on the deck: inertia force `m (r u'' + ...)` of a mass, force of a spring `[N]`.
+    pub rider_forces: Vec<f64>,
+    /// Motion of each vehicle on springs; of no meaning for others.
+    pub rides: Vec<Ride>,
     pub newton_iterations: usize,
     /// Energies of the step that led here.
     pub spent: StepEnergies,
@@ -80,9 +84,11 @@ impl Motion {
 pub(super) struct Stepper<'a> {
     pub bridge: &'a Bridge,
     pub track: &'a Track,
-    pub vehicle: &'a Vehicle,
-    pub load_n: f64,
-    pub speed_m_s: f64,
+    pub traffic: &'a Traffic,
+    /// When each vehicle's springs are awake.
+    pub presences: Vec<Presence>,
+    /// Vehicles on springs at the step length after some halvings, vehicle after vehicle.
+    pub riding: Vec<Vec<Option<RidingStep>>>,
     pub rayleigh: Rayleigh,
     /// Law of each connector.
     pub laws: Vec<LinkLaw>,
@@ -101,10 +107,11 @@ impl Stepper<'_> {
         let connectors = self.laws.len();
         Motion {
             time_s,
+            rides: self.traffic.vehicles.iter().map(|driven| self.ride_at_rest(driven)).collect(),
             states: self.laws.iter().map(|law| law.state(0.0)).collect(),
             forces: (0..connectors).map(|i| self.rest_n(i)).collect(),
             elongations: vec![0.0; connectors],
-            inertia: vec![0.0; load.riders.len()],
+            rider_forces: vec![0.0; load.riders.len()],
             load,
             ..Motion::zero(self.bridge.dofs())
         }
@@ -120,26 +127,25 @@ impl Stepper<'_> {
     ) -> Result<Motion, NotSettled> {
         let load = self.load(time_s); // (V1)
         let mut d = self.predict(matrix, old, &load); // (T3), (T4)
-        let problem = self.contact_problem(matrix, old, &load, &d); // (C1), (T5)
+        let mut free = self.predict_rides(matrix, old, &load); // (V4)
+        let problem = self.contact_problem(matrix, old, &load, &d, &free); // (C1), (T5), (V5)
         let h = matrix.scheme.h;
         let laws = old.dashpots.laws(&self.dashpots, &self.laws, &old.elongations, h); // (C4)
-        let contact = problem.solve(&laws, &old.states, newton_limit)?; // (C2)
+        let mut contact = problem.solve(&laws, &self.first_states(old, &load), newton_limit)?; // (C2)
         self.correct(matrix, &load, &contact, &mut d);
         let mut new = self.advance(matrix, old, &d); // (T2)
         new.time_s = time_s;
         new.load = load;
-        new.inertia = contact
-            .riders
-            .iter()
-            .map(|q| q / (1.0 - matrix.scheme.alpha_m))
-            .collect();
+        new.rider_forces = self.unscaled(matrix, &new.load, &contact.riders);
+        contact.states.truncate(self.laws.len());
         new.states = contact.states;
+        let ridden = self.finish_rides(matrix, old, &mut new, &d, &contact.riders, &mut free);
         new.forces = contact.forces;
         new.elongations = contact.elongations;
         let way = [&*old.elongations, &*new.elongations];
         new.dashpots = old.dashpots.follow(&self.dashpots, way, &new.forces, h);
         new.newton_iterations = contact.iterations;
-        new.spent = self.account(matrix, old, &new, &d); // (R1)
+        new.spent = self.account(matrix, old, &new, &d, ridden); // (R1)
         new.balance = self.pins.then(|| self.balance(matrix, old, &new)); // (J6)
         Ok(new)
     }
@@ -159,11 +165,11 @@ impl Stepper<'_> {
         for (i, force) in contact.forces.iter().enumerate() {
             flexibility.add_connector_response(i, -(1.0 - s.alpha_f) * (force - self.rest_n(i)), d);
         }
-        let mut inertia = SparseRow::default();
+        let mut pressed = SparseRow::default();
         for (rider, q) in load.riders.iter().zip(&contact.riders) {
-            inertia.0.extend(rider.row.0.iter().map(|&(c, r)| (c, -q * r)));
+            pressed.0.extend(rider.row.0.iter().map(|&(c, r)| (c, -q * r)));
         }
-        flexibility.add_track_response(&SparseRow::from_entries(inertia.0), d);
+        flexibility.add_track_response(&SparseRow::from_entries(pressed.0), d);
     }
 
     /// The motion after a step in which the displacement changes by d.
@@ -192,10 +198,14 @@ impl Stepper<'_> {
         }
     }
 
-    /// The vehicle where it is at a time.
+    /// The vehicles where they are at a time.
     fn load(&self, time_s: f64) -> Load {
-        let front_x_m = front_x_m(self.track, self.speed_m_s, time_s);
-        Load::new(self.track, self.vehicle, self.load_n, front_x_m, self.speed_m_s)
+        let mut load = Load::default();
+        for (driven, presence) in self.traffic.vehicles.iter().zip(&self.presences) {
+            let heading = Heading::of(self.track, &driven.drive, time_s);
+            load.add(self.track, &driven.vehicle, driven.load_n, heading, presence.holds(time_s));
+        }
+        load
     }
 
     /// All forces of the balance at alpha that do not wait for the new instant.
@@ -215,37 +225,45 @@ impl Stepper<'_> {
             connector.row.add_to(-s.alpha_f * (force - self.rest_n(i)), &mut f);
         }
         matrix.flexibility.add_track_force(&old.load.weight, -s.alpha_f, &mut f);
-        for (rider, q) in old.load.riders.iter().zip(&old.inertia) {
-            matrix.flexibility.add_track_force(&rider.row, -s.alpha_m * q, &mut f);
+        for (rider, q) in old.load.riders.iter().zip(&old.rider_forces) {
+            let old_weight = if rider.is_spring() { s.alpha_f } else { s.alpha_m };
+            matrix.flexibility.add_track_force(&rider.row, -old_weight * q, &mut f);
         }
         f
     }
 
-    /// The small system of the step. Riders are measured in displacement: `q' / ((1 - alpha_m) m c_a) = g . d + known`
-    /// with `g = r + (2 V c_v/c_a) r_x + (V^2/c_a) r_xx` and `q' = (1 - alpha_m) q`.
-    fn contact_problem<'l>(&self, matrix: &'l StepMatrix, old: &Motion, load: &Load, d: &[f64]) -> ContactProblem<'l> {
-        let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
+    /// The small system of the step. Riders are measured in displacement: a mass by `q' / ((1 - alpha_m) m c_a) = g . d + known`
+    /// with `g = r + (2 V c_v/c_a) r_x + (V^2 r_xx + V' r_x) / c_a` and `q' = (1 - alpha_m) q`, a wheel on springs by [`Self::wheel`].
+    fn contact_problem<'l>(
+        &self,
+        matrix: &'l StepMatrix,
+        old: &Motion,
+        load: &Load,
+        d: &[f64],
+        free: &[FreeRide],
+    ) -> ContactProblem<'l> {
+        let flexibility = &matrix.flexibility;
         let connectors = &self.bridge.links;
         let (nc, nr) = (connectors.len(), load.riders.len());
-        let measures: Vec<SparseRow> = load.riders.iter().map(|rider| self.measure(matrix, rider)).collect();
+        let rows: Vec<MeasuredRider> = load
+            .riders
+            .iter()
+            .map(|rider| match &rider.rides {
+                Rides::Mass { mass_kg, derivatives } => {
+                    self.mass(matrix, old, load, rider, (*mass_kg, derivatives.as_ref()))
+                }
+                Rides::Spring { wheel, slope } => self.wheel(matrix, old, load, rider, (*wheel, slope), free),
+            })
+            .collect();
         let mut riders = DMatrix::from_fn(nr, nr, |i, j| {
-            flexibility.track_to_track(&measures[i], &load.riders[j].row)
+            flexibility.track_to_track(&rows[i].measure, &load.riders[j].row)
         });
-        for (i, rider) in load.riders.iter().enumerate() {
-            riders[(i, i)] += 1.0 / ((1.0 - s.alpha_m) * rider.mass_kg * s.c_a);
-        }
-        let known = |rider: &Rider| {
-            let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| -> f64 {
-                row.0.iter().map(|&(c, v)| v * x(flexibility.track().dof(c))).sum()
-            };
-            let mut total = on(&rider.row, &|i| s.a_v * old.v[i] + s.a_a * old.a[i]);
-            if let Some((r_x, r_xx)) = &rider.derivatives {
-                let speed = self.speed_m_s;
-                total += 2.0 * speed * on(r_x, &|i| s.v_v * old.v[i] + s.v_a * old.a[i]);
-                total += speed * speed * on(r_xx, &|i| old.u[i]);
+        for (i, row) in rows.iter().enumerate() {
+            riders[(i, i)] += row.own;
+            for (j, other) in load.riders.iter().enumerate() {
+                riders[(i, j)] += self.among_wheels(matrix, &load.riders[i], other);
             }
-            total / s.c_a
-        };
+        }
         let problem = ContactProblem {
             e_free: connectors
                 .iter()
@@ -253,17 +271,15 @@ impl Stepper<'_> {
                 .map(|(c, e)| e + c.row.dot(d))
                 .collect(),
             connectors: flexibility.among_connectors(),
-            weight: 1.0 - s.alpha_f,
+            weight: 1.0 - matrix.scheme.alpha_f,
             connectors_riders: DMatrix::from_fn(nc, nr, |i, r| flexibility.connector_to_track(i, &load.riders[r].row)),
-            riders_connectors: DMatrix::from_fn(nr, nc, |r, i| flexibility.connector_to_track(i, &measures[r])),
+            riders_connectors: DMatrix::from_fn(nr, nc, |r, i| flexibility.connector_to_track(i, &rows[r].measure)),
             riders,
             riders_free: DVector::from_iterator(
                 nr,
-                load.riders
-                    .iter()
-                    .zip(&measures)
-                    .map(|(rider, g)| flexibility.track_dot(g, d) + known(rider)),
+                rows.iter().map(|row| flexibility.track_dot(&row.measure, d) + row.known),
             ),
+            one_sided: (0..nr).filter(|&r| load.riders[r].is_spring()).collect(),
         };
         match &self.dead {
             None => problem,
@@ -271,20 +287,217 @@ impl Stepper<'_> {
         }
     }
 
-    /// The row by which a rider is measured. Equation (T5).
-    fn measure(&self, matrix: &StepMatrix, rider: &Rider) -> SparseRow {
+    /// A mass's row of the small system. Equation (T5).
+    fn mass(
+        &self,
+        matrix: &StepMatrix,
+        old: &Motion,
+        load: &Load,
+        rider: &Rider,
+        (mass_kg, derivatives): (f64, Option<&(SparseRow, SparseRow)>),
+    ) -> MeasuredRider {
         let s = &matrix.scheme;
-        match &rider.derivatives {
-            None => rider.row.clone(),
-            Some((r_x, r_xx)) => {
-                let speed = self.speed_m_s;
-                SparseRow::combine(&[
-                    (1.0, &rider.row),
-                    (2.0 * speed * s.c_v / s.c_a, r_x),
-                    (speed * speed / s.c_a, r_xx),
-                ])
+        let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| self.on_track(row, x);
+        let mut known = on(&rider.row, &|i| s.a_v * old.v[i] + s.a_a * old.a[i]);
+        let mut measure = rider.row.clone();
+        if let Some((r_x, r_xx)) = derivatives {
+            let heading = load.placements[rider.vehicle].heading;
+            let (speed, rate) = (heading.speed_m_s, heading.acceleration_m_s2);
+            known += 2.0 * speed * on(r_x, &|i| s.v_v * old.v[i] + s.v_a * old.a[i]);
+            known += speed * speed * on(r_xx, &|i| old.u[i]);
+            let mut terms = vec![
+                (1.0, &rider.row),
+                (2.0 * speed * s.c_v / s.c_a, r_x),
+                (speed * speed / s.c_a, r_xx),
+            ];
+            if rate != 0.0 {
+                known += rate * on(r_x, &|i| old.u[i]);
+                terms.push((rate / s.c_a, r_x));
             }
+            measure = SparseRow::combine(&terms);
         }
+        MeasuredRider {
+            measure,
+            own: 1.0 / ((1.0 - s.alpha_m) * mass_kg * s.c_a),
+            known: known / s.c_a,
+        }
+    }
+
+    /// The row of a wheel on springs, `lambda' / ((1 - alpha_f) kappa) + S lambda' = g . d + known` with
+    /// `g = r + (c V / kappa) r_x` and `lambda' = (1 - alpha_f) lambda`. Equation (V5).
+    fn wheel(
+        &self,
+        matrix: &StepMatrix,
+        old: &Motion,
+        load: &Load,
+        rider: &Rider,
+        (wheel, slope): (usize, &SparseRow),
+        free: &[FreeRide],
+    ) -> MeasuredRider {
+        let s = &matrix.scheme;
+        let none = || MeasuredRider {
+            measure: SparseRow::default(),
+            own: 1.0,
+            known: 0.0,
+        };
+        let Some(riding) = self.riding(matrix, rider.vehicle) else {
+            return none();
+        };
+        let (of, kappa) = (&riding.springs().wheels[wheel], riding.kappa[wheel]);
+        let speed = load.placements[rider.vehicle].heading.speed_m_s;
+        let [height, road_slope] = self.road(load, rider.vehicle, wheel);
+        let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| self.on_track(row, x);
+        let free = &free[rider.vehicle];
+        let spring = on(&rider.row, &|i| old.u[i]) + height - free.y[wheel];
+        let rate = on(&rider.row, &|i| s.v_v * old.v[i] + s.v_a * old.a[i])
+            + speed * (on(slope, &|i| old.u[i]) + road_slope)
+            - free.rate[wheel];
+        let driven = &self.traffic.vehicles[rider.vehicle];
+        MeasuredRider {
+            measure: SparseRow::combine(&[(1.0, &rider.row), (of.damping_n_s_m * speed / kappa, slope)]),
+            own: 1.0 / ((1.0 - s.alpha_f) * kappa * driven.scale()),
+            known: (of.stiffness_n_m * spring + of.damping_n_s_m * rate) / kappa,
+        }
+    }
+
+    /// What a wheel on springs sees of another one of its vehicle (V4).
+    fn among_wheels(&self, matrix: &StepMatrix, one: &Rider, other: &Rider) -> f64 {
+        let (Rides::Spring { wheel: i, .. }, Rides::Spring { wheel: j, .. }) = (&one.rides, &other.rides) else {
+            return 0.0;
+        };
+        if one.vehicle != other.vehicle {
+            return 0.0;
+        }
+        let scale = self.traffic.vehicles[one.vehicle].scale();
+        self.riding(matrix, one.vehicle).map_or(0.0, |riding| riding.among[(*i, *j)] / scale)
+    }
+
+    /// The sum of a row of the track over what its columns have.
+    fn on_track(&self, row: &SparseRow, x: &dyn Fn(usize) -> f64) -> f64 {
+        row.0.iter().map(|&(c, v)| v * x(self.track.dof(c))).sum()
+    }
+
+    /// A vehicle's springs at the length of a step; none of a rigid vehicle.
+    fn riding(&self, matrix: &StepMatrix, vehicle: usize) -> Option<&RidingStep> {
+        self.riding[matrix.halvings][vehicle].as_ref()
+    }
+
+    /// Height of the road under a wheel and its slope, means over its points.
+    fn road(&self, load: &Load, vehicle: usize, wheel: usize) -> [f64; 2] {
+        let placement = &load.placements[vehicle];
+        self.traffic.under(vehicle, wheel, |ahead_m| placement.place_m(ahead_m))
+    }
+
+    /// Vehicles on springs as they are.
+    pub(super) fn rides_now(&self, now: &Motion) -> Vec<RideNow> {
+        let each = self.traffic.vehicles.iter().zip(&now.rides).enumerate();
+        let ride = |(vehicle, (driven, ride)): (usize, (&Driven, &Ride))| {
+            let springs = driven.vehicle.springs.as_ref()?;
+            Some(RideNow {
+                vehicle,
+                moved: ride.from_rest(springs).collect(),
+                accelerations: ride.a.clone(),
+                wheels_n: ride.wheels_n.iter().map(|force| driven.scale() * force).collect(),
+            })
+        };
+        each.filter_map(ride).collect()
+    }
+
+    /// A vehicle at rest where it wakes, on the road's height there.
+    fn ride_at_rest(&self, driven: &Driven) -> Ride {
+        driven.vehicle.springs.as_ref().map_or_else(Ride::default, |springs| {
+            Ride::at_rest(springs, self.traffic.level_m(driven.drive.backward))
+        })
+    }
+
+    /// Vehicles awake in a step without new forces of their wheels.
+    fn predict_rides(&self, matrix: &StepMatrix, old: &Motion, load: &Load) -> Vec<FreeRide> {
+        let free = |(vehicle, ride): (usize, &Ride)| match self.riding(matrix, vehicle) {
+            Some(riding) if load.riders.iter().any(|r| r.vehicle == vehicle && r.is_spring()) => {
+                let mut free = FreeRide::new(riding.springs());
+                riding.predict(ride, self.driven_m_s2(load, vehicle), &mut free);
+                free
+            }
+            _ => FreeRide::default(),
+        };
+        old.rides.iter().enumerate().map(free).collect()
+    }
+
+    /// Acceleration of a vehicle along its own direction `[m/s^2]`.
+    fn driven_m_s2(&self, load: &Load, vehicle: usize) -> f64 {
+        let heading = load.placements[vehicle].heading;
+        let sign = if heading.backward { -1.0 } else { 1.0 };
+        sign * heading.acceleration_m_s2
+    }
+
+    /// First guess of the states: those before, a wheel pressing where it did.
+    fn first_states(&self, old: &Motion, load: &Load) -> Vec<State> {
+        let pressing = |rider: &Rider| match rider.rides {
+            Rides::Spring { wheel, .. } if old.rides[rider.vehicle].wheels_n[wheel] > 0.0 => Some(State::Compression),
+            Rides::Spring { .. } => Some(State::Open),
+            Rides::Mass { .. } => None,
+        };
+        old.states.iter().copied().chain(load.riders.iter().filter_map(pressing)).collect()
+    }
+
+    /// Forces of riders from their scaled ones.
+    fn unscaled(&self, matrix: &StepMatrix, load: &Load, scaled: &[f64]) -> Vec<f64> {
+        let s = &matrix.scheme;
+        let force = |(rider, q): (&Rider, &f64)| q / (1.0 - if rider.is_spring() { s.alpha_f } else { s.alpha_m });
+        load.riders.iter().zip(scaled).map(force).collect()
+    }
+
+    /// Takes the vehicles awake to the end of the step; gives their energies.
+    fn finish_rides(
+        &self,
+        matrix: &StepMatrix,
+        old: &Motion,
+        new: &mut Motion,
+        d: &[f64],
+        scaled: &[f64],
+        free: &mut [FreeRide],
+    ) -> RideEnergies {
+        let s = &matrix.scheme;
+        let mut sum = RideEnergies::default();
+        let mut rides = old.rides.clone();
+        for (vehicle, ride) in rides.iter_mut().enumerate() {
+            let Some(riding) = self.riding(matrix, vehicle) else { continue };
+            let scale = self.traffic.vehicles[vehicle].scale();
+            let of = |load: &Load| -> Vec<usize> {
+                let is = |r: &usize| load.riders[*r].vehicle == vehicle && load.riders[*r].is_spring();
+                (0..load.riders.len()).filter(is).collect()
+            };
+            let on_deck = |load: &Load, forces: &[f64]| -> f64 {
+                let all = of(load).into_iter();
+                all.map(|r| forces[r] * matrix.flexibility.track_dot(&load.riders[r].row, d)).sum()
+            };
+            let on_deck_j = -s.at_f(on_deck(&new.load, &new.rider_forces), on_deck(&old.load, &old.rider_forces));
+            let own = of(&new.load);
+            if own.is_empty() {
+                sum.work += on_deck_j;
+                continue;
+            }
+            let speed = new.load.placements[vehicle].heading.speed_m_s;
+            let (mut height_m, mut rate_m_s) = (Vec::new(), Vec::new());
+            for &r in &own {
+                let rider = &new.load.riders[r];
+                let Rides::Spring { wheel, slope } = &rider.rides else { continue };
+                let [height, road_slope] = self.road(&new.load, vehicle, *wheel);
+                height_m.push(self.on_track(&rider.row, &|i| new.u[i]) + height);
+                let moved = self.on_track(&rider.row, &|i| new.v[i]);
+                rate_m_s.push(moved + speed * (self.on_track(slope, &|i| new.u[i]) + road_slope));
+            }
+            let under = UnderWheels {
+                height_m: &height_m,
+                rate_m_s: &rate_m_s,
+                on_deck_j: -on_deck_j / scale,
+            };
+            let driven_m_s2 = self.driven_m_s2(&new.load, vehicle);
+            let spent = riding.finish(ride, &mut free[vehicle], |w| scaled[own[w]] / scale, under, driven_m_s2);
+            sum = sum.and(spent.scaled(scale));
+        }
+        new.rides = rides;
+        sum
     }
 
     /// The forces of connectors and pins where the balance holds, and when that is.
@@ -298,9 +511,10 @@ impl Stepper<'_> {
         let down: Vec<SparseRow> = shares
             .iter()
             .flat_map(|(f, m, instant)| {
-                let riders = instant.load.riders.iter().zip(&instant.inertia);
-                let inertia = riders.map(move |(rider, q)| SparseRow::combine(&[(m * q, &rider.row)]));
-                inertia.chain([SparseRow::combine(&[(*f, &instant.load.weight)])])
+                let riders = instant.load.riders.iter().zip(&instant.rider_forces);
+                let weight = move |rider: &Rider| if rider.is_spring() { f } else { m };
+                let pressed = riders.map(move |(rider, q)| SparseRow::combine(&[(weight(rider) * q, &rider.row)]));
+                pressed.chain([SparseRow::combine(&[(*f, &instant.load.weight)])])
             })
             .collect();
         let force = |(i, pin): (usize, &PinPlace)| {
@@ -321,7 +535,7 @@ impl Stepper<'_> {
 
     /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives
     /// beyond the change of its energy is numerical dissipation.
-    fn account(&self, matrix: &StepMatrix, old: &Motion, new: &Motion, d: &[f64]) -> StepEnergies {
+    fn account(&self, matrix: &StepMatrix, old: &Motion, new: &Motion, d: &[f64], ridden: RideEnergies) -> StepEnergies {
         let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         let kinetic = 0.5 * dot(&new.v, &new.mv);
         let strain = 0.5 * dot(&new.u, &new.ku);
@@ -346,14 +560,11 @@ impl Stepper<'_> {
             springs += lengthening * (s.at_f(new.forces[i] - damped, old.forces[i] - damped_old) - self.rest_n(i));
             dashpots += lengthening * s.at_f(damped, damped_old);
         }
+        // what springs do to the deck stays within
         let riders = |instant: &Motion| -> f64 {
-            instant
-                .load
-                .riders
-                .iter()
-                .zip(&instant.inertia)
-                .map(|(r, q)| q * flexibility.track_dot(&r.row, d))
-                .sum()
+            let riders = instant.load.riders.iter().zip(&instant.rider_forces);
+            let masses = riders.filter(|(rider, _)| !rider.is_spring());
+            masses.map(|(r, q)| q * flexibility.track_dot(&r.row, d)).sum()
         };
         let weights = s.at_f(
             flexibility.track_dot(&new.load.weight, d),
@@ -364,13 +575,22 @@ impl Stepper<'_> {
             strain,
             connectors,
             rayleigh: self.rayleigh.a * damping_k + self.rayleigh.b * damping_m,
-            dashpots,
-            numerical: (inertia + old.spent.kinetic - kinetic)
+            dashpots: dashpots + ridden.dampers,
+            vehicles: old.spent.vehicles + ridden.stored,
+            numerical: ridden.numerical
+                + (inertia + old.spent.kinetic - kinetic)
                 + (stiffness + old.spent.strain - strain)
                 + (springs + old.spent.connectors - connectors),
-            work: -weights - s.at_m(riders(new), riders(old)),
+            work: ridden.work - weights - s.at_m(riders(new), riders(old)),
         }
     }
+}
+
+/// A rider's row of the small system: what measures it, its own compliance, what is known of its measure.
+struct MeasuredRider {
+    measure: SparseRow,
+    own: f64,
+    known: f64,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

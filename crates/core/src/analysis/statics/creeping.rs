@@ -5,11 +5,11 @@
 
 use super::{NEWTON_LIMIT, StaticCase, brought_on};
 use crate::analysis::AnalysisError;
-use crate::bridge::{Bridge, BridgeDesign, Load};
+use crate::bridge::{Bridge, BridgeDesign, Heading, Load};
 use crate::contact::{WarmContact, rest_force_n};
 use crate::flexibility::Flexibility;
 use crate::module::ModuleDesign;
-use crate::vehicle::{Inertia, Vehicle};
+use crate::vehicle::Vehicle;
 use nalgebra::DMatrix;
 
 /// One vehicle on one bridge, made ready for cases of any connection and weight. Shared read-only between jobs and threads.
@@ -31,18 +31,14 @@ impl CreepingLoad {
     pub(super) fn new(bridge: &Bridge, flexibility: &Flexibility, influence: &DMatrix<f64>, vehicle: &Vehicle) -> Self {
         let design = bridge.design();
         let places_m = places_m(design);
-        let weight_alone = Vehicle {
-            inertia: Inertia::None,
-            ..vehicle.clone()
-        };
+        let weight_alone = vehicle.standing();
         let mut unit = DMatrix::zeros(influence.nrows(), places_m.len());
         for (&x, mut unit) in places_m.iter().zip(unit.column_iter_mut()) {
             let load = Load::new(
                 flexibility.track(),
                 &weight_alone,
                 1.0,
-                x - vehicle.centre_ahead_m(),
-                0.0,
+                Heading::standing(x - vehicle.centre_ahead_m()),
             );
             for &(column, force) in &load.weight.0 {
                 unit.axpy(force, &influence.column(column), 1.0);

@@ -7,7 +7,7 @@ mod dead;
 
 use super::AnalysisError;
 use super::snapshot::{Snapshot, connectors, wheels};
-use crate::bridge::{Bridge, Load, PinPlace, VehiclePlacement, joint_parts};
+use crate::bridge::{Bridge, Heading, Load, PinPlace, VehiclePlacement, joint_parts};
 use crate::connector::{Connection, OwnLaws, State};
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled, rest_force_n};
 use crate::fem::{Factor, SparseRow, SymmetricMatrix};
@@ -161,7 +161,7 @@ impl StaticSolver {
             bottom_emerged: bridge.bottom_emerges(&u, case.dead.as_deref()),
             deck_submerged: bridge.deck_submerges(&u, case.dead.as_deref()),
             newton_iterations: contact.iterations,
-            equilibrium: self.equilibrium(vehicle, case, &load.placement, (&contact.forces, &u)),
+            equilibrium: self.equilibrium(vehicle, case, load.placement(), (&contact.forces, &u)),
             dead: case.dead.clone(),
         })
     }
@@ -181,7 +181,6 @@ impl StaticSolver {
     /// As [`Self::solve`].
     pub fn state(&self, vehicle: &Vehicle, case: &StaticCase) -> Result<Snapshot, AnalysisError> {
         let (load, contact, mut u) = self.rest(vehicle, case)?;
-        let at_rest = vec![0.0; load.riders.len()];
         let mut elongations = contact.elongations;
         if let Some(dead) = &case.dead {
             add(&mut u, &dead.displacements);
@@ -193,7 +192,8 @@ impl StaticSolver {
             u,
             inertial: None,
             connectors: connectors(&contact.states, &contact.forces, &elongations),
-            wheels: wheels(self.flexibility.track(), vehicle, case.load_n, &load, &at_rest),
+            wheels: wheels(self.flexibility.track(), [(&vehicle.standing(), case.load_n)], &load, &[]),
+            rides: Vec::new(),
             dead: case.dead.clone(),
         })
     }
@@ -322,8 +322,8 @@ impl StaticSolver {
     }
 
     fn load(&self, vehicle: &Vehicle, case: &StaticCase, centre_x_m: f64) -> Load {
-        let front_x_m = centre_x_m - vehicle.centre_ahead_m();
-        Load::new(self.flexibility.track(), vehicle, case.load_n, front_x_m, 0.0)
+        let heading = Heading::standing(centre_x_m - vehicle.centre_ahead_m());
+        Load::new(self.flexibility.track(), &vehicle.standing(), case.load_n, heading)
     }
 
     /// Between the first zero crossings left and right of the load, interpolated between nodes.
@@ -445,6 +445,7 @@ fn brought_on(
         riders_connectors: DMatrix::zeros(0, nc),
         riders: DMatrix::zeros(0, 0),
         riders_free: DVector::zeros(0),
+        one_sided: Vec::new(),
     };
     if let Some(dead) = dead {
         problem = problem.with_rest(&dead.forces_n);

@@ -1,36 +1,22 @@
-//! The vehicle: a set of wheel patches, each with its share of the weight.
+//! A vehicle as it is written: a single footprint, or axles, with or without bodies on springs.
 //!
-//! Knows axles, patches and where their points stand for a given place of the vehicle. Does not know the bridge: what
-//! a point does to the deck is the track's business.
+//! Knows keys, ranges and which keys go together. Does not know how a vehicle moves.
 
+use super::springs::Springs;
+use super::{Inertia, Patch, Vehicle, WheelPoint};
 use crate::input::{Found, InvalidInput, Problem, bound, not_negative, positive, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Standard gravity `[m/s^2]`, by which a weight becomes a mass.
-pub const GRAVITY_M_S2: f64 = 9.806_65;
-
-/// How the vehicle's mass takes part in the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Inertia {
-    /// Moving weight only.
-    None,
-    /// The paper's: each point's mass has the acceleration `u''` of the deck under it.
-    #[default]
-    Local,
-    /// What the mass really undergoes: `r u'' + 2 V r_x u' + V^2 r_xx u`, with `r` averaged over the patch.
-    Convective,
-}
+use std::sync::Arc;
 
 /// One axle: a patch on each of its tracks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axle {
     /// Distance of the patch centre behind the vehicle's front `[m]`.
     pub behind_front_m: f64,
     /// Share of the vehicle's weight; the shares of all axles sum to 1, within a thousandth. Either this or `load_n`, the same
-    /// for all axles.
+    /// for all axles. A vehicle on springs needs neither: its masses have the weight, and what is stated must agree with them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub share: Option<f64>,
     /// Weight on the axle `[N]`; the sum of all axles is the vehicle's weight, and a study states no other.
@@ -41,14 +27,57 @@ pub struct Axle {
     /// Width of the patch across the bridge `[m]`; 0 is a line.
     #[serde(default)]
     pub patch_width_m: f64,
-    /// Places of the tracks across the bridge `[m]`; the axle's share is split evenly between them.
+    /// Places of the tracks across the bridge `[m]`; the axle's share, masses and springs are split evenly between them.
     pub track_y_m: Vec<f64>,
+    /// Mass between tyres and suspension `[kg]`; without tyres it rides on the deck itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unsprung_mass_kg: Option<f64>,
+    /// Stiffness of the axle's tyres together `[N/m]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tyre_stiffness_n_m: Option<f64>,
+    /// Damping of the tyres together `[N s/m]`; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tyre_damping_n_s_m: Option<f64>,
+    /// Stiffness of the suspension that carries the body, of the axle's springs together `[N/m]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub suspension_stiffness_n_m: Option<f64>,
+    /// Damping of the suspension, of the axle's dampers together `[N s/m]`; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub suspension_damping_n_s_m: Option<f64>,
 }
 
-/// A vehicle as a study writes it: the single footprint of the paper, or a list of axles.
+/// The body that the axles' suspensions carry.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// Its mass `[kg]`.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub mass_kg: f64,
+    /// Distance of its centre of mass behind the vehicle's front `[m]`.
+    pub behind_front_m: f64,
+    /// Moment of inertia about the axis across, through its centre `[kg m^2]`; it does not pitch where absent, as a body on
+    /// one axle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pitch_inertia_kg_m2: Option<f64>,
+    /// Moment of inertia about the axis along, through its centre `[kg m^2]`; it does not roll where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll_inertia_kg_m2: Option<f64>,
+    /// Height of its centre above the deck `[m]`, by which braking pitches it; 0 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<f64>,
+}
+
+/// A vehicle as a study or a vehicle file writes it: the single footprint of the paper, or a list of axles, a body on their
+/// suspensions or none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleDesign {
+    /// What it is called.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Where its numbers come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
     /// Length of the single footprint `[m]`; its centre is the vehicle's front. Not together with `axles`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub footprint_length_m: Option<f64>,
@@ -58,7 +87,10 @@ pub struct VehicleDesign {
     /// Axles in place of the single footprint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axles: Option<Vec<Axle>>,
-    /// How the vehicle's mass takes part.
+    /// A body on the axles' suspensions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<Body>,
+    /// How the mass that lies on the deck without a spring takes part.
     #[serde(default)]
     pub inertia: Inertia,
     /// Points along each patch, evenly spaced, that carry its weight and mass.
@@ -74,9 +106,12 @@ impl Default for VehicleDesign {
     /// The paper's single footprint on two tracks.
     fn default() -> Self {
         Self {
+            name: None,
+            source: None,
             footprint_length_m: None,
             track_y_m: None,
             axles: None,
+            body: None,
             inertia: Inertia::default(),
             patch_points: default_patch_points(),
         }
@@ -87,50 +122,6 @@ impl Default for VehicleDesign {
 const DEFAULT_FOOTPRINT_LENGTH_M: f64 = 3.35;
 /// Tracks of the paper's vehicle as identified `[m]`.
 const DEFAULT_TRACK_Y_M: [f64; 2] = [-1.4, 1.4];
-
-/// One point that carries weight and mass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WheelPoint {
-    /// Distance of the point ahead of the vehicle's front `[m]`; negative behind it.
-    pub ahead_m: f64,
-    /// Number of that distance in [`Vehicle::along_m`], from 0.
-    pub along: usize,
-    /// Place across the bridge `[m]`.
-    pub y_m: f64,
-    /// Share of the vehicle's weight.
-    pub share: f64,
-}
-
-/// One patch: the points of one axle on one track.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Patch {
-    /// Number of the axle, from 0.
-    pub axle: usize,
-    /// Distance of the patch centre ahead of the vehicle's front `[m]`; negative behind it.
-    pub ahead_m: f64,
-    /// Length along the bridge `[m]`.
-    pub length_m: f64,
-    /// Share of the vehicle's weight.
-    pub share: f64,
-    /// The points, evenly spaced along the patch (midpoint rule) and, where it has a width, at its two Gauss points
-    /// across.
-    pub points: Vec<WheelPoint>,
-}
-
-/// A checked vehicle: patches in order of axles, then tracks.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Vehicle {
-    /// The patches.
-    pub patches: Vec<Patch>,
-    /// Distances of the points ahead of the front `[m]`, each once; points side by side share one.
-    pub along_m: Vec<f64>,
-    /// Weight `[N]`, where the axles state theirs.
-    pub weight_n: Option<f64>,
-    /// Number of axles.
-    pub axles: usize,
-    /// How the mass takes part.
-    pub inertia: Inertia,
-}
 
 impl VehicleDesign {
     /// The axles: those given, or the single footprint as one axle.
@@ -161,10 +152,9 @@ impl VehicleDesign {
             None => Ok(vec![Axle {
                 behind_front_m: 0.0,
                 share: Some(1.0),
-                load_n: None,
                 patch_length_m: self.footprint_length_m.unwrap_or(DEFAULT_FOOTPRINT_LENGTH_M),
-                patch_width_m: 0.0,
                 track_y_m: self.track_y_m.clone().unwrap_or_else(|| DEFAULT_TRACK_Y_M.to_vec()),
+                ..Axle::default()
             }]),
         }
     }
@@ -173,7 +163,8 @@ impl VehicleDesign {
     ///
     /// # Errors
     /// [`InvalidInput`] with the key's path: no axle or track, a share that is not positive, shares that do not sum
-    /// to 1, a negative length, a patch that reaches beyond the deck, convective inertia on a patch of no length.
+    /// to 1, a negative length, a patch that reaches beyond the deck, convective inertia on a patch of no length, masses and
+    /// springs of which one does not hold the other.
     pub fn check(&self, deck_breadth_m: f64) -> Result<Vehicle, InvalidInput> {
         let axles = self.axles()?;
         let single = self.axles.is_none();
@@ -192,8 +183,20 @@ impl VehicleDesign {
                 "a whole number from 1 to 64",
             ));
         }
+        if let (Some(_), true) = (&self.body, single) {
+            let refused = InvalidInput::new("body", "a body on a footprint", "a body on axles with suspensions");
+            return Err(refused.because(Problem::Misplaced));
+        }
         let half = 0.5 * deck_breadth_m;
-        let (shares, weight_n) = shares(&axles)?;
+        let springs = Springs::of(&axles, self.body.as_ref())?;
+        let (mut shares, mut weight_n) = match &springs {
+            None => shares(&axles)?,
+            Some(_) => (vec![0.0; axles.len()], None),
+        };
+        if let Some(springs) = &springs {
+            (shares, weight_n) = (springs.axle_shares(&axles), Some(springs.whole_weight_n()));
+            agree_with_masses(&axles, &shares, springs.whole_weight_n())?;
+        }
         let mut patches = Vec::new();
         for (k, axle) in axles.iter().enumerate() {
             not_negative(&key(k, "behind_front_m"), axle.behind_front_m)?;
@@ -202,7 +205,8 @@ impl VehicleDesign {
             }
             not_negative(&key(k, "patch_length_m"), axle.patch_length_m)?;
             not_negative(&key(k, "patch_width_m"), axle.patch_width_m)?;
-            if self.inertia == Inertia::Convective && axle.patch_length_m == 0.0 {
+            let rides = springs.is_none() || axle.unsprung_mass_kg.is_some() && axle.tyre_stiffness_n_m.is_none();
+            if self.inertia == Inertia::Convective && rides && axle.patch_length_m == 0.0 {
                 return Err(
                     InvalidInput::new(key(k, "patch_length_m"), 0.0, "above 0 with convective inertia")
                         .because(Problem::Conflict),
@@ -215,14 +219,18 @@ impl VehicleDesign {
                     "at least one track",
                 ));
             }
-            let share = shares[k] / axle.track_y_m.len() as f64;
             for (t, &y) in axle.track_y_m.iter().enumerate() {
                 let reach = half - 0.5 * axle.patch_width_m;
                 within(&format!("{}[{t}]", key(k, "track_y_m")), y, -reach, reach)?;
-                patches.push(patch(k, axle, y, share, self.patch_points));
+                let (mut share, mut rigid) = (shares[k] / axle.track_y_m.len() as f64, 1.0);
+                if let Some(springs) = &springs {
+                    (share, rigid) = springs.patch_shares(patches.len());
+                }
+                patches.push(patch(k, axle, y, share, rigid, self.patch_points));
             }
         }
         Ok(Vehicle {
+            springs: springs.map(Arc::new),
             weight_n,
             along_m: number_places(&mut patches),
             patches,
@@ -273,7 +281,25 @@ fn shares(axles: &[Axle]) -> Result<(Vec<f64>, Option<f64>), InvalidInput> {
     Ok((list, by_loads.then_some(sum)))
 }
 
-fn patch(k: usize, axle: &Axle, y: f64, share: f64, along: usize) -> Patch {
+/// How far a stated load or share may be off what the masses give.
+const STATED_LOAD: f64 = 0.01;
+
+/// Refuses loads and shares of axles that are not those of the masses.
+fn agree_with_masses(axles: &[Axle], shares: &[f64], weight_n: f64) -> Result<(), InvalidInput> {
+    for (k, (axle, share)) in axles.iter().zip(shares).enumerate() {
+        for (name, stated, found) in [("load_n", axle.load_n, share * weight_n), ("share", axle.share, *share)] {
+            let Some(stated) = stated else { continue };
+            if (stated - found).abs() > STATED_LOAD * found {
+                let allowed = format!("{} within 1 %, which the masses give, or none", bound(found));
+                let refused = InvalidInput::new(format!("axles[{k}].{name}"), stated, allowed);
+                return Err(refused.because(Problem::Conflict));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn patch(k: usize, axle: &Axle, y: f64, share: f64, rigid: f64, along: usize) -> Patch {
     let along = if axle.patch_length_m > 0.0 { along } else { 1 };
     let gauss = 0.5 * axle.patch_width_m / 3.0_f64.sqrt();
     let across: &[f64] = if axle.patch_width_m > 0.0 { &[-1.0, 1.0] } else { &[0.0] };
@@ -294,7 +320,10 @@ fn patch(k: usize, axle: &Axle, y: f64, share: f64, along: usize) -> Patch {
         axle: k,
         ahead_m: centre,
         length_m: axle.patch_length_m,
+        y_m: y,
+        width_m: axle.patch_width_m,
         share,
+        rigid,
         points,
     }
 }
@@ -311,24 +340,3 @@ fn number_places(patches: &mut [Patch]) -> Vec<f64> {
     along_m
 }
 
-impl Vehicle {
-    /// Farthest point ahead of the front `[m]`.
-    pub fn ahead_m(&self) -> f64 {
-        self.points().map(|p| p.ahead_m).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// Farthest point behind the front `[m]`.
-    pub fn behind_m(&self) -> f64 {
-        self.points().map(|p| -p.ahead_m).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// All points, patch after patch.
-    pub fn points(&self) -> impl Iterator<Item = &WheelPoint> {
-        self.patches.iter().flat_map(|p| p.points.iter())
-    }
-
-    /// Distance of the vehicle's centre (weighted by the shares) ahead of its front `[m]`.
-    pub fn centre_ahead_m(&self) -> f64 {
-        self.points().map(|p| p.share * p.ahead_m).sum()
-    }
-}

@@ -1,0 +1,301 @@
+//! Vehicles on springs in a time step: what their wheels' springs see of each other, and their motion.
+//!
+//! Knows one vehicle's equations and the scheme. Does not know the deck, but for the heights under its wheels.
+//!
+//! All numbers are of the vehicle at its own weight: one of other weight has forces, masses and springs scaled, motions not.
+
+use crate::scheme::Scheme;
+use crate::vehicle::{Springs, VehicleMotion};
+use nalgebra::DMatrix;
+use std::sync::Arc;
+
+/// A vehicle's springs at one step length.
+#[derive(Debug)]
+pub(crate) struct RidingStep {
+    springs: Arc<Springs>,
+    scheme: Scheme,
+    /// `A_v^-1`, `A_v = (1 - alpha_m) c_a M + (1 - alpha_f) (c_v C + K)`.
+    inverse: DMatrix<f64>,
+    /// `A_v^-1 G^T`, motions x wheels.
+    lift: DMatrix<f64>,
+    /// `S = G A_v^-1 G^T` (V4).
+    pub(crate) among: DMatrix<f64>,
+    /// `kappa = k + c_v c` of each wheel.
+    pub(crate) kappa: Vec<f64>,
+}
+
+/// A vehicle's motion at one instant.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Ride {
+    /// State, its rate and acceleration.
+    pub z: Vec<f64>,
+    pub v: Vec<f64>,
+    pub a: Vec<f64>,
+    /// Force of each wheel's spring and damper `[N]`, and of the spring alone.
+    pub wheels_n: Vec<f64>,
+    springs_n: Vec<f64>,
+    /// Height of deck and road under each wheel `[m]`.
+    pub under_m: Vec<f64>,
+    /// Acceleration along the deck, which pitches it `[m/s^2]`.
+    pub driven_m_s2: f64,
+    /// Energy of masses and springs `[J]`.
+    pub stored_j: f64,
+}
+
+impl Ride {
+    /// At rest on a level road of a height.
+    pub(crate) fn at_rest(springs: &Springs, height_m: f64) -> Self {
+        let lifted = |(z, motion): (&f64, &VehicleMotion)| match motion {
+            VehicleMotion::Bounce | VehicleMotion::Hop { .. } => z + height_m,
+            _ => *z,
+        };
+        let zeros = vec![0.0; springs.rest.len()];
+        let mut ride = Self {
+            z: springs.rest.iter().zip(&springs.motions).map(lifted).collect(),
+            v: zeros.clone(),
+            a: zeros,
+            wheels_n: springs.wheels.iter().map(|wheel| wheel.rest_n).collect(),
+            springs_n: springs.wheels.iter().map(|wheel| wheel.rest_n).collect(),
+            under_m: vec![height_m; springs.wheels.len()],
+            driven_m_s2: 0.0,
+            stored_j: 0.0,
+        };
+        ride.stored_j = ride.energy_j(springs);
+        ride
+    }
+
+    /// Energy of masses and springs, those of the wheels as far as these press `[J]`.
+    fn energy_j(&self, springs: &Springs) -> f64 {
+        let mut twice = 0.0;
+        for (i, (z, v)) in self.z.iter().zip(&self.v).enumerate() {
+            let force: f64 = self.z.iter().enumerate().map(|(j, z)| springs.stiffness[(i, j)] * z).sum();
+            twice += springs.inertia[i] * v * v + z * force;
+        }
+        for (wheel, under_m) in springs.wheels.iter().zip(&self.under_m) {
+            let compressed_m = (under_m - dot(&wheel.row, &self.z)).max(0.0);
+            twice += wheel.stiffness_n_m * compressed_m * compressed_m;
+        }
+        0.5 * twice
+    }
+
+    /// Force of a wheel by its law at a rate of the height under it, and of its spring alone `[N]`.
+    fn by_law_n(&self, springs: &Springs, wheel: usize, rate_m_s: f64) -> [f64; 2] {
+        let of = &springs.wheels[wheel];
+        let spring_n = of.stiffness_n_m * (self.under_m[wheel] - dot(&of.row, &self.z));
+        let damper_n = of.damping_n_s_m * (rate_m_s - dot(&of.row, &self.v));
+        [spring_n + damper_n, spring_n].map(|force| force.max(0.0))
+    }
+
+    /// How far each motion is from rest on a level road `[m, rad]`.
+    pub(crate) fn from_rest<'a>(&'a self, springs: &'a Springs) -> impl Iterator<Item = f64> + 'a {
+        self.z.iter().zip(&springs.rest).map(|(z, rest)| z - rest)
+    }
+}
+
+/// A vehicle's step without new forces of its wheels.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FreeRide {
+    /// Change of the state.
+    d: Vec<f64>,
+    /// Height of each wheel's upper end and its rate `[m, m/s]`.
+    pub y: Vec<f64>,
+    pub rate: Vec<f64>,
+    known: Vec<f64>,
+}
+
+impl FreeRide {
+    /// Room for a vehicle.
+    pub(crate) fn new(springs: &Springs) -> Self {
+        let (n, wheels) = (springs.rest.len(), springs.wheels.len());
+        Self {
+            d: vec![0.0; n],
+            y: vec![0.0; wheels],
+            rate: vec![0.0; wheels],
+            known: vec![0.0; n],
+        }
+    }
+}
+
+/// Energies of a vehicle over a step `[J]`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct RideEnergies {
+    /// Change of what masses and springs store.
+    pub stored: f64,
+    /// Dissipated by its dampers.
+    pub dampers: f64,
+    /// Dissipated by the scheme.
+    pub numerical: f64,
+    /// Work of gravity and of what drives the vehicle over deck and road.
+    pub work: f64,
+}
+
+impl RideEnergies {
+    /// Those of a vehicle whose masses and springs are so many times as large.
+    pub(crate) fn scaled(self, scale: f64) -> Self {
+        Self {
+            stored: scale * self.stored,
+            dampers: scale * self.dampers,
+            numerical: scale * self.numerical,
+            work: scale * self.work,
+        }
+    }
+
+    /// The sum of two.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            stored: self.stored + other.stored,
+            dampers: self.dampers + other.dampers,
+            numerical: self.numerical + other.numerical,
+            work: self.work + other.work,
+        }
+    }
+}
+
+/// What a step tells of the deck under a vehicle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct UnderWheels<'a> {
+    /// Height of deck and road under each wheel at the step's end, and its rate `[m, m/s]`.
+    pub height_m: &'a [f64],
+    pub rate_m_s: &'a [f64],
+    /// Work of the wheels' forces on the deck, downward, over the step, all of one vehicle at its own weight `[J]`.
+    pub on_deck_j: f64,
+}
+
+impl RidingStep {
+    /// Inverts the vehicle's step.
+    pub(crate) fn new(springs: &Arc<Springs>, scheme: Scheme) -> Self {
+        let (c_m, c_c, c_k) = scheme.effective();
+        let n = springs.rest.len();
+        let matrix = DMatrix::from_fn(n, n, |i, j| {
+            let inertia = if i == j { c_m * springs.inertia[i] } else { 0.0 };
+            inertia + c_c * springs.damping[(i, j)] + c_k * springs.stiffness[(i, j)]
+        });
+        // positive definite, as every motion has a mass
+        let inverse = matrix.cholesky().map_or_else(|| DMatrix::identity(n, n), |factor| factor.inverse());
+        let g = DMatrix::from_fn(springs.wheels.len(), n, |i, j| springs.wheels[i].row[j]);
+        let lift = &inverse * g.transpose();
+        Self {
+            among: &g * &lift,
+            kappa: springs.wheels.iter().map(|of| of.stiffness_n_m + scheme.c_v * of.damping_n_s_m).collect(),
+            springs: Arc::clone(springs),
+            scheme,
+            inverse,
+            lift,
+        }
+    }
+
+    /// `1 - alpha_f`, by which scaled forces are larger than forces.
+    #[inline(always)]
+    pub(crate) fn unscaling(&self) -> f64 {
+        1.0 - self.scheme.alpha_f
+    }
+
+    /// The vehicle.
+    pub(crate) fn springs(&self) -> &Springs {
+        &self.springs
+    }
+
+    /// The step without new forces of the wheels, accelerated along the deck by `driven_m_s2` at its end.
+    /// Equation (V4).
+    pub(crate) fn predict(&self, old: &Ride, driven_m_s2: f64, free: &mut FreeRide) {
+        let (s, springs) = (&self.scheme, &*self.springs);
+        let (at_v, at_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
+        let (m_v, m_a) = ((1.0 - s.alpha_m) * s.a_v, (1.0 - s.alpha_m) * s.a_a + s.alpha_m);
+        let n = old.z.len();
+        for i in 0..n {
+            let mut known = -springs.weight_n[i] - springs.inertia[i] * (m_v * old.v[i] + m_a * old.a[i]);
+            for j in 0..n {
+                known -= springs.damping[(i, j)] * (at_v * old.v[j] + at_a * old.a[j]) + springs.stiffness[(i, j)] * old.z[j];
+            }
+            for (wheel, force) in springs.wheels.iter().zip(&old.wheels_n) {
+                known += s.alpha_f * wheel.row[i] * force;
+            }
+            if springs.motions[i] == VehicleMotion::Pitch {
+                known += springs.braking_kg_m * s.at_f(driven_m_s2, old.driven_m_s2);
+            }
+            free.known[i] = known;
+        }
+        for i in 0..n {
+            free.d[i] = (0..n).map(|j| self.inverse[(i, j)] * free.known[j]).sum();
+        }
+        for (w, wheel) in springs.wheels.iter().enumerate() {
+            let (mut y, mut rate) = (0.0, 0.0);
+            for i in 0..n {
+                y += wheel.row[i] * (old.z[i] + free.d[i]);
+                rate += wheel.row[i] * (s.c_v * free.d[i] + s.v_v * old.v[i] + s.v_a * old.a[i]);
+            }
+            (free.y[w], free.rate[w]) = (y, rate);
+        }
+    }
+
+    /// Takes the vehicle to the step's end under the scaled forces `lambda' = (1 - alpha_f) lambda` of its wheels, and accounts for
+    /// the step.
+    pub(crate) fn finish(
+        &self,
+        ride: &mut Ride,
+        free: &mut FreeRide,
+        scaled: impl Fn(usize) -> f64,
+        under: UnderWheels<'_>,
+        driven_m_s2: f64,
+    ) -> RideEnergies {
+        let (s, springs) = (&self.scheme, &*self.springs);
+        let (n, wheels) = (ride.z.len(), springs.wheels.len());
+        for w in 0..wheels {
+            let force = scaled(w);
+            if force != 0.0 {
+                for i in 0..n {
+                    free.d[i] += self.lift[(i, w)] * force;
+                }
+            }
+        }
+        let mut energies = RideEnergies {
+            work: -under.on_deck_j,
+            ..RideEnergies::default()
+        };
+        // each term of the balance at alpha times the change of the state
+        let mut spent = 0.0;
+        for i in 0..n {
+            let [z, v, a] = [ride.z[i], ride.v[i], ride.a[i]];
+            let d = free.d[i];
+            let v_1 = s.c_v * d + s.v_v * v + s.v_a * a;
+            let a_1 = s.c_a * d + s.a_v * v + s.a_a * a;
+            spent += d * springs.inertia[i] * s.at_m(a_1, a);
+            energies.work -= springs.weight_n[i] * d;
+            if springs.motions[i] == VehicleMotion::Pitch {
+                energies.work += d * springs.braking_kg_m * s.at_f(driven_m_s2, ride.driven_m_s2);
+            }
+            // the old state in place of what is known, which is not needed any more
+            free.known[i] = v;
+            (ride.z[i], ride.v[i], ride.a[i]) = (z + d, v_1, a_1);
+        }
+        for i in 0..n {
+            for j in 0..n {
+                let at_f = s.at_f(ride.z[j], ride.z[j] - free.d[j]);
+                spent += free.d[i] * springs.stiffness[(i, j)] * at_f;
+                energies.dampers += free.d[i] * springs.damping[(i, j)] * s.at_f(ride.v[j], free.known[j]);
+            }
+        }
+        for w in 0..wheels {
+            let old_under_m = std::mem::replace(&mut ride.under_m[w], under.height_m[w]);
+            let raised: f64 = springs.wheels[w].row.iter().zip(&free.d).map(|(g, d)| g * d).sum();
+            let (before, now) = (ride.wheels_n[w], scaled(w) / (1.0 - s.alpha_f));
+            let [law, spring] = ride.by_law_n(springs, w, under.rate_m_s[w]);
+            let spring_before = std::mem::replace(&mut ride.springs_n[w], spring);
+            let (whole, of_spring) = (s.at_f(law, before), s.at_f(spring, spring_before));
+            let rise = under.height_m[w] - old_under_m;
+            spent += of_spring * (rise - raised);
+            energies.dampers += (whole - of_spring) * (rise - raised);
+            energies.work += s.at_f(now, before) * rise;
+            ride.wheels_n[w] = now;
+        }
+        ride.driven_m_s2 = driven_m_s2;
+        let stored = ride.energy_j(springs);
+        energies.stored = stored - std::mem::replace(&mut ride.stored_j, stored);
+        energies.numerical = spent - energies.stored;
+        energies
+    }
+}
+
+fn dot(row: &[f64], x: &[f64]) -> f64 {
+    row.iter().zip(x).map(|(a, b)| a * b).sum()
+}
