@@ -12,4 +12,5 @@ mod foundation;
 mod gap_oscillator;
 mod moving_load;
 mod moving_mass;
+mod sprung;
 mod two_modules;

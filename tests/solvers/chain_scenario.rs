@@ -264,15 +264,18 @@ fn what_the_chain_cannot_do_is_refused_by_its_key() {
             "joints[7].connectors.stop_tension.gap_m",
             json!({ "joints": joint(json!({ "stop_tension": { "gap_m": 0.01, "stiffness_n_m": 1e8 } })) }),
         ),
-        ("speed_m_s", json!({ "traffic": [{ "speed_m_s": 3 }] })),
         (
             "traffic",
             json!({ "speed_m_s": null, "traffic": [{ "speed_m_s": 3 }, { "speed_m_s": 3 }] }),
         ),
         ("traffic", json!({ "speed_m_s": null, "traffic": [] })),
         (
-            "traffic[0].start_time_s",
-            json!({ "speed_m_s": null, "traffic": [{ "speed_m_s": 3, "start_time_s": 1 }] }),
+            "traffic[0].start_s",
+            json!({ "speed_m_s": null, "traffic": [{ "speed_m_s": 3, "start_s": 1 }] }),
+        ),
+        (
+            "traffic",
+            json!({ "analysis": { "kind": "static" }, "load_x_m": 3, "speed_m_s": null, "traffic": [{ "speed_m_s": 3 }] }),
         ),
         (
             "traffic[0].speed_m_s",

@@ -19,3 +19,4 @@ mod ramps;
 mod shapes;
 mod stresses;
 mod superelement;
+mod traffic;

@@ -218,14 +218,18 @@ impl Chain {
     /// # Panics
     /// Where the load is refused.
     pub fn vehicle(&self) -> Vehicle {
-        let design = VehicleDesign {
+        self.vehicle_design().check(self.module.breadth_m).expect("a load")
+    }
+
+    /// That force as a vehicle is written.
+    pub fn vehicle_design(&self) -> VehicleDesign {
+        VehicleDesign {
             footprint_length_m: Some(self.footprint_length_m),
             track_y_m: Some(self.module.lines().to_vec()),
             inertia: Inertia::None,
             patch_points: self.points,
             ..VehicleDesign::default()
-        };
-        design.check(self.module.breadth_m).expect("a load")
+        }
     }
 
     /// The connection of a crossing.

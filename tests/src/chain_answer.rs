@@ -10,7 +10,7 @@ use pontoon_core::analysis::modes::Mode;
 use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
 use pontoon_core::bridge::Bridge;
 use pontoon_core::connector::{Connection, OwnLaws};
-use pontoon_core::response::{CrossingResponse, DeadState, Peak, Section, StaticResponse};
+use pontoon_core::response::{CrossingResponse, DeadState, Peak, Section, StaticResponse, WheelPeaks};
 use pontoon_core::vehicle::Inertia;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
@@ -165,11 +165,29 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
         );
         largest.insert(time.clone(), row.map_or(Value::Null, |row| row[&time].clone()));
     }
-    if scenario.vehicle.inertia != Inertia::None {
+    let sprung = !response.recorded.wheels.is_empty();
+    if scenario.vehicle.inertia != Inertia::None || sprung {
         largest.insert("min_contact_force_n".into(), json!(response.min_contact_force_n));
     }
-    json!({ "kind": "crossing", "time_step_s": time_step_s, "positions": positions, "joints": joints,
-            "pins": pins, "banks": banks, "largest": largest })
+    let mut found = json!({ "kind": "crossing", "time_step_s": time_step_s, "positions": positions, "joints": joints,
+                            "pins": pins, "banks": banks, "largest": largest });
+    if sprung {
+        found["axles"] = json!(axles(&response.recorded.wheels));
+        found["contact_lost_s"] = json!(response.recorded.contact_lost_s);
+    }
+    found
+}
+
+/// Forces of the axles on springs, whose two wheels press alike.
+fn axles(wheels: &[WheelPeaks]) -> Vec<Value> {
+    let of = |wheels: &[WheelPeaks]| {
+        let all = wheels.len() as f64;
+        let first = wheels[0];
+        json!({ "vehicle": first.vehicle + 1, "axle": first.axle + 1, "largest_n": all * first.largest.value,
+                "largest_time_s": first.largest.time_s, "least_n": all * first.least.value,
+                "least_time_s": first.least.time_s, "contact_lost_s": first.lost_s })
+    };
+    wheels.chunk_by(|a, b| (a.vehicle, a.axle) == (b.vehicle, b.axle)).map(of).collect()
 }
 
 fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticResponse) -> Value {

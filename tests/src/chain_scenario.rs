@@ -4,13 +4,14 @@
 //! know how the chain is built, nor how it is asked.
 
 use crate::chain::Chain;
-use pontoon_core::analysis::crossing::Crossing;
+use pontoon_core::analysis::crossing::{Crossing, CrossingSolver};
 use pontoon_core::analysis::statics::StaticCase;
 use pontoon_core::bridge::{BankPlace, BankSpec, BridgeDesign, BridgeEnd, DeadSpec, Joints, Model};
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{Found, InvalidInput, Problem, bound, not_negative, positive, within};
 use pontoon_core::response::Record;
-use pontoon_core::traffic::Traffic;
+use pontoon_core::road::RoadDesign;
+use pontoon_core::traffic::{ColumnDesign, Deck, StudyVehicle, Traffic, TrafficDesign, TrafficEntry};
 use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
 use pontoon_plan::Refusal;
 use pontoon_plan::input::{Document, typed_value};
@@ -43,16 +44,9 @@ struct ScenarioSpec {
     speed_m_s: Option<f64>,
     load_x_m: Option<f64>,
     load_position: Option<usize>,
-    traffic: Option<Vec<Loaded>>,
-}
-
-/// A vehicle with what it weighs and how fast it is: an entry of the traffic, or the same keys of the scenario itself.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Loaded {
-    vehicle: Option<VehicleDesign>,
-    load_n: Option<f64>,
-    speed_m_s: Option<f64>,
+    traffic: Option<Vec<TrafficEntry>>,
+    column: Option<ColumnDesign>,
+    roughness: Option<RoadDesign>,
 }
 
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
@@ -154,17 +148,14 @@ impl ChainScenario {
         design.check()?;
         let connection = spec.connection(&chain)?;
         let own_laws = design.own_laws(connection, None)?;
-        let (under, loaded) = spec.loaded()?;
-        let of_vehicle = |e: InvalidInput| e.under(&format!("{under}vehicle"));
-        let vehicle = match &loaded.vehicle {
-            None => chain.vehicle(),
-            Some(vehicle) => plane(&vehicle.check(chain.module.breadth_m).map_err(of_vehicle)?).map_err(of_vehicle)?,
-        };
-        let load_n = weight(&format!("{under}load_n"), loaded.load_n, &vehicle, &chain)?;
+        let of_vehicle = |e: InvalidInput| e.under("vehicle");
+        let own = spec.vehicle.clone().unwrap_or_else(|| chain.vehicle_design());
+        let vehicle = own.check(chain.module.breadth_m).map_err(of_vehicle)?;
+        plane(&vehicle).map_err(of_vehicle)?;
         let stiffness = design.connectors.stiffness_n_m;
         let task = match spec.analysis.kind {
             Kind::Crossing => {
-                let speed_m_s = spec.speed(&format!("{under}speed_m_s"), loaded.speed_m_s)?;
+                let traffic = spec.driving(&chain, &own, &design)?;
                 let analysis = spec.analysis;
                 let crossing = Crossing {
                     connection,
@@ -183,23 +174,30 @@ impl ChainScenario {
                     time_step_s: time_step(
                         time_step_s.or(analysis.time_step_s),
                         &design,
-                        &vehicle,
-                        (speed_m_s, crossing.tail_s),
+                        (&traffic, crossing.tail_s),
                     )?,
-                    traffic: Traffic::single(&vehicle, load_n, speed_m_s),
+                    traffic,
                     spectral_radius: within("analysis.spectral_radius", radius, 0.0, 1.0)?,
                     crossing,
                 }
             }
             Kind::Modes => ChainTask::Modes,
             Kind::Static => {
-                let moves = loaded.speed_m_s.map(|_| format!("{under}speed_m_s"));
+                let moving = [
+                    ("speed_m_s", spec.speed_m_s.is_some()),
+                    ("traffic", spec.traffic.is_some()),
+                    ("column", spec.column.is_some()),
+                    ("roughness", spec.roughness.is_some()),
+                ];
+                none_of(&moving, "a key of crossings", "none of them in a static case")?;
+                let load_n = spec.load_n.or(vehicle.weight_n).unwrap_or(chain.weight_n);
+                positive("load_n", load_n)?;
                 ChainTask::Static(StaticCase {
                     connection,
                     connector_stiffness_n_m: stiffness,
                     own_laws,
                     load_n,
-                    load_x_m: spec.place(&design, moves)?,
+                    load_x_m: spec.place(&design)?,
                     places_x_m: Vec::new(),
                     dead: None,
                 })
@@ -240,6 +238,7 @@ fn filled(mut document: Value, chain: &Chain) -> Value {
         }
     };
     fill(document.get_mut("vehicle"));
+    fill(document.get_mut("column").and_then(|column| column.get_mut("vehicle")));
     let traffic = document.get_mut("traffic").and_then(Value::as_array_mut);
     for entry in traffic.into_iter().flatten() {
         fill(entry.get_mut("vehicle"));
@@ -297,7 +296,7 @@ fn with_joints(mut design: BridgeDesign, joints: &Joints) -> Result<BridgeDesign
 }
 
 /// A vehicle that loads both lines of the chain alike.
-fn plane(vehicle: &Vehicle) -> Result<Vehicle, InvalidInput> {
+fn plane(vehicle: &Vehicle) -> Result<(), InvalidInput> {
     for axle in 0..vehicle.axles {
         let points = vehicle.patches.iter().filter(|patch| patch.axle == axle);
         let aside: f64 = points.flat_map(|patch| &patch.points).map(|p| p.share * p.y_m).sum();
@@ -307,37 +306,24 @@ fn plane(vehicle: &Vehicle) -> Result<Vehicle, InvalidInput> {
             return Err(InvalidInput::new(key, "a vehicle to one side", allowed).because(Problem::Conflict));
         }
     }
-    Ok(vehicle.clone())
-}
-
-/// What the vehicle weighs `[N]`: its axles together, or the load, or the chain's own.
-fn weight(key: &str, load_n: Option<f64>, vehicle: &Vehicle, chain: &Chain) -> Result<f64, InvalidInput> {
-    match (vehicle.weight_n, load_n) {
-        (Some(of_axles), Some(load)) => {
-            let allowed = format!("no load beside those of the axles, {} N together", bound(of_axles));
-            Err(InvalidInput::new(key, load, allowed).because(Problem::Misplaced))
-        }
-        (Some(of_axles), None) => Ok(of_axles),
-        (None, load_n) => positive(key, load_n.unwrap_or(chain.weight_n)),
-    }
+    Ok(())
 }
 
 /// A time step of at most the passage of a module, which does not make too many steps.
 fn time_step(
     asked_s: Option<f64>,
     design: &BridgeDesign,
-    vehicle: &Vehicle,
-    (speed_m_s, tail_s): (f64, f64),
+    (traffic, tail_s): (&Traffic, f64),
 ) -> Result<f64, InvalidInput> {
     let key = "analysis.time_step_s";
     let step = positive(key, asked_s.unwrap_or(TIME_STEP_S))?;
-    let passage = design.shortest_module_m() / speed_m_s;
+    let fastest_m_s = traffic.vehicles.iter().map(|driven| driven.drive.speed_m_s).fold(0.0, f64::max);
+    let passage = design.shortest_module_m() / fastest_m_s;
     if step > passage {
         let allowed = format!("at most {}, the passage of one module", bound(passage));
         return Err(InvalidInput::new(key, step, allowed).because(Problem::Conflict));
     }
-    let way = design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
-    let steps = (way / speed_m_s + tail_s) / step;
+    let steps = CrossingSolver::steps(design.length_m(), traffic, step, tail_s) as f64;
     if steps > MOST_STEPS {
         let allowed = format!("a crossing of at most {MOST_STEPS} steps");
         return Err(InvalidInput::new(
@@ -363,59 +349,51 @@ impl ScenarioSpec {
         })
     }
 
-    /// The one vehicle, and where its keys stand.
-    fn loaded(&self) -> Result<(&'static str, Loaded), InvalidInput> {
-        let own = Loaded {
-            vehicle: self.vehicle.clone(),
-            load_n: self.load_n,
-            speed_m_s: self.speed_m_s,
-        };
-        let Some(traffic) = &self.traffic else {
-            return Ok(("", own));
-        };
-        let beside = [
-            ("vehicle", own.vehicle.is_some()),
-            ("load_n", own.load_n.is_some()),
-            ("speed_m_s", own.speed_m_s.is_some()),
-        ];
-        if let Some((key, _)) = beside.iter().find(|(_, given)| *given) {
-            let refused = InvalidInput::new(*key, format!("{key} beside traffic"), "one of the two");
-            return Err(refused.because(Problem::Misplaced));
-        }
-        match traffic.as_slice() {
-            [one] => Ok(("traffic[0].", one.clone())),
-            more => {
-                let found = format!("{} vehicles", more.len());
-                Err(InvalidInput::new(
-                    "traffic",
-                    found,
-                    "exactly one: no vehicle crosses beside another",
-                ))
-            }
-        }
-    }
-
-    /// The speed of a crossing, in which no load stands.
-    fn speed(&self, key: &str, speed_m_s: Option<f64>) -> Result<f64, InvalidInput> {
+    /// What drives in a crossing, in which no load stands; the chain's own load where nobody says a weight.
+    fn driving(&self, chain: &Chain, own: &VehicleDesign, design: &BridgeDesign) -> Result<Traffic, InvalidInput> {
         let places = [
             ("load_x_m", self.load_x_m.is_some()),
             ("load_position", self.load_position.is_some()),
         ];
         none_of(&places, "a place of the load", "none in a crossing")?;
-        match speed_m_s {
-            Some(speed) => positive(key, speed),
-            None => Err(InvalidInput::new(key, Found::Nothing, "a finite number above 0").because(Problem::Missing)),
+        let weight_n = |vehicle: Option<&VehicleDesign>, own_n: Option<f64>| {
+            let states = vehicle.unwrap_or(own).states_weight();
+            own_n.or(self.load_n).or((!states).then_some(chain.weight_n))
+        };
+        let mut asked = TrafficDesign {
+            traffic: self.traffic.clone(),
+            column: self.column.clone(),
+            roughness: self.roughness.clone(),
+        };
+        for entry in asked.traffic.iter_mut().flatten() {
+            entry.load_n = weight_n(entry.vehicle.as_ref(), entry.load_n);
         }
+        if let Some(column) = &mut asked.column {
+            column.load_n = weight_n(column.vehicle.as_ref(), column.load_n);
+        }
+        let study = StudyVehicle {
+            design: own,
+            load_n: weight_n(None, None),
+            speed_m_s: self.speed_m_s,
+        };
+        let deck = Deck {
+            length_m: design.length_m(),
+            breadth_m: chain.module.breadth_m,
+        };
+        let traffic = asked.traffic(study, deck)?;
+        for (number, driven) in traffic.vehicles.iter().enumerate() {
+            plane(&driven.vehicle).map_err(|e| e.under(&format!("traffic[{number}].vehicle")))?;
+        }
+        Ok(traffic)
     }
 
-    /// The place of a load that stands; `moves` is the key of a speed that it has all the same.
-    fn place(&self, design: &BridgeDesign, moves: Option<String>) -> Result<f64, InvalidInput> {
+    /// The place of a load that stands.
+    fn place(&self, design: &BridgeDesign) -> Result<f64, InvalidInput> {
         let analysis = self.analysis;
         let of_crossings = [
             ("analysis.time_step_s", analysis.time_step_s.is_some()),
             ("analysis.tail_s", analysis.tail_s.is_some()),
             ("analysis.spectral_radius", analysis.spectral_radius.is_some()),
-            (moves.as_deref().unwrap_or_default(), moves.is_some()),
         ];
         none_of(&of_crossings, "a key of crossings", "none of them in a static case")?;
         let positions = design.positions();

@@ -4,6 +4,7 @@
 //!
 //! All numbers are of the vehicle at its own weight: one of other weight has forces, masses and springs scaled, motions not.
 
+use crate::response::RideReading;
 use crate::scheme::Scheme;
 use crate::vehicle::{Springs, VehicleMotion};
 use nalgebra::DMatrix;
@@ -84,6 +85,17 @@ impl Ride {
         let spring_n = of.stiffness_n_m * (self.under_m[wheel] - dot(&of.row, &self.z));
         let damper_n = of.damping_n_s_m * (rate_m_s - dot(&of.row, &self.v));
         [spring_n + damper_n, spring_n].map(|force| force.max(0.0))
+    }
+
+    /// The vehicle to be read, its masses and springs so many times as large.
+    pub(crate) fn reading<'a>(&'a self, springs: &'a Springs, scale: f64) -> RideReading<'a> {
+        RideReading {
+            wheels_n: &self.wheels_n,
+            scale,
+            state: &self.z,
+            rest: &springs.rest,
+            accelerations: &self.a,
+        }
     }
 
     /// How far each motion is from rest on a level road `[m, rad]`.

@@ -79,9 +79,9 @@ impl Load {
                 row,
                 rides,
             };
+            axles[patch.axle].1 &= placement.tells(patch);
             let mut mean: Vec<(usize, f64)> = Vec::new();
             for point in &patch.points {
-                axles[patch.axle].1 &= placement.is_settled(point.along);
                 let Some(row) = placement.row(track, point) else {
                     continue;
                 };

@@ -108,6 +108,20 @@ impl VehiclePlacement {
         self.cells[along].is_some_and(|cell| covered_m(cell) >= self.settling_m)
     }
 
+    /// Whether all points of a patch are on the bridge.
+    pub(crate) fn is_on(&self, patch: &Patch) -> bool {
+        patch.points.iter().all(|point| self.cells[point.along].is_some())
+    }
+
+    /// Whether the contact force under a patch tells anything: of a mass on the deck once it has settled.
+    #[inline(always)]
+    pub(crate) fn tells(&self, patch: &Patch) -> bool {
+        if patch.rigid == 0.0 {
+            return self.is_on(patch);
+        }
+        patch.points.iter().all(|point| self.is_settled(point.along))
+    }
+
     /// Place of a point along the bridge `[m]`.
     pub(crate) fn x_m(&self, point: &WheelPoint) -> f64 {
         self.place_m(point.ahead_m)
@@ -121,12 +135,6 @@ impl VehiclePlacement {
         } else {
             self.heading.front_x_m + ahead_m
         }
-    }
-
-    /// Whether any point is on the bridge.
-    #[inline(always)]
-    pub(crate) fn is_on_bridge(&self) -> bool {
-        self.cells.iter().any(Option::is_some)
     }
 
     /// The track's row under a point; none off the bridge.

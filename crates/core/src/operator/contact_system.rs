@@ -135,7 +135,8 @@ impl ContactSystem {
         match settle(&mut system, &mut self.states, &mut self.seen, limit) {
             Ok(((), iterations)) => {
                 self.linear.e.copy_from_slice(&self.linear.found);
-                let switches = self.states.iter().zip(&self.before).filter(|(a, b)| a != b).count();
+                let links = self.states.iter().zip(&self.before).take(self.links);
+                let switches = links.filter(|(a, b)| a != b).count();
                 Ok((iterations, switches))
             }
             Err(stuck) => {

@@ -21,7 +21,7 @@ use super::vector::Ops;
 use super::wheel_lines::WheelCompliance;
 use crate::connector::State;
 use crate::contact::NotSettled;
-use crate::response::{DeadState, JointReading, PinPeaks, Reading, Statistics};
+use crate::response::{DeadState, JointReading, PinPeaks, Reading, RideReading, Statistics};
 use crate::riding::{Ride, RidingStep};
 use pulp::Simd;
 use std::sync::Arc;
@@ -422,6 +422,17 @@ impl JointReading for LaneReading<'_> {
 }
 
 impl Reading for LaneReading<'_> {
+    fn ride(&self, vehicle: usize) -> Option<RideReading<'_>> {
+        let mut rides = self.of.lanes[self.lane].rides.iter();
+        rides.find(|ride| ride.vehicle == vehicle)?.reading()
+    }
+
+    fn is_on(&self, vehicle: usize, wheel: usize) -> bool {
+        let lane = &self.of.lanes[self.lane];
+        let of = lane.crossing.as_ref().map(|crossing| &crossing.wheels.vehicles[vehicle].vehicle);
+        of.is_some_and(|of| lane.placements[vehicle].is_on(&of.patches[wheel]))
+    }
+
     fn times_s(&self) -> [f64; 2] {
         let now_s = self.of.lanes[self.lane].time_s;
         [now_s, self.of.pins.balance_s(self.lane).unwrap_or(now_s)]

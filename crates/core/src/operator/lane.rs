@@ -47,7 +47,7 @@ pub(super) struct Lane {
     pub(super) crossing: Option<CrossingInput>,
     /// Time at the end of the step under way `[s]`, and where the vehicles are then.
     pub(super) time_s: f64,
-    placements: Vec<VehiclePlacement>,
+    pub(super) placements: Vec<VehiclePlacement>,
     pub(super) contact: ContactSystem,
     pub(super) dashpots: Option<LaneDashpots>,
     pub(super) dead: Option<LaneDead>,
@@ -162,12 +162,12 @@ impl Lane {
         for ride in &mut self.rides {
             ride.begin_step(self.time_s, &self.placements[ride.vehicle]); // (V4)
         }
-        // springs of the last step stand where the weights of this one are written
-        if !self.weights.is_empty() || self.pressed {
+        if !self.weights.is_empty() {
             self.unloaded = 0;
             loads.apply_weights(lane, &crossing.wheels, &self.weights);
-        } else if self.unloaded < 2 {
-            self.unloaded += 1;
+        } else if self.unloaded < 2 || self.pressed {
+            // springs of the last step stand where this one begins
+            self.unloaded = if self.pressed { 0 } else { self.unloaded + 1 };
             loads.left().into_iter().for_each(|forces| forces.clear(lane));
         }
     }
@@ -350,8 +350,7 @@ fn end_rides(
 #[inline(always)]
 fn settle_axles(of: &VehicleLines, placement: &VehiclePlacement, axles: &mut [(f64, bool)]) {
     for patch in &of.vehicle.patches {
-        let settled = patch.points.iter().all(|point| placement.is_settled(point.along));
-        axles[of.first_axle + patch.axle].1 &= settled;
+        axles[of.first_axle + patch.axle].1 &= placement.tells(patch);
     }
 }
 

@@ -3,6 +3,7 @@
 //! Knows one vehicle beside the deck. Does not know modes, nor where the deck is under its wheels.
 
 use crate::bridge::VehiclePlacement;
+use crate::response::RideReading;
 use crate::riding::{FreeRide, Ride, RideEnergies, RidingStep, UnderWheels};
 use crate::traffic::{Presence, Traffic};
 use std::sync::Arc;
@@ -79,6 +80,11 @@ impl LaneRide {
         if self.awake {
             self.step.predict(&self.ride, driven_m_s2(placement), &mut self.free);
         }
+    }
+
+    /// The vehicle as it is, to be read; none while it is not there.
+    pub(super) fn reading(&self) -> Option<RideReading<'_>> {
+        self.awake.then(|| self.ride.reading(self.step.springs(), self.scale))
     }
 
     /// Whether it is there.

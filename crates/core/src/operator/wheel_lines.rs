@@ -173,20 +173,15 @@ impl WheelLines {
         self.most_nodes
     }
 
-    /// No fewer nodes than vehicles take that are not on the deck yet.
+    /// No fewer nodes, masses and wheels than vehicles have that are not on the deck yet.
     pub(crate) fn most_nodes_of(operator: &BridgeOperator, traffic: &Traffic) -> usize {
-        let lines = places_across(traffic).len();
         let of = |vehicle: &Vehicle| {
-            if rides(vehicle) {
-                let own = lines_across(vehicle).len() * (vehicle_band(&operator.track, vehicle) + 1);
-                own.max(vehicle.patches.len())
-            } else {
-                0
-            }
+            let wheels = if vehicle.springs.is_some() { vehicle.patches.len() } else { 0 };
+            // as many masses as nodes at most, and the wheels
+            lines_across(vehicle).len() * (vehicle_band(&operator.track, vehicle) + 1) + wheels
         };
-        let sum: usize = traffic.vehicles.iter().map(|driven| of(&driven.vehicle)).sum();
-        debug_assert!(sum == 0 || lines > 0);
-        sum
+        let vehicles = traffic.vehicles.iter().filter(|driven| rides(&driven.vehicle));
+        vehicles.map(|driven| of(&driven.vehicle)).sum()
     }
 }
 

@@ -6,6 +6,7 @@ mod dead;
 mod energy;
 mod peaks;
 mod recorder;
+mod rides;
 mod subject;
 
 pub use dead::{DeadState, ModuleAtRest};
@@ -16,6 +17,8 @@ pub use peaks::{
 };
 pub(crate) use recorder::Recorder;
 pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
+pub use rides::{BodyMotion, MotionPeaks, WheelPeaks};
+pub(crate) use rides::{RidePart, RideReading};
 use std::sync::Arc;
 pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
 pub(crate) use subject::{BankPart, BankSource, JointParts, JointReading, Reading};
@@ -46,7 +49,7 @@ pub struct CrossingResponse {
     pub peak_edge_deflection_m: f64,
     /// Largest roll of a module end, either sense `[rad]`.
     pub peak_roll_rad: f64,
-    /// Smallest contact force of an axle while all its points are on the bridge `[N]`; below zero it would have lifted off.
+    /// Smallest contact force of an axle while all its points are on the bridge `[N]`; below zero a rigid one would have lifted off.
     pub min_contact_force_n: f64,
     /// Whether a corner of a module's bottom rose above the water; unknown without a draft.
     pub bottom_emerged: Option<bool>,

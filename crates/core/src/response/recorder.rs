@@ -4,6 +4,7 @@
 //! Knows what was asked for. Does not know which solver steps, nor what a number means to a table.
 
 use super::peaks::{BankPeaks, ForcePeaks, Peak, PlacePeaks, SectionPeaks, resultant_n};
+use super::rides::{MotionPeaks, RidePart, RideWatch, WheelPeaks};
 use super::subject::{Axis, BankPart, JointParts, Reading, Section, Subject, read};
 
 /// What to record of a crossing.
@@ -115,6 +116,12 @@ pub struct Recorded {
     pub places: Vec<PlacePeaks>,
     /// Peaks of banks: of each bank's sum, then of each place.
     pub banks: Vec<BankPeaks>,
+    /// Extremes of the wheels of vehicles on springs, vehicle after vehicle.
+    pub wheels: Vec<WheelPeaks>,
+    /// Extremes of their bodies' motion.
+    pub motions: Vec<MotionPeaks>,
+    /// For how long any wheel on springs had left the deck `[s]`; none where there is no such wheel.
+    pub contact_lost_s: Option<f64>,
     /// Largest deflection of each corner of the modules' decks, see [`super::DeadState::deck_corners_m`]; none where nobody asks.
     pub corners: Vec<Peak>,
     /// Peaks of angles and section forces, joint after joint.
@@ -136,12 +143,18 @@ pub(crate) struct Recorder {
     banks: Vec<BankPart>,
     told: Vec<Subject>,
     positions: usize,
+    rides: RideWatch,
     recorded: Recorded,
 }
 
 impl Recorder {
-    /// Begins to record, on a bridge of so many positions and these joints.
-    pub(crate) fn new(positions: usize, (joints, banks): (Vec<JointParts>, Vec<BankPart>), record: &Record) -> Self {
+    /// Begins to record at a time, on a bridge of so many positions, joints and banks under vehicles on springs.
+    pub(crate) fn new(
+        positions: usize,
+        (joints, banks): (Vec<JointParts>, Vec<BankPart>),
+        (rides, from_s): (Vec<RidePart>, f64),
+        record: &Record,
+    ) -> Self {
         let place = |&x_m: &f64| PlacePeaks {
             x_m,
             deflection: Peak::default(),
@@ -174,6 +187,7 @@ impl Recorder {
                 record.told(positions, &joints)
             },
             positions,
+            rides: RideWatch::new(rides, from_s),
             recorded: Recorded {
                 banks: bank_peaks(&banks),
                 places: record.places_x_m.iter().map(place).collect(),
@@ -200,10 +214,14 @@ impl Recorder {
             ..
         } = &mut self.recorded;
         let unread = places.is_empty() && sections.is_empty() && at_peaks.is_empty();
-        if unread && banks.is_empty() && corners.is_empty() {
+        if unread && banks.is_empty() && corners.is_empty() && self.rides.is_empty() {
             return;
         }
         let [now_s, balance_s] = reading.times_s();
+        if !self.rides.is_empty() {
+            self.rides
+                .take(now_s, |vehicle| reading.ride(vehicle), |vehicle, wheel| reading.is_on(vehicle, wheel));
+        }
         take_banks(&self.banks, banks, reading);
         for (index, corner) in corners.iter_mut().enumerate() {
             corner.take(reading.corner_m(index), now_s);
@@ -245,7 +263,10 @@ impl Recorder {
 
     /// What was recorded.
     pub(crate) fn finish(&mut self) -> Recorded {
-        std::mem::take(&mut self.recorded)
+        let (mut recorded, rides) = (std::mem::take(&mut self.recorded), std::mem::take(&mut self.rides));
+        recorded.contact_lost_s = (!rides.is_empty()).then_some(rides.lost_s);
+        (recorded.wheels, recorded.motions) = (rides.wheels, rides.motions);
+        recorded
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Knows which numbers a bridge has and which a joint's others come from. Does not know solvers or tables.
 
+use super::rides::RideReading;
+
 /// What a recorded number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
@@ -201,6 +203,10 @@ pub(crate) trait Reading: JointReading {
     fn place_m(&self, index: usize) -> f64;
     /// Deflection of a corner of a module's deck `[m]`.
     fn corner_m(&self, index: usize) -> f64;
+    /// A vehicle on springs; none while it is not there.
+    fn ride(&self, vehicle: usize) -> Option<RideReading<'_>>;
+    /// Whether all points of a wheel are on the bridge.
+    fn is_on(&self, vehicle: usize, wheel: usize) -> bool;
 }
 
 impl JointParts {

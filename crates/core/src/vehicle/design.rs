@@ -159,6 +159,13 @@ impl VehicleDesign {
         }
     }
 
+    /// Whether it says what it weighs: by loads of its axles, or by masses on springs.
+    pub fn states_weight(&self) -> bool {
+        let axles = self.axles.iter().flatten();
+        let says = |axle: &Axle| axle.load_n.is_some() || axle.tyre_stiffness_n_m.is_some();
+        self.body.is_some() || axles.into_iter().any(says)
+    }
+
     /// The vehicle with its patches and points, checked against a deck of breadth `deck_breadth_m`.
     ///
     /// # Errors

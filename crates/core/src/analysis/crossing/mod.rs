@@ -150,8 +150,10 @@ impl CrossingSolver {
             dashpots: crossing.dashpots(),
             dead: crossing.dead.clone(),
         };
-        let observer = Observer::new(&self.bridge, traffic, crossing);
-        CrossingRun::new(self, stepper, observer, crossing.tail_s)
+        let span = StepSpan::new(length_m, traffic, self.settings.time_step_s, crossing.tail_s);
+        let from_s = span.time_s(0, self.settings.time_step_s);
+        let observer = Observer::new(&self.bridge, traffic, crossing, from_s);
+        CrossingRun::new(self, stepper, observer, span)
     }
 
     /// The time step after some halvings `[s]`.

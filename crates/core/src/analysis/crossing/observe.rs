@@ -9,7 +9,7 @@ use crate::contact::rest_force_n;
 use crate::fem::SparseRow;
 use crate::response::{
     CrossingResponse, DeadState, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks,
-    PositionPeaks, Reading, Recorder, Statistics,
+    PositionPeaks, Reading, Recorder, RideReading, Statistics,
 };
 use crate::traffic::Traffic;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ pub(super) struct Observer<'a> {
 }
 
 impl<'a> Observer<'a> {
-    pub(super) fn new(bridge: &'a Bridge, traffic: &'a Traffic, crossing: &Crossing) -> Self {
+    pub(super) fn new(bridge: &'a Bridge, traffic: &'a Traffic, crossing: &Crossing, from_s: f64) -> Self {
         let (design, record) = (bridge.design(), &crossing.record);
         let positions = (1..=design.positions())
             .map(|position| PositionPeaks {
@@ -69,7 +69,12 @@ impl<'a> Observer<'a> {
             energy: EnergyBalance::default(),
             dead: crossing.dead.clone(),
             places: record.places_x_m.iter().map(|&x_m| bridge.place(x_m)).collect(),
-            recorder: Recorder::new(design.positions(), (joint_parts(design), bridge.bank_parts()), record),
+            recorder: Recorder::new(
+                design.positions(),
+                (joint_parts(design), bridge.bank_parts()),
+                (traffic.ride_parts(), from_s),
+                record,
+            ),
         }
     }
 
@@ -91,6 +96,7 @@ impl<'a> Observer<'a> {
         }
         self.recorder.take(&MotionReading {
             bridge: self.bridge,
+            traffic: self.traffic,
             places: &self.places,
             now: new,
             dead: self.dead.as_deref(),
@@ -137,6 +143,7 @@ impl<'a> Observer<'a> {
     pub(super) fn record_history(&mut self, now: &Motion) {
         self.recorder.note(&MotionReading {
             bridge: self.bridge,
+            traffic: self.traffic,
             places: &self.places,
             now,
             dead: self.dead.as_deref(),
@@ -163,6 +170,7 @@ impl<'a> Observer<'a> {
 /// A motion, to be read.
 struct MotionReading<'a> {
     bridge: &'a Bridge,
+    traffic: &'a Traffic,
     places: &'a [SparseRow],
     now: &'a Motion,
     dead: Option<&'a DeadState>,
@@ -185,6 +193,18 @@ impl Reading for MotionReading<'_> {
 
     fn corner_m(&self, index: usize) -> f64 {
         0.0 - self.bridge.deck_corners[index].dot(&self.now.u)
+    }
+
+    fn ride(&self, vehicle: usize) -> Option<RideReading<'_>> {
+        let mut riders = self.now.load.riders.iter();
+        riders.find(|rider| rider.vehicle == vehicle && rider.is_spring())?;
+        let driven = &self.traffic.vehicles[vehicle];
+        Some(self.now.rides[vehicle].reading(driven.vehicle.springs.as_ref()?, driven.scale()))
+    }
+
+    fn is_on(&self, vehicle: usize, wheel: usize) -> bool {
+        let (placement, of) = (&self.now.load.placements[vehicle], &self.traffic.vehicles[vehicle].vehicle);
+        placement.is_on(&of.patches[wheel])
     }
 }
 

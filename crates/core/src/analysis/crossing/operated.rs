@@ -10,7 +10,7 @@ use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
 };
-use crate::response::{BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder};
+use crate::response::{BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder, RideReading};
 use crate::riding::RidingStep;
 use crate::traffic::{Driven, Traffic};
 use std::sync::{Arc, OnceLock};
@@ -232,7 +232,8 @@ impl<C: StepClock> Crew<'_, C> {
         self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
         let design = &self.solver.design;
         let parts = (joint_parts(design), self.solver.banks.clone());
-        let mut recorder = Recorder::new(design.positions(), parts, &crossing.record);
+        let rides = (traffic.ride_parts(), start_s);
+        let mut recorder = Recorder::new(design.positions(), parts, rides, &crossing.record);
         recorder.note(&Start {
             time_s: start_s,
             dead: crossing.dead.as_deref(),
@@ -450,5 +451,13 @@ impl Reading for Start<'_> {
 
     fn corner_m(&self, _: usize) -> f64 {
         0.0
+    }
+
+    fn ride(&self, _: usize) -> Option<RideReading<'_>> {
+        None
+    }
+
+    fn is_on(&self, _: usize, _: usize) -> bool {
+        false
     }
 }

@@ -29,12 +29,9 @@ impl<'a> CrossingRun<'a> {
         solver: &'a CrossingSolver,
         stepper: Stepper<'a>,
         mut observer: Observer<'a>,
-        tail_s: f64,
+        span: StepSpan,
     ) -> Self {
-        let h = solver.settings.time_step_s;
-        let length_m = solver.bridge.design().length_m();
-        let span = StepSpan::new(length_m, stepper.traffic, h, tail_s);
-        let now = stepper.at_rest(span.time_s(0, h));
+        let now = stepper.at_rest(span.time_s(0, solver.settings.time_step_s));
         observer.record_history(&now);
         Self {
             solver,

@@ -1,10 +1,15 @@
 //! Traffic: which vehicles drive over a bridge, how fast, when and which way.
 //!
-//! Knows each vehicle's way against time and whether two run into each other. Does not know the deck's motion.
+//! Knows each vehicle's way against time and whether two run into each other; `design` is a traffic as it is written. Does not know
+//! the deck's motion.
+
+mod design;
 
 use crate::input::{InvalidInput, Problem, bound, positive};
+use crate::response::{BodyMotion, RidePart};
 use crate::road::Road;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleMotion};
+pub use design::{ColumnDesign, Deck, SpacingFrom, StudyVehicle, TrafficDesign, TrafficEntry, VehicleOrFile};
 use std::sync::Arc;
 
 /// How a vehicle drives. Its way is what its front has covered since the end of the bridge that it comes from.
@@ -286,6 +291,25 @@ impl Traffic {
             }
         };
         self.vehicles.iter().map(presence).collect()
+    }
+
+    /// What its vehicles on springs consist of.
+    pub(crate) fn ride_parts(&self) -> Vec<RidePart> {
+        let of = |(vehicle, driven): (usize, &Driven)| {
+            let springs = driven.vehicle.springs.as_ref()?;
+            let of_body = |(place, motion): (usize, &VehicleMotion)| match motion {
+                VehicleMotion::Bounce => Some((BodyMotion::Bounce, place)),
+                VehicleMotion::Pitch => Some((BodyMotion::Pitch, place)),
+                VehicleMotion::Roll => Some((BodyMotion::Roll, place)),
+                VehicleMotion::Hop { .. } => None,
+            };
+            Some(RidePart {
+                vehicle,
+                wheels: driven.vehicle.patches.iter().map(|patch| (patch.axle, patch.y_m)).collect(),
+                motions: springs.motions.iter().enumerate().filter_map(of_body).collect(),
+            })
+        };
+        self.vehicles.iter().enumerate().filter_map(of).collect()
     }
 
     /// Height of the road under a wheel on springs and its slope along x, means over the points of its patch; `place_m` is where
