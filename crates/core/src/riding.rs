@@ -92,6 +92,7 @@ impl Ride {
         RideReading {
             wheels_n: &self.wheels_n,
             scale,
+            motions: &springs.motions,
             state: &self.z,
             rest: &springs.rest,
             accelerations: &self.a,

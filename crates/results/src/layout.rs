@@ -52,6 +52,8 @@ pub(super) struct Layout {
     auto: bool,
     /// Whether any job may be solved again.
     verify: bool,
+    /// Whether any job has a vehicle on springs.
+    springs: bool,
     /// What is kept of jobs.
     record: Arc<RecordSpec>,
 }
@@ -61,6 +63,7 @@ impl Layout {
     pub(super) fn new(study: &Study, jobs: &[Job]) -> Self {
         let (record, kind) = (&study.record, study.analysis.kind());
         let loaded = kind != Kind::Modes;
+        let springs = jobs.iter().any(Job::has_springs);
         let left = |name: &TableName| match name {
             TableName::Jobs => true,
             TableName::Positions => record.positions && loaded,
@@ -73,6 +76,7 @@ impl Layout {
             TableName::Banks => loaded && jobs.iter().any(|job| !job.bridge.design.banks.is_empty()),
             TableName::Dead => loaded && jobs.iter().any(|job| job.bridge.design.has_dead_load()),
             TableName::Freeboards => record.freeboards && loaded,
+            TableName::Wheels | TableName::Bodies => springs,
             TableName::AtPeaks => !record.at_peak_of.is_empty() && kind == Kind::Crossing,
             TableName::Joints => study.wear.is_some() && loaded,
         };
@@ -86,6 +90,7 @@ impl Layout {
                 .collect(),
             tables: TableName::ALL.into_iter().filter(left).collect(),
             auto: crossings().any(|crossing| crossing.analysis.time_step.tolerance().is_some()),
+            springs,
             verify: crossings().any(|crossing| crossing.analysis.verify().is_some()),
             record: Arc::clone(record),
         }
@@ -125,6 +130,8 @@ impl Layout {
                 ColumnSource::Freeboard(of) => {
                     push(&mut columns, column, rows(records, |record| &record.freeboards), of)
                 }
+                ColumnSource::Wheel(of) => push(&mut columns, column, rows(records, |record| &record.wheels), of),
+                ColumnSource::Body(of) => push(&mut columns, column, rows(records, |record| &record.bodies), of),
                 ColumnSource::Joint(of) => {
                     let rows = jobs.iter().flat_map(worn_joints);
                     columns.push(column.name, column.cells, rows.map(|row| of(&row)));
@@ -157,8 +164,13 @@ impl Layout {
             When::Pins => self.record.pins && self.kind != Kind::Modes,
             When::Sections => self.record.sections && self.kind != Kind::Modes,
             When::Freeboards => self.record.freeboards && self.kind != Kind::Modes,
+            When::Springs => self.springs,
+            When::VehicleHistories => !self.record.histories.vehicles.is_empty(),
             When::PlaceHistories => !self.record.histories.places_x_m.is_empty(),
-            When::PinHistories => !self.record.histories.pins.is_empty(),
+            When::PinHistories => {
+                let histories = &self.record.histories;
+                !(histories.pins.is_empty() && histories.vehicles.is_empty())
+            }
         }
     }
 }

@@ -42,6 +42,7 @@ mod results_error;
 mod summary;
 mod table;
 mod varying;
+mod vehicle_rows;
 mod verification;
 mod writer;
 
@@ -73,3 +74,4 @@ pub use writer::TableWriter;
 
 /// Version of this program, as tables and manifests carry it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub use vehicle_rows::{BodyRow, WheelRow};

@@ -3,7 +3,7 @@
 //! Knows words. Does not know tables.
 
 /// The words of `quantity`: what a history is of, with its unit and its sense.
-pub const QUANTITIES: [&str; 12] = [
+pub const QUANTITIES: [&str; 16] = [
     "deflection_m",
     "force_n",
     "pin_x_n",
@@ -16,6 +16,10 @@ pub const QUANTITIES: [&str; 12] = [
     "torsion_nm",
     "bending_nm",
     "lateral_bending_nm",
+    "wheel_n",
+    "bounce_m",
+    "pitch_rad",
+    "roll_rad",
 ];
 
 /// The words of what a bridge does at rest, with their units and senses.
@@ -31,6 +35,6 @@ pub const DEAD_QUANTITIES: [&str; 7] = [
 
 /// Those of them that are a joint's angle and section forces.
 pub const SECTION_QUANTITIES: [&str; 7] = {
-    let [_, _, _, _, _, sections @ ..] = QUANTITIES;
+    let [_, _, _, _, _, sections @ .., _, _, _, _] = QUANTITIES;
     sections
 };

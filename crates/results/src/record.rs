@@ -7,6 +7,7 @@ use super::extreme::Extreme;
 use super::failure::Failure;
 use super::quantities::SECTION_QUANTITIES;
 use super::rest_rows::{DeadRow, FreeboardRow, freeboard_rows_of_none};
+use super::vehicle_rows::{BodyRow, WheelRow, vehicle_rows_of_none};
 use pontoon_plan::job::Job;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,10 @@ pub struct JobRecord {
     pub dead: Vec<DeadRow>,
     /// Its rows of the table of freeboards.
     pub freeboards: Vec<FreeboardRow>,
+    /// Its rows of the table of wheels.
+    pub wheels: Vec<WheelRow>,
+    /// Its rows of the table of bodies.
+    pub bodies: Vec<BodyRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
@@ -102,6 +107,8 @@ pub struct Summary {
     pub bottom_emerged: Option<bool>,
     /// Whether a module's deck went below the water.
     pub deck_submerged: Option<bool>,
+    /// For how long any wheel on springs had left the deck `[s]`; null where there is none.
+    pub contact_lost_s: Option<f64>,
     /// Smallest contact force of an axle, once its points have settled on their modules `[N]`; null where none ever has.
     pub min_contact_force_n: Option<f64>,
     /// Whether the time step is too long for the patches of a vehicle with inertia; null where the program found the step.
@@ -249,6 +256,10 @@ pub struct NumberPlace {
     pub quantity: String,
     /// Position or joint; null of a place.
     pub position: Option<usize>,
+    /// Vehicle, from 1, of what is of a vehicle.
+    pub vehicle: Option<usize>,
+    /// Axle, from 1, of a wheel.
+    pub axle: Option<usize>,
     /// Place along `[m]`, where it is of a place.
     pub x_m: Option<f64>,
     /// Place across of a connector or pin `[m]`.
@@ -378,6 +389,7 @@ impl JobRecord {
             uplift: none,
             static_deflection_m: None,
         });
+        let (wheels, bodies) = vehicle_rows_of_none(job);
         Self {
             job: job.number,
             failure: Some(failure),
@@ -394,6 +406,8 @@ impl JobRecord {
             banks: bank_rows_of_none(job),
             dead: Vec::new(),
             freeboards: freeboard_rows_of_none(job),
+            wheels,
+            bodies,
         }
     }
 }
@@ -531,6 +545,8 @@ mod tests {
                     of: NumberPlace {
                         quantity: "pin_x_n".to_owned(),
                         position: Some(7),
+                        vehicle: None,
+                        axle: None,
                         x_m: None,
                         y_m: Some(0.5),
                     },

@@ -18,11 +18,12 @@ use crate::quantities::{DEAD_QUANTITIES, QUANTITIES, SECTION_QUANTITIES};
 use crate::record::JobRecord;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use column::{
-    at_peak, at_rest, centimetres, kilonewtons, measure, of_bank, of_connector, of_freeboard, of_job, of_joint,
-    of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, peak_card, plain_card,
+    at_peak, at_rest, centimetres, kilonewtons, measure, of_bank, of_body, of_connector, of_freeboard, of_job, of_joint,
+    of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, of_wheel, peak_card, plain_card,
 };
 use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;
+use pontoon_plan::job::BODY_QUANTITIES;
 use pontoon_plan::study_file::PeakColumn;
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -89,6 +90,7 @@ pub const COLUMNS: &[Column] = &[
     of_job("least_freeboard_module", Counts, ("least freeboard module", "its module"), |r| r.summary.least_freeboard_module.into()).when(When::Freeboards),
     of_job("bottom_emerged", Flags, ("bottom emerged", "whether a corner of a module's bottom rose above the water; null unless the bridge has `draft_m`"), |r| r.summary.bottom_emerged.into()),
     of_job("deck_submerged", Flags, ("deck submerged", "whether a corner of a module's deck went below the water; null unless the bridge has `freeboard_m`"), |r| r.summary.deck_submerged.into()),
+    of_job("contact_lost_s", Numbers, ("contact lost", "for how long any wheel on springs, all its points on the bridge, had left the deck"), |r| r.summary.contact_lost_s.into()).unit("s").when(When::Springs).role(ColumnRole::Listed),
     of_job("min_contact_force_n", Numbers, ("smallest contact force", "smallest contact force of an axle, from 50 ms after its last point came onto a module; below zero it would have lifted off; with gaps impacts make it depend on the time step; null where no axle has been on its modules so long"), |r| r.summary.min_contact_force_n.into()).unit("N").role(ColumnRole::Listed),
     of_job("step_warning", Flags, ("step warning", "whether the vehicle goes more than half of its shortest patch in a time step, so that peaks may be far too large; vehicles with inertia and a stated time step"), |r| r.summary.step_warning.into()).role(ColumnRole::Listed),
     of_job("time_step_s", Numbers, ("time step", "time step found for the job"), |r| r.summary.time_step_s.into()).unit("s").when(When::AutoTimeStep).role(ColumnRole::Listed),
@@ -127,7 +129,9 @@ pub const COLUMNS: &[Column] = &[
     of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.of.quantity.as_str().into()).role(ColumnRole::Key),
     of_sample("position", Counts, ("position", "position of a deflection, joint of a force; null of a place"), |r| r.of.position.into()).role(ColumnRole::Key),
     of_sample("x_m", Numbers, ("x", "place along the bridge, of the deflection of a place"), |r| r.of.x_m.into()).unit("m").role(ColumnRole::Key).when(When::PlaceHistories),
-    of_sample("y_m", Numbers, ("y", "place across, of the force of a pin"), |r| r.of.y_m.into()).unit("m").role(ColumnRole::Key).when(When::PinHistories),
+    of_sample("y_m", Numbers, ("y", "place across, of the force of a pin or wheel"), |r| r.of.y_m.into()).unit("m").role(ColumnRole::Key).when(When::PinHistories),
+    of_sample("vehicle", Counts, ("vehicle", "number of the vehicle, from 1, of what is of a vehicle"), |r| r.of.vehicle.into()).role(ColumnRole::Key).when(When::VehicleHistories),
+    of_sample("axle", Counts, ("axle", "number of the axle, from 1 at the front, of the force of a wheel"), |r| r.of.axle.into()).role(ColumnRole::Key).when(When::VehicleHistories),
     of_sample("value", Numbers, ("value", "the quantity, in its unit"), |r| r.value.into()),
 
     of_mode("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
@@ -210,6 +214,26 @@ pub const COLUMNS: &[Column] = &[
     of_freeboard("y_m", Numbers, ("y", "place across of the deck's edge"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
     of_freeboard("least_freeboard_m", Numbers, ("least freeboard", "smallest height of that corner of the deck above the water; below 0 under it"), |r| r.row.least.value.into()).unit("m"),
     of_freeboard("least_freeboard_time_s", Numbers, ("least freeboard time", "its time; null of a static case"), |r| r.row.least.time_s.into()).unit("s"),
+
+    of_wheel("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_wheel("vehicle", Counts, ("vehicle", "number of the vehicle, from 1 in the order of the traffic"), |r| r.row.vehicle.into()).role(ColumnRole::Key),
+    of_wheel("axle", Counts, ("axle", "number of the axle, from 1 at the front"), |r| r.row.axle.into()).role(ColumnRole::Key),
+    of_wheel("y_m", Numbers, ("y", "place of the wheel across"), |r| r.row.y_m.into()).unit("m").role(ColumnRole::Key),
+    of_wheel("peak_wheel_n", Numbers, ("largest wheel force", "largest force of the wheel on the deck, all its points on the bridge"), |r| r.row.largest.value.into()).newtons(),
+    of_wheel("peak_wheel_time_s", Numbers, ("largest wheel force time", "its time"), |r| r.row.largest.time_s.into()).unit("s"),
+    of_wheel("least_wheel_n", Numbers, ("smallest wheel force", "smallest force of the wheel on the deck, all its points on the bridge; 0 where it has left the deck"), |r| r.row.least.value.into()).newtons(),
+    of_wheel("least_wheel_time_s", Numbers, ("smallest wheel force time", "its time"), |r| r.row.least.time_s.into()).unit("s"),
+    of_wheel("contact_lost_s", Numbers, ("contact lost", "for how long it had left the deck, all its points on the bridge"), |r| r.row.lost_s.into()).unit("s"),
+
+    of_body("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_body("vehicle", Counts, ("vehicle", "number of the vehicle, from 1 in the order of the traffic"), |r| r.row.vehicle.into()).role(ColumnRole::Key),
+    of_body("quantity", Words(&BODY_QUANTITIES), ("quantity", "which motion of the body from rest on a level road: its centre up, its front up, its left side up"), |r| r.row.quantity.as_str().into()).role(ColumnRole::Key),
+    of_body("peak_up", Numbers, ("peak, upward", "largest value upward, in the unit of the quantity, a wheel of the vehicle on the bridge"), |r| r.row.sides[0].value.into()),
+    of_body("peak_up_time_s", Numbers, ("peak, upward, time", "its time"), |r| r.row.sides[0].time_s.into()).unit("s"),
+    of_body("peak_down", Numbers, ("peak, downward", "largest value downward"), |r| r.row.sides[1].value.into()),
+    of_body("peak_down_time_s", Numbers, ("peak, downward, time", "its time"), |r| r.row.sides[1].time_s.into()).unit("s"),
+    of_body("peak_acceleration", Numbers, ("peak acceleration", "largest acceleration, either sense, in the unit of the quantity a second squared"), |r| r.row.acceleration.value.into()),
+    of_body("peak_acceleration_time_s", Numbers, ("peak acceleration time", "its time"), |r| r.row.acceleration.time_s.into()).unit("s"),
 ];
 
 /// The columns of all tables and the axes that have a name of their own, in their order.

@@ -43,11 +43,15 @@ pub enum TableName {
     Dead,
     /// One row a corner of a module's deck of a job.
     Freeboards,
+    /// One row a wheel of a vehicle on springs of a job.
+    Wheels,
+    /// One row a motion of the body of a vehicle on springs of a job.
+    Bodies,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
@@ -61,6 +65,8 @@ impl TableName {
         Self::Banks,
         Self::Dead,
         Self::Freeboards,
+        Self::Wheels,
+        Self::Bodies,
     ];
 
     /// Its name as files and references have it.
@@ -79,6 +85,8 @@ impl TableName {
             Self::Banks => "banks",
             Self::Dead => "dead",
             Self::Freeboards => "freeboards",
+            Self::Wheels => "wheels",
+            Self::Bodies => "bodies",
         }
     }
 

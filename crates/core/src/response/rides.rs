@@ -3,6 +3,7 @@
 //! Knows what is kept of each. Does not know how a vehicle moves.
 
 use super::peaks::Peak;
+use crate::vehicle::VehicleMotion;
 
 /// How a body moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,6 +14,18 @@ pub enum BodyMotion {
     Pitch,
     /// Its left side up `[rad]`.
     Roll,
+}
+
+impl BodyMotion {
+    /// What a motion of a vehicle is to its body; none of an axle's.
+    pub fn of(motion: VehicleMotion) -> Option<Self> {
+        match motion {
+            VehicleMotion::Bounce => Some(Self::Bounce),
+            VehicleMotion::Pitch => Some(Self::Pitch),
+            VehicleMotion::Roll => Some(Self::Roll),
+            VehicleMotion::Hop { .. } => None,
+        }
+    }
 }
 
 /// What a vehicle on springs consists of.
@@ -65,10 +78,24 @@ pub(crate) struct RideReading<'a> {
     pub wheels_n: &'a [f64],
     /// What these are multiplied by.
     pub scale: f64,
-    /// State, rest on a level road and acceleration of each motion.
+    /// What each motion is; state, rest on a level road and acceleration.
+    pub motions: &'a [VehicleMotion],
     pub state: &'a [f64],
     pub rest: &'a [f64],
     pub accelerations: &'a [f64],
+}
+
+impl RideReading<'_> {
+    /// Force of a wheel `[N]`.
+    pub(crate) fn wheel_n(&self, wheel: usize) -> f64 {
+        self.scale * self.wheels_n.get(wheel).copied().unwrap_or(0.0)
+    }
+
+    /// How far a body is from rest on a level road; 0 where it does not move so.
+    pub(crate) fn moved(&self, motion: BodyMotion) -> f64 {
+        let place = self.motions.iter().position(|of| BodyMotion::of(*of) == Some(motion));
+        place.map_or(0.0, |place| self.state[place] - self.rest[place])
+    }
 }
 
 /// Watches the vehicles on springs of a crossing.
@@ -137,7 +164,7 @@ impl RideWatch {
                     continue;
                 };
                 any_on = true;
-                let force_n = ride.scale * ride.wheels_n[number];
+                let force_n = ride.wheel_n(number);
                 peaks.largest.take(force_n, now_s);
                 if force_n < peaks.least.value {
                     peaks.least = Peak {

@@ -2,7 +2,7 @@
 //!
 //! Knows which numbers a bridge has and which a joint's others come from. Does not know solvers or tables.
 
-use super::rides::RideReading;
+use super::rides::{BodyMotion, RideReading};
 
 /// What a recorded number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,6 +15,10 @@ pub enum Quantity {
     Pin(Axis),
     /// Section force of a joint, or its angle.
     Section(Section),
+    /// Force of a wheel on its spring, downward on the deck `[N]`.
+    Wheel,
+    /// Motion of a body from rest on a level road.
+    Body(BodyMotion),
 }
 
 /// An axis of the bridge.
@@ -101,6 +105,20 @@ pub enum Subject {
         /// Which one.
         of: Section,
     },
+    /// Force of a wheel on its spring; 0 while its vehicle is not there.
+    Wheel {
+        /// Its vehicle, from 0.
+        vehicle: usize,
+        /// Its number in the vehicle, from 0, patch after patch.
+        wheel: usize,
+    },
+    /// Motion of the body of a vehicle on springs; 0 while it is not there.
+    Body {
+        /// The vehicle, from 0.
+        vehicle: usize,
+        /// Which motion.
+        motion: BodyMotion,
+    },
 }
 
 impl Subject {
@@ -111,14 +129,16 @@ impl Subject {
             Self::Joint(_) | Self::Connector { .. } => Quantity::Force,
             Self::Pin { axis, .. } => Quantity::Pin(axis),
             Self::Section { of, .. } => Quantity::Section(of),
+            Self::Wheel { .. } => Quantity::Wheel,
+            Self::Body { motion, .. } => Quantity::Body(motion),
         }
     }
 
-    /// Its position or joint; none of a place.
+    /// Its position or joint; none of a place or vehicle.
     pub fn position(self) -> Option<usize> {
         match self {
             Self::Position(position) => Some(position),
-            Self::Place(_) => None,
+            Self::Place(_) | Self::Wheel { .. } | Self::Body { .. } => None,
             Self::Joint(joint)
             | Self::Connector { joint, .. }
             | Self::Pin { joint, .. }
@@ -250,5 +270,7 @@ pub(crate) fn read(subject: Subject, joints: &[JointParts], reading: &impl Readi
         Subject::Connector { joint, index } => reading.connector_n(joints[joint - 2].first_connector + index)[0],
         Subject::Pin { joint, index, axis } => reading.pin_n(joints[joint - 2].first_pin + index)[axis as usize],
         Subject::Section { joint, of } => joints[joint - 2].sections(reading)[of as usize],
+        Subject::Wheel { vehicle, wheel } => reading.ride(vehicle).map_or(0.0, |ride| ride.wheel_n(wheel)),
+        Subject::Body { vehicle, motion } => reading.ride(vehicle).map_or(0.0, |ride| ride.moved(motion)),
     }
 }

@@ -4,7 +4,7 @@
 
 use super::{Drive, Driven, Traffic};
 use crate::input::{Found, InvalidInput, Problem, not_negative, positive};
-use crate::road::{RoadDesign, Ways};
+use crate::road::{Road, RoadDesign, Ways};
 use crate::vehicle::{Vehicle, VehicleDesign};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -150,6 +150,19 @@ impl TrafficDesign {
     /// [`InvalidInput`] with the key: of an entry what may not be, a weight or speed that nobody says, both a list and a column,
     /// vehicles that run into each other with place and time, a road for wheels without springs.
     pub fn traffic(&self, study: StudyVehicle<'_>, deck: Deck) -> Result<Traffic, InvalidInput> {
+        self.traffic_on(study, deck, |design, ways| design.road(ways).map(Arc::new))
+    }
+
+    /// As [`Self::traffic`], on roads that are made or were made before.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn traffic_on(
+        &self,
+        study: StudyVehicle<'_>,
+        deck: Deck,
+        make_road: impl FnOnce(&RoadDesign, &Ways<'_>) -> Result<Arc<Road>, InvalidInput>,
+    ) -> Result<Traffic, InvalidInput> {
         let vehicles = match (&self.traffic, &self.column) {
             (Some(_), Some(_)) => {
                 let refused = InvalidInput::new("column", "a column beside a traffic", "one of the two");
@@ -179,14 +192,20 @@ impl TrafficDesign {
             return Err(refused.because(Problem::Conflict));
         }
         if let Some(roughness) = &self.roughness {
-            traffic.road = Some(Arc::new(road(roughness, &traffic, deck).map_err(|e| e.within_kind("roughness"))?));
+            let road = road(roughness, &traffic, deck, make_road);
+            traffic.road = Some(road.map_err(|e| e.under("roughness"))?);
         }
         Ok(traffic)
     }
 }
 
 /// The road under the wheels of a traffic, all of which have springs.
-fn road(design: &RoadDesign, traffic: &Traffic, deck: Deck) -> Result<crate::road::Road, InvalidInput> {
+fn road(
+    design: &RoadDesign,
+    traffic: &Traffic,
+    deck: Deck,
+    make_road: impl FnOnce(&RoadDesign, &Ways<'_>) -> Result<Arc<Road>, InvalidInput>,
+) -> Result<Arc<Road>, InvalidInput> {
     let vehicles = || traffic.vehicles.iter().map(|driven| &driven.vehicle);
     if let Some(number) = vehicles().position(|vehicle| vehicle.patches.iter().any(|patch| patch.rigid > 0.0)) {
         let found = format!("vehicle {}, of which a mass lies on the road without a spring", number + 1);
@@ -201,11 +220,12 @@ fn road(design: &RoadDesign, traffic: &Traffic, deck: Deck) -> Result<crate::roa
         front - rear
     };
     let beyond_m = vehicles().map(length_m).fold(0.0, f64::max);
-    design.road(&Ways {
+    let ways = Ways {
         length_m: deck.length_m,
         beyond_m,
         y_m: &y_m,
-    })
+    };
+    make_road(design, &ways)
 }
 
 /// A number that an entry says, or the study.

@@ -297,12 +297,7 @@ impl Traffic {
     pub(crate) fn ride_parts(&self) -> Vec<RidePart> {
         let of = |(vehicle, driven): (usize, &Driven)| {
             let springs = driven.vehicle.springs.as_ref()?;
-            let of_body = |(place, motion): (usize, &VehicleMotion)| match motion {
-                VehicleMotion::Bounce => Some((BodyMotion::Bounce, place)),
-                VehicleMotion::Pitch => Some((BodyMotion::Pitch, place)),
-                VehicleMotion::Roll => Some((BodyMotion::Roll, place)),
-                VehicleMotion::Hop { .. } => None,
-            };
+            let of_body = |(place, motion): (usize, &VehicleMotion)| Some((BodyMotion::of(*motion)?, place));
             Some(RidePart {
                 vehicle,
                 wheels: driven.vehicle.patches.iter().map(|patch| (patch.axle, patch.y_m)).collect(),

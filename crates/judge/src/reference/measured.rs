@@ -98,7 +98,9 @@ fn against(table: TableName) -> &'static [Against] {
         | TableName::AtPeaks
         | TableName::Banks
         | TableName::Dead
-        | TableName::Freeboards => &[],
+        | TableName::Freeboards
+        | TableName::Wheels
+        | TableName::Bodies => &[],
     }
 }
 

@@ -34,6 +34,8 @@ pub enum AxisValues {
     Counts,
     /// These words.
     Words(&'static [&'static str]),
+    /// Names and paths.
+    Names,
 }
 
 /// Where the values of an axis with a name of its own go.
@@ -75,6 +77,8 @@ pub enum JobAxis {
     Load,
     /// Seed of the wear of its joints.
     WearSeed,
+    /// Its vehicle, by name or file.
+    Vehicle,
 }
 
 const fn job(axis: JobAxis, crossings: bool, statics: bool) -> Goes {
@@ -143,6 +147,13 @@ pub const NAMED_AXES: &[NamedAxis] = &[
         values: AxisValues::Counts,
         goes: job(JobAxis::WearSeed, true, true),
     },
+    NamedAxis {
+        name: "vehicle",
+        unit: "",
+        label: "vehicle",
+        values: AxisValues::Names,
+        goes: job(JobAxis::Vehicle, true, true),
+    },
 ];
 
 impl NamedAxis {
@@ -178,19 +189,33 @@ pub enum Root {
     Analysis,
     /// The wear of joints.
     Wear,
+    /// Traffic, column and road: keys of the study itself.
+    Traffic,
 }
 
 impl Root {
     /// All documents.
-    pub const ALL: [Self; 4] = [Self::Bridge, Self::Vehicle, Self::Analysis, Self::Wear];
+    pub const ALL: [Self; 5] = [Self::Bridge, Self::Vehicle, Self::Analysis, Self::Wear, Self::Traffic];
 
-    /// How a path begins that leads into it.
+    /// The keys of the study that are of [`Self::Traffic`].
+    const TRAFFIC: [&'static str; 3] = ["traffic", "column", "roughness"];
+
+    /// What it is called.
+    pub fn described(self) -> &'static str {
+        match self {
+            Self::Traffic => "traffic, column or roughness",
+            other => other.word(),
+        }
+    }
+
+    /// How a path begins that leads into it; nothing where the document is the study itself.
     pub fn word(self) -> &'static str {
         match self {
             Self::Bridge => "bridge",
             Self::Vehicle => "vehicle",
             Self::Analysis => "analysis",
             Self::Wear => "wear",
+            Self::Traffic => "",
         }
     }
 }
@@ -214,8 +239,12 @@ impl Varies {
             Some(Goes::Document(path)) => path,
             _ => name,
         };
+        let key = path.split(['.', '[']).next().unwrap_or_default();
+        if Root::TRAFFIC.contains(&key) && path != key {
+            return Some(Self::Path(Root::Traffic, DocumentPath::parse(path)?));
+        }
         let (root, path) = path.split_once('.')?;
-        let root = Root::ALL.into_iter().find(|known| known.word() == root)?;
+        let root = Root::ALL.into_iter().find(|known| known.word() == root && !root.is_empty())?;
         Some(Self::Path(root, DocumentPath::parse(path)?))
     }
 }
@@ -252,7 +281,7 @@ impl Axis {
                 varies,
             }),
             None => Err(Refusal {
-                allowed: "a short name or the path of a value in bridge, vehicle, analysis or wear".to_owned(),
+                allowed: "a short name or the path of a value in bridge, vehicle, analysis, wear, traffic, column or roughness".to_owned(),
                 ..Refusal::unknown_key(file, key, name, known)
             }),
         }

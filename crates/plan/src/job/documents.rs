@@ -2,12 +2,14 @@
 //!
 //! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
 
-use crate::design::{DesignPoint, Root};
+use crate::design::{DesignPoint, JobAxis, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
-use crate::study_file::{Analysis, Study, WearSpec, filled_vehicle};
+use crate::study_file::{Analysis, Study, WearSpec, at_home, filled_vehicle};
 use pontoon_core::bridge::{BankSpec, BridgeDesign, DeadSpec, Joints, Supports};
 use pontoon_core::input::InvalidInput;
-use pontoon_core::vehicle::Vehicle;
+use pontoon_core::road::{Road, RoadDesign, Ways};
+use pontoon_core::traffic::{Deck, Driven, StudyVehicle, Traffic, TrafficDesign};
+use pontoon_core::vehicle::{Vehicle, VehicleDesign};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -43,6 +45,8 @@ pub struct VehicleEntry {
     pub id: usize,
     /// The vehicle.
     pub vehicle: Arc<Vehicle>,
+    /// Its design.
+    pub design: VehicleDesign,
     /// Its design as a document, defaults filled in.
     pub document: Value,
     /// Equal for vehicles that are equal, whatever study they are of.
@@ -71,9 +75,33 @@ pub struct WearEntry {
     pub document: Value,
 }
 
+/// Several vehicles or a road after the axes.
+#[derive(Debug)]
+pub struct TrafficEntry {
+    /// What drives.
+    pub traffic: Traffic,
+    /// Whether that is the study's own vehicle alone.
+    pub is_single: bool,
+    /// The document that it comes to, as columns show it.
+    pub document: Value,
+    /// Equal for traffics that are equal, whatever study they are of.
+    pub key: [u8; 32],
+}
+
+impl TrafficEntry {
+    /// A number that all vehicles have alike.
+    pub(super) fn common(&self, number: impl Fn(&Driven) -> f64) -> Option<f64> {
+        let mut numbers = self.traffic.vehicles.iter().map(number);
+        let first = numbers.next()?;
+        numbers.all(|other| other == first).then_some(first)
+    }
+}
+
 /// The documents read so far.
 #[derive(Debug, Default)]
 pub(super) struct Documents {
+    /// Roads by their documents and ways.
+    roads: HashMap<String, Arc<Road>>,
     bridges: Interned<BridgeEntry>,
     vehicles: Interned<VehicleEntry>,
     analyses: Interned<AnalysisEntry>,
@@ -158,24 +186,41 @@ impl Documents {
     ) -> Result<Arc<VehicleEntry>, Refusal> {
         let changes = Changes::of(study, point, Root::Vehicle);
         let breadth_m = bridge.design.module.breadth_m;
+        let (place, written) = match point.of_job(JobAxis::Vehicle) {
+            None => ("vehicle".to_owned(), &study.vehicle),
+            Some(cell) => {
+                let path = format!("{}.vehicle", point.key());
+                let name = cell.word().unwrap_or_default();
+                let named = study.vehicles.get(name).ok_or_else(|| {
+                    let refused = Refusal::new(&study.file, path, &cell.value(), "the name or the file of a vehicle");
+                    refused.because(RefusalKind::WrongType)
+                })?;
+                (format!("vehicles.{name}"), named)
+            }
+        };
+        let asked = changes.text().map(|text| format!("{place};{text}")).or((place != "vehicle").then(|| place.clone()));
         let read = || {
             // the defaults of the single footprint can be changed in part, unless axles take its place
             let axles = changes.list.iter().any(|(_, path, _)| path.begins_with("axles"));
-            let written = &study.vehicle;
             let filled = filled_vehicle(written).ok().filter(|_| !axles);
             let base = filled.as_ref().unwrap_or(written);
             let changed = changes.applied(base)?;
-            let design = filled_vehicle(changed.as_ref().unwrap_or(base)).map_err(|e| changes.refusal(e))?;
-            let vehicle = design.check(breadth_m).map_err(|e| changes.refusal(e))?;
+            let refusal = |e: InvalidInput| match changes.list.is_empty() {
+                true => at_home(&study.vehicle_files, Refusal::of(&study.file, &place, e)),
+                false => changes.refusal(e),
+            };
+            let design = filled_vehicle(changed.as_ref().unwrap_or(base)).map_err(refusal)?;
+            let vehicle = design.check(breadth_m).map_err(refusal)?;
             let document = to_value(&design);
-            Ok((canonical_text(&document), (vehicle, document)))
+            Ok((canonical_text(&document), (vehicle, design, document)))
         };
         self.vehicles.get(
-            (breadth_m.to_bits(), changes.text()),
+            (breadth_m.to_bits(), asked),
             read,
-            |id, (vehicle, document)| VehicleEntry {
+            |id, (vehicle, design, document)| VehicleEntry {
                 id,
                 vehicle: Arc::new(vehicle),
+                design,
                 key: canonical_text(&document).into(),
                 document,
             },
@@ -207,6 +252,57 @@ impl Documents {
 }
 
 impl Documents {
+    /// The traffic of a point; none where one vehicle crosses a level road as the study itself says.
+    pub(super) fn traffic(
+        &mut self,
+        study: &Study,
+        point: &DesignPoint<'_>,
+        (bridge, vehicle): (&BridgeEntry, &VehicleEntry),
+        [load_n, speed_m_s]: [Option<f64>; 2],
+    ) -> Result<Option<Arc<TrafficEntry>>, Refusal> {
+        let changes = Changes::of(study, point, Root::Traffic);
+        if study.traffic == TrafficDesign::default() && changes.list.is_empty() {
+            return Ok(None);
+        }
+        let deck = Deck {
+            length_m: bridge.design.length_m(),
+            breadth_m: bridge.design.module.breadth_m,
+        };
+        let changed = changes.applied(&study.traffic)?;
+        let design = changed.as_ref().unwrap_or(&study.traffic);
+        let of_study = StudyVehicle {
+            design: &vehicle.design,
+            load_n,
+            speed_m_s,
+        };
+        let roads = &mut self.roads;
+        let make_road = |design: &RoadDesign, ways: &Ways<'_>| {
+            let key = format!("{}{ways:?}", canonical_text(&to_value(design)));
+            if let Some(road) = roads.get(&key) {
+                return Ok(Arc::clone(road));
+            }
+            let road = Arc::new(design.road(ways)?);
+            roads.insert(key, Arc::clone(&road));
+            Ok(road)
+        };
+        let traffic = design.traffic_on(of_study, deck, make_road);
+        let traffic = traffic.map_err(|e| at_home(&study.vehicle_files, changes.refusal(e)))?;
+        let document = to_value(design);
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(canonical_text(&document).as_bytes());
+        // what entries leave to the study
+        hasher.update(vehicle.key.as_bytes());
+        for number in [load_n, speed_m_s] {
+            hasher.update(&number.map_or(u64::MAX, f64::to_bits).to_le_bytes());
+        }
+        Ok(Some(Arc::new(TrafficEntry {
+            traffic,
+            is_single: design.is_single(),
+            document,
+            key: *hasher.finalize().as_bytes(),
+        })))
+    }
+
     /// The wear of a point; none where its study has none.
     pub(super) fn wear(&mut self, study: &Study, point: &DesignPoint<'_>) -> Result<Option<Arc<WearEntry>>, Refusal> {
         let changes = Changes::of(study, point, Root::Wear);
@@ -294,7 +390,7 @@ impl<'a> Changes<'a> {
         let mut document = to_value(base);
         for (name, path, value) in &self.list {
             path.set(&mut document, value.value()).map_err(|obstacle| {
-                let allowed = format!("the path of a value in {}", self.root.word());
+                let allowed = format!("the path of a value in {}", self.root.described());
                 let path = format!("{}.{name}", self.point.key());
                 Refusal::new(self.file, path, obstacle.to_string(), allowed).because(RefusalKind::Misplaced)
             })?;
@@ -312,7 +408,7 @@ impl<'a> Changes<'a> {
     /// The refusal with its path as the study file has it: at the axis that changed it, or at the block whose axes made
     /// another value wrong.
     fn placed(&self, refusal: Refusal) -> Refusal {
-        let path = format!("{}.{}", self.root.word(), refusal.path);
+        let path = join(self.root.word(), &refusal.path);
         if self.list.is_empty() {
             return Refusal { path, ..refusal };
         }

@@ -2,14 +2,16 @@
 //!
 //! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a fingerprint a job.
 
-use super::documents::{BridgeEntry, Documents, VehicleEntry, WearEntry};
+use super::documents::{BridgeEntry, Documents, TrafficEntry, VehicleEntry, WearEntry};
 use super::seen::SeenJobs;
 use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
 use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study};
+use pontoon_core::analysis::crossing::CrossingSolver;
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{InvalidInput, bound};
+use pontoon_core::traffic::Driven;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -67,11 +69,20 @@ impl Jobs<'_> {
             let size = bridge.design.check_size(model.into());
             size.map_err(|refused| short.of_bridge(refused))?;
         }
+        let mut traffic = None;
         let (task, connection, load_n) = match &analysis.analysis {
             Analysis::Crossing(crossing) => {
-                let (connection, load_n) = short.loaded(&bridge, &vehicle)?;
-                let speed_m_s = short.speed()?;
-                short.time_step(crossing, &bridge, &vehicle, speed_m_s)?;
+                let connection = short.connection(&bridge)?;
+                let said = short.said()?;
+                traffic = self.documents.traffic(self.study, point, (&bridge, &vehicle), said)?;
+                let (load_n, speed_m_s) = match &traffic {
+                    Some(entry) => {
+                        let most = |of: fn(&Driven) -> f64| entry.traffic.vehicles.iter().map(of).fold(0.0, f64::max);
+                        (most(|driven| driven.load_n), most(|driven| driven.drive.speed_m_s))
+                    }
+                    None => (short.load(&vehicle)?, short.speed()?),
+                };
+                short.time_step(crossing, &bridge, (&vehicle, traffic.as_deref()), speed_m_s)?;
                 short.damping(crossing, &bridge)?;
                 if bridge.design.has_dead_load() {
                     short.held(&bridge)?;
@@ -79,7 +90,7 @@ impl Jobs<'_> {
                 (Task::Crossing { speed_m_s }, connection, load_n)
             }
             Analysis::Static(_) => {
-                let (connection, load_n) = short.loaded(&bridge, &vehicle)?;
+                let (connection, load_n) = (short.connection(&bridge)?, short.load(&vehicle)?);
                 short.held(&bridge)?;
                 (Task::Static(short.place(&bridge)?), connection, load_n)
             }
@@ -93,7 +104,9 @@ impl Jobs<'_> {
         let job = Job {
             number: self.seen.len(),
             bridge,
+            vehicle_name: short.value(JobAxis::Vehicle).and_then(|cell| cell.word()).map(Arc::from),
             vehicle,
+            traffic,
             analysis,
             connection,
             load_n,
@@ -183,21 +196,21 @@ impl Short<'_> {
         })
     }
 
-    /// How the connectors work and what the vehicle weighs.
-    fn loaded(&self, bridge: &BridgeEntry, vehicle: &VehicleEntry) -> Result<(Connection, f64), Refusal> {
-        let connection = self.connection(bridge)?;
-        let load_n = match vehicle.vehicle.weight_n {
-            Some(of_axles) => {
-                let weight = Cell::written(bound(of_axles));
-                self.absent(
-                    JobAxis::Load,
-                    &format!("no load beside those of the axles, {weight} N together"),
-                )?;
-                of_axles
-            }
-            None => self.positive(JobAxis::Load, self.required(JobAxis::Load)?)?,
-        };
-        Ok((connection, load_n))
+    /// What the vehicle weighs: what is said, to which it is scaled, or its own.
+    fn load(&self, vehicle: &VehicleEntry) -> Result<f64, Refusal> {
+        match (self.number(JobAxis::Load)?, vehicle.vehicle.weight_n) {
+            (None, Some(own)) => Ok(own),
+            _ => self.positive(JobAxis::Load, self.required(JobAxis::Load)?),
+        }
+    }
+
+    /// Weight and speed as far as axes say them.
+    fn said(&self) -> Result<[Option<f64>; 2], Refusal> {
+        for axis in [JobAxis::LoadPosition, JobAxis::LoadPlace] {
+            self.absent(axis, "no place of the load in a study of crossings")?;
+        }
+        let said = |axis: JobAxis| self.number(axis)?.map(|value| self.positive(axis, value)).transpose();
+        Ok([said(JobAxis::Load)?, said(JobAxis::Speed)?])
     }
 
     fn connection(&self, bridge: &BridgeEntry) -> Result<Connection, Refusal> {
@@ -261,9 +274,6 @@ impl Short<'_> {
     }
 
     fn speed(&self) -> Result<f64, Refusal> {
-        for axis in [JobAxis::LoadPosition, JobAxis::LoadPlace] {
-            self.absent(axis, "no place of the load in a study of crossings")?;
-        }
         self.positive(JobAxis::Speed, self.required(JobAxis::Speed)?)
     }
 
@@ -272,7 +282,7 @@ impl Short<'_> {
         &self,
         analysis: &CrossingAnalysis,
         bridge: &BridgeEntry,
-        vehicle: &VehicleEntry,
+        (vehicle, traffic): (&VehicleEntry, Option<&TrafficEntry>),
         speed_m_s: f64,
     ) -> Result<(), Refusal> {
         let passage = bridge.design.shortest_module_m() / speed_m_s;
@@ -286,9 +296,14 @@ impl Short<'_> {
             let allowed = format!("above 0 and at most {most}, the passage of one module at {speed} m/s");
             return refuse(self.time_step_found(analysis, step, None), allowed);
         }
-        let vehicle = &vehicle.vehicle;
-        let way = bridge.design.length_m() + vehicle.behind_m() + vehicle.ahead_m();
-        let steps = (way / speed_m_s + analysis.tail_s) / step;
+        let length_m = bridge.design.length_m();
+        let steps = match traffic {
+            Some(entry) => CrossingSolver::steps(length_m, &entry.traffic, step, analysis.tail_s) as f64,
+            None => {
+                let way = length_m + vehicle.vehicle.behind_m() + vehicle.vehicle.ahead_m();
+                (way / speed_m_s + analysis.tail_s) / step
+            }
+        };
         if steps > MOST_STEPS as f64 {
             let found = self.time_step_found(analysis, step, Some(format!("makes {steps:.1e} steps")));
             return refuse(found, format!("a crossing of at most {MOST_STEPS} steps"));

@@ -63,6 +63,11 @@ pub(super) fn key_of(job: &Job) -> JobKey {
         hasher.update(&(text.len() as u64).to_le_bytes());
         hasher.update(text.as_bytes());
     }
+    // a single vehicle on a level road is known as it was before there were others
+    if let Some(traffic) = &job.traffic {
+        hasher.update(b"traffic");
+        hasher.update(&traffic.key);
+    }
     let mut number = |x: f64| {
         // zero has one sign
         hasher.update(&(x + 0.0).to_bits().to_le_bytes());

@@ -7,6 +7,7 @@
 //! | `jobs` | the jobs of a study, one after the other |
 //! | `seen` | which jobs were there before |
 //! | `key` | what a job is known by from run to run |
+//! | `springs` | what of a crossing rides on springs |
 //! | `shard` | a share of the jobs |
 //! | `plan` | what a study would run |
 //!
@@ -19,13 +20,15 @@ mod key;
 mod plan;
 mod seen;
 mod shard;
+mod springs;
 
-pub use documents::{AnalysisEntry, BridgeEntry, VehicleEntry, WearEntry};
+pub use documents::{AnalysisEntry, BridgeEntry, TrafficEntry, VehicleEntry, WearEntry};
 pub use doubts::Doubts;
 pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};
 pub use shard::{NoShard, Shard};
+pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word};
 
 use crate::design::{JobAxis, Root, Varies};
 use crate::input::Cell;
@@ -49,11 +52,15 @@ pub struct Job {
     pub bridge: Arc<BridgeEntry>,
     /// Its vehicle.
     pub vehicle: Arc<VehicleEntry>,
+    /// The name or file of that vehicle, where an axis has it.
+    pub vehicle_name: Option<Arc<str>>,
+    /// Its traffic and road; none where that vehicle crosses a level road alone.
+    pub traffic: Option<Arc<TrafficEntry>>,
     /// Its analysis.
     pub analysis: Arc<AnalysisEntry>,
     /// How the connectors work.
     pub connection: Connection,
-    /// Weight of the vehicle `[N]`; 0 where none is asked for.
+    /// Weight of the vehicle, of several the heaviest `[N]`; 0 where none is asked for.
     pub load_n: f64,
     /// Wear of its joints; none where gaps have no meaning or do not scatter.
     pub worn: Option<Worn>,
@@ -77,7 +84,7 @@ pub struct Worn {
 pub enum Task {
     /// A crossing.
     Crossing {
-        /// Speed `[m/s]`.
+        /// Speed, of several vehicles that of the fastest `[m/s]`.
         speed_m_s: f64,
     },
     /// A static case.
@@ -143,10 +150,13 @@ impl<'a> CrossingJob<'a> {
     /// Whether the vehicle goes more than half of its shortest patch in a time step, where its mass rides along and the step is
     /// stated: the deck then answers to jumps of the mass and no longer to its motion. None where the program finds the step.
     pub fn is_step_long(&self) -> Option<bool> {
-        let vehicle = &self.job.vehicle.vehicle;
-        let shortest_m = vehicle.patches.iter().map(|p| p.length_m).fold(f64::INFINITY, f64::min);
-        let goes_m = self.speed_m_s * self.first_time_step_s();
-        let long = vehicle.inertia != Inertia::None && goes_m > 0.5 * shortest_m;
+        let step_s = self.first_time_step_s();
+        let is_long = |driven: &Driven| {
+            let rigid = driven.vehicle.patches.iter().filter(|patch| patch.rigid > 0.0);
+            let shortest_m = rigid.map(|p| p.length_m).fold(f64::INFINITY, f64::min);
+            driven.vehicle.inertia != Inertia::None && driven.drive.speed_m_s * step_s > 0.5 * shortest_m
+        };
+        let long = self.traffic().vehicles.iter().any(is_long);
         self.analysis.time_step.tolerance().is_none().then_some(long)
     }
 
@@ -203,6 +213,9 @@ impl<'a> CrossingJob<'a> {
 
     /// What drives over the bridge.
     pub fn traffic(&self) -> Traffic {
+        if let Some(entry) = &self.job.traffic {
+            return entry.traffic.clone();
+        }
         Traffic {
             vehicles: vec![Driven {
                 vehicle: Arc::clone(&self.job.vehicle.vehicle),
@@ -233,6 +246,11 @@ impl Job {
             Analysis::Modes(modes) => Some(modes),
             _ => None,
         }
+    }
+
+    /// Whether the study's own vehicle alone loads the bridge.
+    pub fn is_single(&self) -> bool {
+        self.traffic.as_ref().is_none_or(|traffic| traffic.is_single)
     }
 
     /// Model of the modules.
@@ -327,6 +345,10 @@ impl Job {
                     Root::Bridge => &self.bridge.document,
                     Root::Vehicle => &self.vehicle.document,
                     Root::Analysis => &self.analysis.document,
+                    Root::Traffic => match &self.traffic {
+                        Some(traffic) => &traffic.document,
+                        None => return Cell::Nothing,
+                    },
                     Root::Wear => match &self.worn {
                         Some(worn) => &worn.entry.document,
                         None => return Cell::Nothing,
@@ -353,8 +375,16 @@ impl Job {
             (JobAxis::Connection, _) => self.gaps_m().map_or("linear", |_| "nonlinear").into(),
             (JobAxis::TensionGap, _) => gap(|gaps| gaps.0),
             (JobAxis::CompressionGap, _) => gap(|gaps| gaps.1),
-            (JobAxis::Speed, Task::Crossing { speed_m_s }) => speed_m_s.into(),
+            (JobAxis::Speed, Task::Crossing { speed_m_s }) => match &self.traffic {
+                Some(traffic) => traffic.common(|driven| driven.drive.speed_m_s).into(),
+                None => speed_m_s.into(),
+            },
+            (JobAxis::Load, Task::Crossing { .. }) if self.traffic.is_some() => {
+                let common = self.traffic.as_ref().and_then(|traffic| traffic.common(|driven| driven.load_n));
+                common.into()
+            }
             (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),
+            (JobAxis::Vehicle, _) => self.vehicle_name.as_deref().map_or(Cell::Nothing, Cell::from),
             (JobAxis::LoadPosition, Task::Static(load)) => load.position.into(),
             (JobAxis::LoadPlace, Task::Static(load)) => load.x_m.into(),
             (JobAxis::WearSeed, _) => self.worn.as_ref().map(|worn| worn.seed as usize).into(),
@@ -374,6 +404,7 @@ impl Job {
         Identity {
             structure: Arc::clone(&self.bridge.structure_key),
             vehicle: self.vehicle.id,
+            traffic: self.traffic.as_ref().map(|traffic| traffic.key),
             analysis: self.analysis.id,
             gaps: self
                 .gaps_m()
@@ -395,6 +426,7 @@ impl Job {
 pub(super) struct Identity {
     structure: Arc<str>,
     vehicle: usize,
+    traffic: Option<[u8; 32]>,
     analysis: usize,
     gaps: Option<[u64; 2]>,
     laws: Option<[u8; 32]>,

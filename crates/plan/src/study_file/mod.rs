@@ -1,4 +1,4 @@
-//! The study file and the bridge file that it names: their keys, defaults and ranges.
+//! The study file and the bridge and vehicle files that it names: their keys, defaults and ranges.
 //!
 //! | module | charter |
 //! |---|---|
@@ -6,6 +6,7 @@
 //! | `analysis` | what is asked, checked, with its defaults |
 //! | `study` | a study opened: its files read, its own numbers checked |
 //! | `record` | what is kept of each job beyond its peaks |
+//! | `vehicle_files` | vehicle files that a study names, put in their place |
 //! | `wear` | how the gaps of joints scatter |
 //!
 //! Knows what a person may write and where it is relative to. Does not know what a job is or how it runs.
@@ -14,10 +15,13 @@ mod analysis;
 mod raw;
 mod record;
 mod study;
+mod vehicle_files;
 mod wear;
 
 pub use analysis::{Analysis, CrossingAnalysis, ModesAnalysis, Solver, StaticAnalysis, TimeStep};
 pub use raw::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, StudySpec, VerifySpec};
 pub use record::{HistoriesSpec, PeakAt, PeakColumn, PeakSpec, RecordSpec};
 pub use study::{BridgeFile, Study, filled_vehicle, read_bridge};
+pub(crate) use vehicle_files::at_home;
+pub use vehicle_files::{VehicleFile, read_vehicle};
 pub use wear::{ScatterSpec, WearSpec};

@@ -7,11 +7,14 @@ use super::record::RecordSpec;
 use super::wear::WearSpec;
 use crate::design::Design;
 use pontoon_core::bridge::Model;
+use pontoon_core::road::RoadDesign;
+use pontoon_core::traffic::{ColumnDesign, TrafficDesign, TrafficEntry, VehicleOrFile};
 use pontoon_core::vehicle::VehicleDesign;
 use schemars::JsonSchema;
 use serde::de::{Error, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// A study as its file writes it.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
@@ -26,9 +29,23 @@ pub struct StudySpec {
     pub question: Option<String>,
     /// Path of the bridge file, relative to the study file.
     pub bridge: String,
-    /// The vehicle; a single footprint of 3.35 m on two tracks where absent.
+    /// The vehicle, or the path of its file; a single footprint of 3.35 m on two tracks where absent.
     #[serde(default)]
+    #[schemars(with = "VehicleOrFile")]
     pub vehicle: VehicleDesign,
+    /// Vehicles that the axis `vehicle` names; it may name files too, which are read into here.
+    #[serde(default)]
+    pub vehicles: BTreeMap<String, VehicleDesign>,
+    /// Vehicles that cross together, in the order of their numbers, in place of the one.
+    #[serde(default)]
+    #[schemars(length(min = 1, max = 200))]
+    pub traffic: Option<Vec<TrafficEntry>>,
+    /// A column of equal vehicles in place of the one.
+    #[serde(default)]
+    pub column: Option<ColumnDesign>,
+    /// How uneven the road is; level where absent.
+    #[serde(default)]
+    pub roughness: Option<RoadDesign>,
     /// What is asked and how it is computed.
     pub analysis: AnalysisSpec,
     /// How the gaps of joints scatter, drawn from the axis `wear_seed`.
@@ -40,6 +57,17 @@ pub struct StudySpec {
     /// What to keep of each job beyond its peaks.
     #[serde(default)]
     pub record: RecordSpec,
+}
+
+impl StudySpec {
+    /// Its traffic and road.
+    pub fn traffic(&self) -> TrafficDesign {
+        TrafficDesign {
+            traffic: self.traffic.clone(),
+            column: self.column.clone(),
+            roughness: self.roughness.clone(),
+        }
+    }
 }
 
 /// What is asked of the bridge.

@@ -4,7 +4,8 @@
 
 use crate::input::{FoundValue, Refusal, RefusalKind};
 use pontoon_core::bridge::BridgeDesign;
-use pontoon_core::response::{Axis, PeakOf, Record, Section, Subject, WatchedPeak};
+use pontoon_core::response::{Axis, BodyMotion, PeakOf, Record, Section, Subject, WatchedPeak};
+use pontoon_core::traffic::Traffic;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Error, MapAccess, Visitor};
@@ -61,6 +62,9 @@ pub struct HistoriesSpec {
     /// Joint numbers: angle and section forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sections: Vec<usize>,
+    /// Numbers of vehicles on springs, from 1: force of each wheel and motion of the body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vehicles: Vec<usize>,
 }
 
 /// A peak at whose instant everything else is wanted: its column, or its column at a position or joint.
@@ -214,7 +218,9 @@ impl HistoriesSpec {
     /// Whether any history is asked for.
     pub fn asked(&self) -> bool {
         let joints = [&self.joints, &self.pins, &self.sections];
-        !(self.positions.is_empty() && self.places_x_m.is_empty() && joints.iter().all(|list| list.is_empty()))
+        let vehicles = &self.vehicles;
+        let lists = joints.into_iter().chain([&self.positions, vehicles]);
+        !(self.places_x_m.is_empty() && lists.into_iter().all(Vec::is_empty))
     }
 
     /// How many series they are, on a bridge.
@@ -229,8 +235,23 @@ impl HistoriesSpec {
 const ONE_PLACE_M: f64 = 1e-9;
 
 impl RecordSpec {
-    /// What is recorded of a crossing of a bridge, as the mechanics takes it.
-    pub fn of_crossing(&self, design: &BridgeDesign) -> Record {
+    /// What is recorded of a crossing of a bridge under a traffic, as the mechanics takes it.
+    pub fn of_crossing(&self, design: &BridgeDesign, traffic: &Traffic) -> Record {
+        let mut record = self.of_bridge(design);
+        for &number in &self.histories.vehicles {
+            let vehicle = number - 1;
+            let Some(driven) = traffic.vehicles.get(vehicle) else { continue };
+            let wheels = 0..driven.vehicle.patches.len();
+            record.more.extend(wheels.map(|wheel| Subject::Wheel { vehicle, wheel }));
+            let motions = driven.vehicle.springs.iter().flat_map(|springs| &springs.motions);
+            let body = motions.filter_map(|motion| BodyMotion::of(*motion));
+            record.more.extend(body.map(|motion| Subject::Body { vehicle, motion }));
+        }
+        record
+    }
+
+    /// What is recorded of the bridge itself.
+    pub fn of_bridge(&self, design: &BridgeDesign) -> Record {
         let histories = &self.histories;
         let at = |x_m: &f64| {
             self.places_x_m
@@ -324,7 +345,7 @@ impl RecordSpec {
 
     /// Refuses peaks of what there is not, one twice, and one of pins that are not recorded.
     fn check_peaks(&self, file: &Path, design: &BridgeDesign) -> Result<(), Refusal> {
-        let (modules, pins) = (design.modules, self.of_crossing(design).needs_pins());
+        let (modules, pins) = (design.modules, self.of_bridge(design).needs_pins());
         for (i, &peak) in self.at_peak_of.iter().enumerate() {
             let key = format!("record.at_peak_of[{i}]");
             let column = match peak {

@@ -5,12 +5,15 @@
 use super::analysis::Analysis;
 use super::raw::{AnalysisSpec, Kind, StudySpec};
 use super::record::RecordSpec;
+use super::vehicle_files::{VehicleFile, at_home, with_vehicle_files};
 use super::wear::WearSpec;
 use crate::design::{Block, Goes, JobAxis, NAMED_AXES, Varies};
 use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::traffic::TrafficDesign;
 use pontoon_core::vehicle::VehicleDesign;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -57,6 +60,12 @@ pub struct Study {
     pub question: Option<String>,
     /// Its vehicle before axes, as it is written.
     pub vehicle: VehicleDesign,
+    /// Vehicles that the axis `vehicle` names.
+    pub vehicles: BTreeMap<String, VehicleDesign>,
+    /// Its traffic and road before axes.
+    pub traffic: TrafficDesign,
+    /// Vehicles that stand in files of their own.
+    pub vehicle_files: Vec<VehicleFile>,
     /// Its analysis before axes.
     pub analysis: Analysis,
     /// The analysis as it is written, which is what axes change: a default is one of the kind and solver that they leave.
@@ -84,7 +93,7 @@ impl Study {
         } else {
             path.to_owned()
         };
-        let document = Document::read(&file)?;
+        let (document, vehicle_files) = with_vehicle_files(&file, Document::read(&file)?)?;
         let spec: StudySpec = typed(&file, "", &document)?;
         let bridge_path = file.parent().unwrap_or(Path::new("")).join(&spec.bridge);
         if !bridge_path.is_file() {
@@ -97,7 +106,7 @@ impl Study {
             ));
         }
         let bridge = read_bridge(&bridge_path)?;
-        Self::checked(file, document, spec, bridge)
+        Self::checked(file, document, spec, bridge, vehicle_files)
     }
 
     /// The study of documents that were read before; `file` stands for both in messages.
@@ -107,13 +116,24 @@ impl Study {
     pub fn of_documents(file: &Path, document: Document, bridge: Document) -> Result<Self, Refusal> {
         let spec: StudySpec = typed(file, "", &document)?;
         let bridge = bridge_of(file, bridge)?;
-        Self::checked(file.to_owned(), document, spec, bridge)
+        Self::checked(file.to_owned(), document, spec, bridge, Vec::new())
     }
 
-    fn checked(file: PathBuf, document: Document, spec: StudySpec, bridge: BridgeFile) -> Result<Self, Refusal> {
+    fn checked(
+        file: PathBuf,
+        document: Document,
+        spec: StudySpec,
+        bridge: BridgeFile,
+        vehicle_files: Vec<VehicleFile>,
+    ) -> Result<Self, Refusal> {
         check_name(&file, &spec.name)?;
-        let vehicle = filled_vehicle(&spec.vehicle).and_then(|v| v.check(bridge.design.module.breadth_m).map(|_| v));
-        let vehicle = vehicle.map_err(|e| Refusal::of(&file, "vehicle", e))?;
+        let breadth_m = bridge.design.module.breadth_m;
+        for (name, design) in &spec.vehicles {
+            let checked = design.check(breadth_m).map_err(|e| Refusal::of(&file, &format!("vehicles.{name}"), e));
+            checked.map_err(|refusal| at_home(&vehicle_files, refusal))?;
+        }
+        let vehicle = filled_vehicle(&spec.vehicle).and_then(|v| v.check(breadth_m).map(|_| v));
+        let vehicle = vehicle.map_err(|e| at_home(&vehicle_files, Refusal::of(&file, "vehicle", e)))?;
         let analysis = Analysis::of(&spec.analysis).map_err(|e| Refusal::of(&file, "analysis", e))?;
         spec.record.check(&file, &bridge.design)?;
         if let Some(wear) = &spec.wear {
@@ -128,6 +148,18 @@ impl Study {
                 return Err(refused.because(RefusalKind::Misplaced));
             }
         }
+        let traffic = spec.traffic();
+        if analysis.kind() != Kind::Crossing {
+            let given = [
+                ("traffic", traffic.traffic.is_some()),
+                ("column", traffic.column.is_some()),
+                ("roughness", traffic.roughness.is_some()),
+            ];
+            if let Some((key, _)) = given.iter().find(|(_, is)| *is) {
+                let refused = Refusal::new(&file, *key, format!("a {key}"), "none but in a study of crossings");
+                return Err(refused.because(RefusalKind::Misplaced));
+            }
+        }
         let mut known: Vec<String> = NAMED_AXES.iter().map(|axis| axis.name.to_owned()).collect();
         for (root, value) in [
             ("bridge", to_value(&bridge.design)),
@@ -136,6 +168,9 @@ impl Study {
             ("wear", to_value(&spec.wear)),
         ] {
             leaves(root, &value, &mut known);
+        }
+        if let Value::Object(keys) = to_value(&traffic) {
+            keys.iter().for_each(|(key, value)| leaves(key, value, &mut known));
         }
         let blocks = Block::read(&file, &spec.design, &known)?;
         let drawn = spec
@@ -149,6 +184,9 @@ impl Study {
             name: spec.name,
             question: spec.question,
             vehicle: spec.vehicle,
+            vehicles: spec.vehicles,
+            traffic,
+            vehicle_files,
             analysis_written: spec.analysis,
             analysis,
             wear: spec.wear,
@@ -156,6 +194,12 @@ impl Study {
             bridge,
             blocks,
         })
+    }
+
+    /// Whether an axis names vehicles.
+    fn varies_vehicle(&self) -> bool {
+        let mut axes = self.blocks.iter().flat_map(|block| &block.axes);
+        axes.any(|axis| axis.varies == Varies::Job(JobAxis::Vehicle))
     }
 
     /// Number of points of all designs, equal ones counted as often as they occur.
@@ -175,6 +219,12 @@ impl Study {
                 },
                 _,
             ) => self.wear.is_some(),
+            (
+                Goes::Job {
+                    axis: JobAxis::Vehicle, ..
+                },
+                _,
+            ) => self.varies_vehicle(),
             (Goes::Job { crossings, .. }, Kind::Crossing) => crossings,
             (Goes::Job { statics, .. }, Kind::Static) => statics,
             _ => false,

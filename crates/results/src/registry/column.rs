@@ -9,6 +9,7 @@ use crate::record::{
 };
 use crate::rest_rows::{DeadRow, FreeboardRow};
 use crate::table::TableName;
+use crate::vehicle_rows::{BodyRow, WheelRow};
 use pontoon_plan::input::Cell;
 use serde::Serialize;
 
@@ -80,6 +81,10 @@ pub(crate) enum ColumnSource {
     Dead(for<'a> fn(&RowOf<'a, DeadRow>) -> Cell<'a>),
     /// A corner of a deck.
     Freeboard(fn(&RowOf<'_, FreeboardRow>) -> Cell<'static>),
+    /// A wheel on its spring.
+    Wheel(fn(&RowOf<'_, WheelRow>) -> Cell<'static>),
+    /// A motion of a body.
+    Body(for<'a> fn(&RowOf<'a, BodyRow>) -> Cell<'a>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -143,8 +148,12 @@ pub enum When {
     Freeboards,
     /// Where histories of places are recorded.
     PlaceHistories,
-    /// Where histories of pins are recorded.
+    /// Where histories of pins or vehicles are recorded.
     PinHistories,
+    /// Where any job has a vehicle on springs.
+    Springs,
+    /// Where histories of vehicles are recorded.
+    VehicleHistories,
 }
 
 /// How many digits of a number people read.
@@ -343,6 +352,8 @@ entries! {
     of_bank: Banks, Bank(fn(&RowOf<'_, BankRow>) -> Cell<'static>);
     at_rest: Dead, Dead(for<'a> fn(&RowOf<'a, DeadRow>) -> Cell<'a>);
     of_freeboard: Freeboards, Freeboard(fn(&RowOf<'_, FreeboardRow>) -> Cell<'static>);
+    of_wheel: Wheels, Wheel(fn(&RowOf<'_, WheelRow>) -> Cell<'static>);
+    of_body: Bodies, Body(for<'a> fn(&RowOf<'a, BodyRow>) -> Cell<'a>);
 }
 
 pub(super) const fn peak_card(

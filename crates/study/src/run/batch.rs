@@ -161,5 +161,8 @@ fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) 
 }
 
 fn histories(study: &Study, job: &Job) -> Record {
-    study.record.of_crossing(&job.bridge.design)
+    match job.as_crossing() {
+        Some(crossing) => study.record.of_crossing(&job.bridge.design, &crossing.traffic()),
+        None => study.record.of_bridge(&job.bridge.design),
+    }
 }

@@ -13,15 +13,16 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::{
-    AtPeak, BankPeaks, CrossingResponse, DeadState, ForcePeaks, JointPeaks, Peak, PlacePeaks, PositionPeaks, Record,
-    Recorded, Subject,
+    AtPeak, BankPeaks, CrossingResponse, DeadState, ForcePeaks, JointPeaks, MotionPeaks, Peak, PlacePeaks, PositionPeaks,
+    Record, Recorded, Subject, WheelPeaks,
 };
 use pontoon_core::traffic::Traffic;
-use pontoon_plan::job::{CrossingJob, Job};
+use pontoon_core::vehicle::Patch;
+use pontoon_plan::job::{CrossingJob, Job, body_word};
 use pontoon_plan::study_file::PeakColumn;
 use pontoon_results::{
-    AtPeakRow, BankRow, ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, HistorySeries, JobRecord,
-    NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow, Summary,
+    AtPeakRow, BankRow, BodyRow, ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, HistorySeries, JobRecord,
+    NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow, Summary, WheelRow,
 };
 
 /// A job's record or why it failed.
@@ -198,7 +199,7 @@ fn recorded(crossing: &CrossingJob<'_>, response: CrossingResponse, models: &Sha
     let job = crossing.job;
     let static_peaks_m = models.creeping_peaks_m(job)?;
     let mut record = rows(
-        job,
+        (job, &crossing.traffic()),
         response,
         models.dead(job)?.as_deref(),
         static_peaks_m.as_deref().map(Vec::as_slice),
@@ -242,7 +243,7 @@ fn joint_rows(joint: &JointPeaks) -> impl Iterator<Item = ConnectorRow> {
 }
 
 fn rows(
-    job: &Job,
+    (job, traffic): (&Job, &Traffic),
     mut response: CrossingResponse,
     dead: Option<&DeadState>,
     static_peaks_m: Option<&[f64]>,
@@ -259,6 +260,7 @@ fn rows(
     let sections: Vec<SectionRow> = sections.map(|section| rounding.section_row(section)).collect();
     let named = Named {
         design: &job.bridge.design,
+        traffic,
         places_x_m: &job.record.places_x_m,
     };
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
@@ -268,6 +270,7 @@ fn rows(
         static_peak_deflection_m: static_peak_m,
         bottom_emerged: response.bottom_emerged,
         deck_submerged: response.deck_submerged,
+        contact_lost_s: response.recorded.contact_lost_s,
         min_contact_force_n: Some(response.min_contact_force_n).filter(|force| force.is_finite()),
         steps: Some(response.statistics.steps),
         newton_iterations: Some(response.statistics.newton_iterations),
@@ -296,6 +299,8 @@ fn rows(
         banks: recorded.banks.iter().map(bank_row).collect(),
         dead: dead_rows(job, dead),
         freeboards,
+        wheels: recorded.wheels.iter().map(wheel_row).collect(),
+        bodies: recorded.motions.iter().map(body_row).collect(),
         at_peaks: recorded.at_peaks.iter().flat_map(|at| named.at_peak(at)).collect(),
         histories: named.histories(recorded),
         modes: Vec::new(),
@@ -307,20 +312,35 @@ fn rows(
 /// What rows tell of the numbers of a bridge's response.
 struct Named<'a> {
     design: &'a BridgeDesign,
+    traffic: &'a Traffic,
     places_x_m: &'a [f64],
 }
 
 impl Named<'_> {
+    fn patch(&self, vehicle: usize, wheel: usize) -> Option<&Patch> {
+        self.traffic.vehicles.get(vehicle)?.vehicle.patches.get(wheel)
+    }
+
     fn place(&self, subject: Subject) -> NumberPlace {
         let (x_m, y_m) = match subject {
             Subject::Place(index) => (self.places_x_m.get(index).copied(), None),
             Subject::Connector { index, .. } => (None, self.design.connectors.y_m.get(index).copied()),
             Subject::Pin { joint, index, .. } => (None, self.design.hinges_of(joint).y_m.get(index).copied()),
-            Subject::Position(_) | Subject::Joint(_) | Subject::Section { .. } => (None, None),
+            Subject::Wheel { vehicle, wheel } => (None, self.patch(vehicle, wheel).map(|patch| patch.y_m)),
+            Subject::Position(_) | Subject::Joint(_) | Subject::Section { .. } | Subject::Body { .. } => (None, None),
+        };
+        let (vehicle, axle) = match subject {
+            Subject::Wheel { vehicle, wheel } => {
+                (Some(vehicle + 1), self.patch(vehicle, wheel).map(|patch| patch.axle + 1))
+            }
+            Subject::Body { vehicle, .. } => (Some(vehicle + 1), None),
+            _ => (None, None),
         };
         NumberPlace {
             quantity: quantity_word(subject.quantity()).to_owned(),
             position: subject.position(),
+            vehicle,
+            axle,
             x_m,
             y_m,
         }
@@ -358,6 +378,30 @@ impl Named<'_> {
             value: value + 0.0,
         };
         at.numbers.iter().map(row).collect()
+    }
+}
+
+fn wheel_row(peaks: &WheelPeaks) -> WheelRow {
+    let least = Extreme {
+        value: Some(peaks.least.value).filter(|force| force.is_finite()),
+        time_s: Some(peaks.least.time_s).filter(|_| peaks.least.value.is_finite()),
+    };
+    WheelRow {
+        vehicle: peaks.vehicle + 1,
+        axle: peaks.axle + 1,
+        y_m: peaks.y_m,
+        largest: extreme(peaks.largest),
+        least,
+        lost_s: Some(peaks.lost_s),
+    }
+}
+
+fn body_row(peaks: &MotionPeaks) -> BodyRow {
+    BodyRow {
+        vehicle: peaks.vehicle + 1,
+        quantity: body_word(peaks.motion).to_owned(),
+        sides: [extreme(peaks.up), extreme(peaks.down)],
+        acceleration: extreme(peaks.acceleration),
     }
 }
 

@@ -45,6 +45,13 @@ pub(super) fn cut<'a>(study: &'a Study, jobs: &'a [Job], batch: Batch) -> impl I
     })
 }
 
+/// Series of the histories of so many vehicles at most, and rows of all vehicles on springs.
+fn rows_of_vehicles(recorded: usize, job: &Job) -> (usize, usize) {
+    let (wheels, bodies) = job.on_springs();
+    let rows = wheels.len() + bodies.len();
+    (if recorded == 0 { 0 } else { rows }, rows)
+}
+
 /// Rows that a job leaves, those that bisected steps add to its histories apart.
 fn rows(study: &Study, job: &Job) -> usize {
     let (record, design) = (&study.record, &job.bridge.design);
@@ -52,6 +59,7 @@ fn rows(study: &Study, job: &Job) -> usize {
         return 1 + modes.count;
     }
     let positions = if record.positions { design.positions() } else { 0 };
+    let vehicles = rows_of_vehicles(record.histories.vehicles.len(), job);
     let of_joint = if record.connectors {
         1 + design.connectors.y_m.len()
     } else {
@@ -63,7 +71,7 @@ fn rows(study: &Study, job: &Job) -> usize {
     let places = record.places_x_m.len();
     // at a peak all of it and each direction of a pin
     let at_peaks = record.at_peak_of.len() * (design.positions() + places + (of_joint + 3 * pins + sections) * joints);
-    let series = record.histories.series(design) * job.steps();
+    let series = (record.histories.series(design) + vehicles.0) * job.steps();
     let of_bank = |bank: &BankSpec| 1 + design.bank_places_y_m(bank).len();
     let banks: usize = design.banks.iter().map(of_bank).sum();
     let freeboards = if record.freeboards { 4 * design.modules } else { 0 };
@@ -73,5 +81,5 @@ fn rows(study: &Study, job: &Job) -> usize {
     } else {
         0
     };
-    1 + positions + places + banks + freeboards + dead + (of_joint + pins + sections) * joints + at_peaks + series
+    1 + vehicles.1 + positions + places + banks + freeboards + dead + (of_joint + pins + sections) * joints + at_peaks + series
 }

@@ -120,7 +120,7 @@ pub(super) fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
 
 pub(super) fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
     let job = crossing.job;
-    let record = job.record.of_crossing(&job.bridge.design);
+    let record = job.record.of_bridge(&job.bridge.design);
     Some(OperatorKey {
         bridge: bridge_key(crossing.job),
         tolerance: crossing.operator_tolerance()?.to_bits(),

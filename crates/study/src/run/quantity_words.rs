@@ -3,6 +3,7 @@
 //! Knows both. Does not know what a number is made of.
 
 use pontoon_core::response::{Axis, Quantity, Section};
+use pontoon_plan::job::body_word;
 
 /// The word of a recorded number.
 pub(super) fn quantity_word(quantity: Quantity) -> &'static str {
@@ -19,12 +20,15 @@ pub(super) fn quantity_word(quantity: Quantity) -> &'static str {
         Quantity::Section(Section::Torsion) => "torsion_nm",
         Quantity::Section(Section::Bending) => "bending_nm",
         Quantity::Section(Section::LateralBending) => "lateral_bending_nm",
+        Quantity::Wheel => "wheel_n",
+        Quantity::Body(motion) => body_word(motion),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pontoon_core::response::BodyMotion;
     use pontoon_results::{QUANTITIES, SECTION_QUANTITIES};
 
     #[test]
@@ -34,7 +38,9 @@ mod tests {
         let all = [Quantity::Deflection, Quantity::Force]
             .into_iter()
             .chain(pins)
-            .chain(sections);
+            .chain(sections)
+            .chain([Quantity::Wheel])
+            .chain([BodyMotion::Bounce, BodyMotion::Pitch, BodyMotion::Roll].map(Quantity::Body));
         assert_eq!(all.map(quantity_word).collect::<Vec<_>>(), QUANTITIES);
         assert_eq!(sections.map(quantity_word), SECTION_QUANTITIES);
     }

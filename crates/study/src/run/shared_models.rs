@@ -378,7 +378,7 @@ impl SharedModels {
 
     /// Whether a load can creep over the bridge of a job: something linear holds it.
     fn has_static_peak(&self, job: &Job) -> bool {
-        is_held(job) && !self.statics(job).is_ok_and(|solver| solver.is_loose())
+        job.is_single() && is_held(job) && !self.statics(job).is_ok_and(|solver| solver.is_loose())
     }
 
     /// The modules, for a later run.
