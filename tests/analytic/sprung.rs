@@ -114,7 +114,12 @@ impl Case {
         };
         if self.ramp_m != 0.0 {
             let height_m = self.ramp_m / HEAVIER;
-            let table = [[0.0, 0.0], [SPAN_M / 3.0, 0.0], [0.5 * SPAN_M, height_m], [SPAN_M, height_m]];
+            let table = [
+                [0.0, 0.0],
+                [SPAN_M / 3.0, 0.0],
+                [0.5 * SPAN_M, height_m],
+                [SPAN_M, height_m],
+            ];
             let design = RoadDesign {
                 table: Some(table.to_vec()),
                 ..RoadDesign::default()
@@ -206,20 +211,87 @@ fn look() {
     };
     let cases = [
         ("plain", Case::plain()),
-        ("ramp", Case { ramp_m: 0.01, ..Case::plain() }),
-        ("ramp damped", Case { ramp_m: 0.01, vehicle: sprung(5750.0, 1.595e6, 4e5), ..Case::plain() }),
-        ("accelerated", Case { ramp_m: 0.01, vehicle: sprung(5750.0, 1.595e6, 4e5), acceleration_m_s2: 10.0, ..Case::plain() }),
+        (
+            "ramp",
+            Case {
+                ramp_m: 0.01,
+                ..Case::plain()
+            },
+        ),
+        (
+            "ramp damped",
+            Case {
+                ramp_m: 0.01,
+                vehicle: sprung(5750.0, 1.595e6, 4e5),
+                ..Case::plain()
+            },
+        ),
+        (
+            "accelerated",
+            Case {
+                ramp_m: 0.01,
+                vehicle: sprung(5750.0, 1.595e6, 4e5),
+                acceleration_m_s2: 10.0,
+                ..Case::plain()
+            },
+        ),
         ("classical", Case::classical()),
-        ("soft", Case { vehicle: sprung(5750.0, 1e2, 0.0), ..Case::classical() }),
-        ("stiff", Case { vehicle: sprung(5750.0, 1e10, 0.0), ..Case::classical() }),
-        ("none", Case { vehicle: rigid(Inertia::None), ..Case::classical() }),
-        ("convective", Case { vehicle: rigid(Inertia::Convective), ..Case::classical() }),
-        ("local", Case { vehicle: rigid(Inertia::Local), ..Case::classical() }),
-        ("two masses", Case { ei: 2.87e9 * 0.29, mass_kg_m: 230.3, rayleigh: Rayleigh { a: 0.001, b: 0.01 }, vehicle: two_masses(), ..Case::classical() }),
+        (
+            "soft",
+            Case {
+                vehicle: sprung(5750.0, 1e2, 0.0),
+                ..Case::classical()
+            },
+        ),
+        (
+            "stiff",
+            Case {
+                vehicle: sprung(5750.0, 1e10, 0.0),
+                ..Case::classical()
+            },
+        ),
+        (
+            "none",
+            Case {
+                vehicle: rigid(Inertia::None),
+                ..Case::classical()
+            },
+        ),
+        (
+            "convective",
+            Case {
+                vehicle: rigid(Inertia::Convective),
+                ..Case::classical()
+            },
+        ),
+        (
+            "local",
+            Case {
+                vehicle: rigid(Inertia::Local),
+                ..Case::classical()
+            },
+        ),
+        (
+            "two masses",
+            Case {
+                ei: 2.87e9 * 0.29,
+                mass_kg_m: 230.3,
+                rayleigh: Rayleigh { a: 0.001, b: 0.01 },
+                vehicle: two_masses(),
+                ..Case::classical()
+            },
+        ),
     ];
     for (what, case) in cases {
         for elements in [20, 40, 80] {
-            println!("{what} {elements}: {:?}", Case { elements, ..case.clone() }.solve());
+            println!(
+                "{what} {elements}: {:?}",
+                Case {
+                    elements,
+                    ..case.clone()
+                }
+                .solve()
+            );
         }
     }
 }

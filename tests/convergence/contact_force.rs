@@ -48,7 +48,9 @@ fn smallest_contact_force_converges_with_the_step() {
             "a wrong weight passes"
         );
         let reference = CrossingSolver::new(&ready.bridge, &settings(ready.rayleigh(), 0.005, 0.9)).expect("a solver");
-        let reference = reference.solve_single(&vehicle, &crossing(PAPER_LOAD_N)).expect("solved");
+        let reference = reference
+            .solve_single(&vehicle, &crossing(PAPER_LOAD_N))
+            .expect("solved");
         let apart = (reference.min_contact_force_n - by_operator(0.005, PAPER_LOAD_N)).abs() / PAPER_LOAD_N;
         assert!(
             apart < 5e-3,

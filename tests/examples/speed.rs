@@ -135,7 +135,10 @@ fn breakdown(scenario: &Scenario, seconds: f64) -> Vec<Value> {
 /// Seconds and operations of each part of a step, of one crossing of those that are solved side by side.
 fn parts(scenario: &Scenario, jobs: &[(&Vehicle, &SingleCrossing)], seconds: f64) -> Vec<Value> {
     let begun = Instant::now();
-    let traffics: Vec<_> = jobs.iter().map(|(vehicle, crossing)| crossing.traffic(vehicle)).collect();
+    let traffics: Vec<_> = jobs
+        .iter()
+        .map(|(vehicle, crossing)| crossing.traffic(vehicle))
+        .collect();
     let crossings: Vec<_> = jobs.iter().map(|(_, crossing)| crossing.crossing()).collect();
     let list: Vec<_> = traffics.iter().zip(&crossings).collect();
     let mut least: Option<Laps> = None;

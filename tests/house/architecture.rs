@@ -291,7 +291,9 @@ const PURE: [&str; 8] = [
 
 /// Numbers in the unit of something else that is named beside them: a column, a quantity, a parameter whose name ends in
 /// its unit.
-const OF_WHAT_IS_NAMED: [&str; 32] = [
+const OF_WHAT_IS_NAMED: [&str; 33] = [
+    // pairs of a place and a height, both in metres
+    "table",
     "normal",
     "uniform",
     "time_step_tolerance",
@@ -353,6 +355,7 @@ fn every_number_that_a_person_types_ends_in_its_unit() {
     for schema in [
         pontoon_plan::schema::study(),
         pontoon_plan::schema::bridge(),
+        pontoon_plan::schema::vehicle(),
         pontoon_judge::schema::reference(),
         pontoon_judge::schema::parameters(),
     ] {

@@ -69,7 +69,10 @@ fn operator_takes_dashpots_as_the_reference_does() {
                 ..Record::default()
             };
             let [found, expected] = both.solve(&vehicle, &crossing(&right, plain.clone())).expect("solved");
-            let twin = both.operated.solve_single(&vehicle, &crossing(&wrong, plain)).expect("solved");
+            let twin = both
+                .operated
+                .solve_single(&vehicle, &crossing(&wrong, plain))
+                .expect("solved");
             let [of, wrong] = [&found, &twin].map(|r| Apart::of(r, &expected, PAPER_LOAD_N).most());
             held(&format!("{connection:?}, {inertia:?}, {h} s"), ROUNDING, of, wrong);
             assert_eq!(found.statistics, expected.statistics);

@@ -66,7 +66,10 @@ fn operator_takes_unlike_joints_as_the_reference_does() {
     for connection in [PAPER_GAPS, Connection::Linear] {
         let plain = ready.crossing(connection, PAPER_LOAD_N, 8.0);
         let [found, expected] = both.solve(&vehicle, &crossing(&right, plain.clone())).expect("solved");
-        let twin = both.operated.solve_single(&vehicle, &crossing(&wrong, plain)).expect("solved");
+        let twin = both
+            .operated
+            .solve_single(&vehicle, &crossing(&wrong, plain))
+            .expect("solved");
         let [of, wrong] = [&found, &twin].map(|r| Apart::of(r, &expected, PAPER_LOAD_N).most());
         held(&format!("{connection:?}"), ROUNDING, of, wrong);
         assert_eq!(found.statistics, expected.statistics);

@@ -201,7 +201,9 @@ fn edge_inside_a_module_is_not_missed() {
                 let bridge = Ready::new(&above, Model::SuperElement).bridge;
                 let settings = settings(pair.right.rayleigh(), 0.01, 0.9);
                 let operated = OperatorSolver::new(&bridge, &pair.operators[0], &settings);
-                let again = operated.solve_single(&footprint(&[y_m], inertia), &crossing).expect("solved");
+                let again = operated
+                    .solve_single(&footprint(&[y_m], inertia), &crossing)
+                    .expect("solved");
                 assert_eq!(edge(&again), edge(&found), "{what}: a freeboard moves nothing");
                 inside += usize::from(again.deck_submerged == Some(false));
             }

@@ -165,7 +165,12 @@ fn operator_takes_traffic_as_the_reference_does() {
         (
             "springs without tyres, convective",
             PAPER_GAPS,
-            Box::new(|factor| on([driven(&on_rigid_wheels(Inertia::Convective, factor), Drive::steady(8.0))])),
+            Box::new(|factor| {
+                on([driven(
+                    &on_rigid_wheels(Inertia::Convective, factor),
+                    Drive::steady(8.0),
+                )])
+            }),
         ),
         (
             "five that meet and follow",
@@ -225,7 +230,7 @@ fn operator_takes_traffic_as_the_reference_does() {
         let [of, twin] = [&found, &other].map(|r| Apart::of(r, &expected, PAPER_LOAD_N).most());
         held(&format!("a rough road, {lines:?}"), ROUNDING, of, twin);
         same_account("a rough road", &found, &expected);
-        assert_eq!(found.min_contact_force_n, 0.0, "no axle has left the road");
+        assert!(found.recorded.contact_lost_s > Some(0.05), "no wheel has left the road");
     }
 }
 

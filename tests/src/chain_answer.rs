@@ -187,7 +187,10 @@ fn axles(wheels: &[WheelPeaks]) -> Vec<Value> {
                 "largest_time_s": first.largest.time_s, "least_n": all * first.least.value,
                 "least_time_s": first.least.time_s, "contact_lost_s": first.lost_s })
     };
-    wheels.chunk_by(|a, b| (a.vehicle, a.axle) == (b.vehicle, b.axle)).map(of).collect()
+    wheels
+        .chunk_by(|a, b| (a.vehicle, a.axle) == (b.vehicle, b.axle))
+        .map(of)
+        .collect()
 }
 
 fn of_static(scenario: &ChainScenario, case: &StaticCase, response: &StaticResponse) -> Value {

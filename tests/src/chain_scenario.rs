@@ -149,7 +149,11 @@ impl ChainScenario {
         let connection = spec.connection(&chain)?;
         let own_laws = design.own_laws(connection, None)?;
         let of_vehicle = |e: InvalidInput| e.under("vehicle");
-        let own = spec.vehicle.clone().unwrap_or_else(|| chain.vehicle_design());
+        let standing = spec.standing();
+        let own = standing
+            .and_then(|entry| entry.vehicle.clone())
+            .or_else(|| spec.vehicle.clone());
+        let own = own.unwrap_or_else(|| chain.vehicle_design());
         let vehicle = own.check(chain.module.breadth_m).map_err(of_vehicle)?;
         plane(&vehicle).map_err(of_vehicle)?;
         let stiffness = design.connectors.stiffness_n_m;
@@ -185,12 +189,16 @@ impl ChainScenario {
             Kind::Static => {
                 let moving = [
                     ("speed_m_s", spec.speed_m_s.is_some()),
-                    ("traffic", spec.traffic.is_some()),
+                    ("traffic", spec.traffic.is_some() && standing.is_none()),
                     ("column", spec.column.is_some()),
                     ("roughness", spec.roughness.is_some()),
                 ];
                 none_of(&moving, "a key of crossings", "none of them in a static case")?;
-                let load_n = spec.load_n.or(vehicle.weight_n).unwrap_or(chain.weight_n);
+                let load_n = standing
+                    .and_then(|entry| entry.load_n)
+                    .or(spec.load_n)
+                    .or(vehicle.weight_n)
+                    .unwrap_or(chain.weight_n);
                 positive("load_n", load_n)?;
                 ChainTask::Static(StaticCase {
                     connection,
@@ -317,7 +325,11 @@ fn time_step(
 ) -> Result<f64, InvalidInput> {
     let key = "analysis.time_step_s";
     let step = positive(key, asked_s.unwrap_or(TIME_STEP_S))?;
-    let fastest_m_s = traffic.vehicles.iter().map(|driven| driven.drive.speed_m_s).fold(0.0, f64::max);
+    let fastest_m_s = traffic
+        .vehicles
+        .iter()
+        .map(|driven| driven.drive.speed_m_s)
+        .fold(0.0, f64::max);
     let passage = design.shortest_module_m() / fastest_m_s;
     if step > passage {
         let allowed = format!("at most {}, the passage of one module", bound(passage));
@@ -347,6 +359,15 @@ impl ScenarioSpec {
                 gap_compression_m,
             },
         })
+    }
+
+    /// The one vehicle of a static case, where it is written as a traffic.
+    fn standing(&self) -> Option<&TrafficEntry> {
+        let is_static = matches!(self.analysis.kind, Kind::Static);
+        match self.traffic.as_deref() {
+            Some([entry]) if is_static && entry.speed_m_s.is_none() => Some(entry),
+            _ => None,
+        }
     }
 
     /// What drives in a crossing, in which no load stands; the chain's own load where nobody says a weight.

@@ -449,6 +449,8 @@ pub(crate) enum SchemaOf {
     Study,
     /// A bridge file.
     Bridge,
+    /// A vehicle file.
+    Vehicle,
     /// A reference file.
     Reference,
     /// A file of parameters for `calibrate`.

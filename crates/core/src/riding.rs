@@ -69,7 +69,12 @@ impl Ride {
     fn energy_j(&self, springs: &Springs) -> f64 {
         let mut twice = 0.0;
         for (i, (z, v)) in self.z.iter().zip(&self.v).enumerate() {
-            let force: f64 = self.z.iter().enumerate().map(|(j, z)| springs.stiffness[(i, j)] * z).sum();
+            let force: f64 = self
+                .z
+                .iter()
+                .enumerate()
+                .map(|(j, z)| springs.stiffness[(i, j)] * z)
+                .sum();
             twice += springs.inertia[i] * v * v + z * force;
         }
         for (wheel, under_m) in springs.wheels.iter().zip(&self.under_m) {
@@ -92,7 +97,7 @@ impl Ride {
         RideReading {
             wheels_n: &self.wheels_n,
             scale,
-            motions: &springs.motions,
+            body: &springs.body,
             state: &self.z,
             rest: &springs.rest,
             accelerations: &self.a,
@@ -184,12 +189,18 @@ impl RidingStep {
             inertia + c_c * springs.damping[(i, j)] + c_k * springs.stiffness[(i, j)]
         });
         // positive definite, as every motion has a mass
-        let inverse = matrix.cholesky().map_or_else(|| DMatrix::identity(n, n), |factor| factor.inverse());
+        let inverse = matrix
+            .cholesky()
+            .map_or_else(|| DMatrix::identity(n, n), |factor| factor.inverse());
         let g = DMatrix::from_fn(springs.wheels.len(), n, |i, j| springs.wheels[i].row[j]);
         let lift = &inverse * g.transpose();
         Self {
             among: &g * &lift,
-            kappa: springs.wheels.iter().map(|of| of.stiffness_n_m + scheme.c_v * of.damping_n_s_m).collect(),
+            kappa: springs
+                .wheels
+                .iter()
+                .map(|of| of.stiffness_n_m + scheme.c_v * of.damping_n_s_m)
+                .collect(),
             springs: Arc::clone(springs),
             scheme,
             inverse,
@@ -218,7 +229,8 @@ impl RidingStep {
         for i in 0..n {
             let mut known = -springs.weight_n[i] - springs.inertia[i] * (m_v * old.v[i] + m_a * old.a[i]);
             for j in 0..n {
-                known -= springs.damping[(i, j)] * (at_v * old.v[j] + at_a * old.a[j]) + springs.stiffness[(i, j)] * old.z[j];
+                known -= springs.damping[(i, j)] * (at_v * old.v[j] + at_a * old.a[j])
+                    + springs.stiffness[(i, j)] * old.z[j];
             }
             for (wheel, force) in springs.wheels.iter().zip(&old.wheels_n) {
                 known += s.alpha_f * wheel.row[i] * force;

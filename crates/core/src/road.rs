@@ -176,7 +176,10 @@ impl RoadDesign {
         let way_m = ways.length_m + 2.0 * beyond_m;
         let least = ((HIGHEST_1_M - LOWEST_1_M) * way_m).ceil();
         if (waves as f64) < least {
-            let allowed = format!("at least {least} waves, by which it repeats after the {} m of bridge and run-in on both sides", bound(way_m));
+            let allowed = format!(
+                "at least {least} waves, by which it repeats after the {} m of bridge and run-in on both sides",
+                bound(way_m)
+            );
             return Err(InvalidInput::new("waves", waves, allowed).because(Problem::Conflict));
         }
         let seed = self.seed.unwrap_or(1);
@@ -185,7 +188,14 @@ impl RoadDesign {
             beyond_m,
             run_in_m,
         };
-        let of_seed = |seed: u64| Line::waves(Waves { class, seed, waves, way });
+        let of_seed = |seed: u64| {
+            Line::waves(Waves {
+                class,
+                seed,
+                waves,
+                way,
+            })
+        };
         let lines = match self.lines.unwrap_or_default() {
             RoadLines::Shared => vec![(None, of_seed(seed))],
             RoadLines::Own => {
@@ -239,11 +249,18 @@ fn check_table(table: &[[f64; 2]], length_m: f64) -> Result<(), InvalidInput> {
         }
     }
     let (Some(first), Some(last)) = (table.first(), table.last()) else {
-        return Err(InvalidInput::new("table", "an empty list", "places from 0 to the bridge's end"));
+        return Err(InvalidInput::new(
+            "table",
+            "an empty list",
+            "places from 0 to the bridge's end",
+        ));
     };
     if first[0] > 0.0 || last[0] < length_m {
         let found = format!("a profile from {} to {} m", bound(first[0]), bound(last[0]));
-        let allowed = format!("one of the whole bridge, from 0 or before to {} m or beyond", bound(length_m));
+        let allowed = format!(
+            "one of the whole bridge, from 0 or before to {} m or beyond",
+            bound(length_m)
+        );
         return Err(InvalidInput::new("table", found, allowed).because(Problem::Conflict));
     }
     Ok(())
@@ -302,7 +319,8 @@ impl Line {
     }
 
     fn profile(&self) -> &Profile {
-        self.profile.get_or_init(|| self.waves.map_or(Profile::Table(Vec::new()), |waves| waves.profile()))
+        self.profile
+            .get_or_init(|| self.waves.map_or(Profile::Table(Vec::new()), |waves| waves.profile()))
     }
 }
 
@@ -318,7 +336,10 @@ impl PartialEq for Line {
 impl Road {
     /// The profile of a wheel line at `y_m`.
     pub fn profile(&self, y_m: f64) -> &Profile {
-        let own = self.lines.iter().find(|(line, _)| line.is_none_or(|line| line == millimetres(y_m)));
+        let own = self
+            .lines
+            .iter()
+            .find(|(line, _)| line.is_none_or(|line| line == millimetres(y_m)));
         own.unwrap_or(&self.lines[0]).1.profile()
     }
 
@@ -370,7 +391,9 @@ impl Profile {
         match self {
             Self::Table(table) => {
                 let next = table.partition_point(|[x, _]| *x <= x_m);
-                let (Some(&[a, h_a]), Some(&[b, h_b])) = (next.checked_sub(1).and_then(|i| table.get(i)), table.get(next)) else {
+                let (Some(&[a, h_a]), Some(&[b, h_b])) =
+                    (next.checked_sub(1).and_then(|i| table.get(i)), table.get(next))
+                else {
                     let end = if next == 0 { table.first() } else { table.last() };
                     return [end.map_or(0.0, |end| end[1]), 0.0];
                 };
@@ -383,17 +406,25 @@ impl Profile {
                     return [0.0; 2];
                 }
                 let (sine, cosine) = libm::sincos(TAU * s);
-                [0.5 * of.height_m * (1.0 - cosine), 0.5 * of.height_m * TAU / of.length_m * sine]
+                [
+                    0.5 * of.height_m * (1.0 - cosine),
+                    0.5 * of.height_m * TAU / of.length_m * sine,
+                ]
             }
             Self::Step(of) => {
                 let s = (x_m - of.x_m) / of.length_m;
-                let slope = if (0.0..1.0).contains(&s) { of.height_m / of.length_m } else { 0.0 };
+                let slope = if (0.0..1.0).contains(&s) {
+                    of.height_m / of.length_m
+                } else {
+                    0.0
+                };
                 [of.height_m * s.clamp(0.0, 1.0), slope]
             }
             Self::Places { first, places } => {
                 let at = x_m / PLACES_M - *first as f64;
                 let left = (at.floor().max(0.0) as usize).min(places.len() - 2);
-                let (t, [[h_0, s_0], [h_1, s_1]]) = ((at - left as f64).clamp(0.0, 1.0), [places[left], places[left + 1]]);
+                let (t, [[h_0, s_0], [h_1, s_1]]) =
+                    ((at - left as f64).clamp(0.0, 1.0), [places[left], places[left + 1]]);
                 let (rise, [m_0, m_1]) = (h_1 - h_0, [s_0 * PLACES_M, s_1 * PLACES_M]);
                 let (b, c) = (3.0 * rise - 2.0 * m_0 - m_1, m_0 + m_1 - 2.0 * rise);
                 [
@@ -504,7 +535,11 @@ mod tests {
     #[test]
     fn waves_of_a_seed_are_those_of_another_program() {
         let mut phases = SplitMix64(1);
-        for expected in [0.566_561_575_172_280_9, 0.745_781_757_262_701_1, 0.971_002_753_586_796_2] {
+        for expected in [
+            0.566_561_575_172_280_9,
+            0.745_781_757_262_701_1,
+            0.971_002_753_586_796_2,
+        ] {
             assert!((phases.unit() - expected).abs() < 1e-15);
         }
         let checks = [(0.0, 0, -0.015_274_32), (10.0, 0, 0.015_467_85), (10.0, 1, 0.014_151_8)];

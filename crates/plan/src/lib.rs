@@ -6,7 +6,7 @@
 //! | [`design`] | designs of a study: axes, blocks, points, sampling |
 //! | [`study_file`] | the study file and the bridge file: their keys, defaults and ranges |
 //! | [`job`] | jobs: a point of a design made into a checked job, its key, equal jobs merged, shards |
-//! | [`schema`] | the JSON Schema of study and bridge files |
+//! | [`schema`] | the JSON Schema of study, bridge and vehicle files |
 //!
 //! Knows the files that people write. Does not know solvers, tables or journals, runs nothing and prints nothing.
 

@@ -1,10 +1,11 @@
-//! The JSON Schema of study and bridge files.
+//! The JSON Schema of study, bridge and vehicle files.
 //!
 //! Knows which type stands for which file. Does not know more than those types: cross-checks (a track on the deck, a
 //! time step within a module's passage) are not expressible there.
 
 use crate::study_file::StudySpec;
 use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::vehicle::VehicleDesign;
 use serde_json::{Value, json};
 
 /// Of a study file.
@@ -15,6 +16,11 @@ pub fn study() -> Value {
 /// Of a bridge file.
 pub fn bridge() -> Value {
     titled(schemars::schema_for!(BridgeDesign), "pontoon bridge")
+}
+
+/// Of a vehicle file.
+pub fn vehicle() -> Value {
+    titled(schemars::schema_for!(VehicleDesign), "pontoon vehicle")
 }
 
 /// A schema with its title, which a file may name.

@@ -9,7 +9,7 @@ use super::table::{Table, TableName};
 use crate::JobRecord;
 use pontoon_plan::design::{AxisValues, NamedAxis, Varies};
 use pontoon_plan::input::Cell;
-use pontoon_plan::job::Job;
+use pontoon_plan::job::{Job, has_springs};
 use pontoon_plan::study_file::{Kind, RecordSpec, Study};
 use std::io;
 use std::sync::Arc;
@@ -63,7 +63,7 @@ impl Layout {
     pub(super) fn new(study: &Study, jobs: &[Job]) -> Self {
         let (record, kind) = (&study.record, study.analysis.kind());
         let loaded = kind != Kind::Modes;
-        let springs = jobs.iter().any(Job::has_springs);
+        let springs = jobs.iter().any(has_springs);
         let left = |name: &TableName| match name {
             TableName::Jobs => true,
             TableName::Positions => record.positions && loaded,

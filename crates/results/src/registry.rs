@@ -18,8 +18,9 @@ use crate::quantities::{DEAD_QUANTITIES, QUANTITIES, SECTION_QUANTITIES};
 use crate::record::JobRecord;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use column::{
-    at_peak, at_rest, centimetres, kilonewtons, measure, of_bank, of_body, of_connector, of_freeboard, of_job, of_joint,
-    of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, of_wheel, peak_card, plain_card,
+    at_peak, at_rest, centimetres, kilonewtons, measure, of_bank, of_body, of_connector, of_freeboard, of_job,
+    of_joint, of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, of_wheel, peak_card,
+    plain_card,
 };
 use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;

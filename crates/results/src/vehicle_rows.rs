@@ -3,7 +3,7 @@
 //! Knows which numbers a wheel and a body leave. Does not know tables.
 
 use super::extreme::Extreme;
-use pontoon_plan::job::{Job, SpringWheelPlace};
+use pontoon_plan::job::{Job, SpringWheelPlace, on_springs};
 use serde::{Deserialize, Serialize};
 
 /// A row of the table of wheels.
@@ -39,7 +39,7 @@ pub struct BodyRow {
 /// The rows of the wheels and bodies of a job that failed.
 pub(super) fn vehicle_rows_of_none(job: &Job) -> (Vec<WheelRow>, Vec<BodyRow>) {
     let none = Extreme::default();
-    let (wheels, bodies) = job.on_springs();
+    let (wheels, bodies) = on_springs(job);
     let wheel = |of: SpringWheelPlace| WheelRow {
         vehicle: of.vehicle,
         axle: of.axle,
@@ -54,5 +54,8 @@ pub(super) fn vehicle_rows_of_none(job: &Job) -> (Vec<WheelRow>, Vec<BodyRow>) {
         sides: [none; 2],
         acceleration: none,
     };
-    (wheels.into_iter().map(wheel).collect(), bodies.into_iter().map(body).collect())
+    (
+        wheels.into_iter().map(wheel).collect(),
+        bodies.into_iter().map(body).collect(),
+    )
 }

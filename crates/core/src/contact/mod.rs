@@ -82,7 +82,9 @@ impl ContactProblem<'_> {
     fn left_over(&self, rider: usize, found: &ContactSolution) -> f64 {
         let of_riders: f64 = (0..).zip(&found.riders).map(|(j, q)| self.riders[(rider, j)] * q).sum();
         let of_links = (0..).zip(&found.forces);
-        let of_links: f64 = of_links.map(|(i, n)| self.riders_connectors[(rider, i)] * self.weight * n).sum();
+        let of_links: f64 = of_links
+            .map(|(i, n)| self.riders_connectors[(rider, i)] * self.weight * n)
+            .sum();
         self.riders_free[rider] - of_riders - of_links
     }
 
@@ -105,7 +107,10 @@ impl ContactProblem<'_> {
     fn linear(&self, laws: &[LinkLaw], states: &[State]) -> Option<ContactSolution> {
         let active: Vec<usize> = (0..laws.len()).filter(|&i| states[i] != State::Open).collect();
         let off = self.one_sided.iter().zip(&states[laws.len()..]);
-        let off: Vec<usize> = off.filter(|(_, state)| **state == State::Open).map(|(r, _)| *r).collect();
+        let off: Vec<usize> = off
+            .filter(|(_, state)| **state == State::Open)
+            .map(|(r, _)| *r)
+            .collect();
         let (na, nr) = (active.len(), self.riders_free.len());
         let branches: Vec<_> = states.iter().zip(laws).map(|(&s, law)| law.branch(s)).collect();
         let mut a = DMatrix::zeros(na + nr, na + nr);
@@ -173,7 +178,13 @@ impl PiecewiseLinear for UnderLaws<'_> {
         let solution = self.problem.linear(self.laws, states)?;
         let (of_links, of_riders) = asked.split_at_mut(self.laws.len());
         ask(self.laws, &solution.elongations, of_links);
-        for ((&r, is), asked) in self.problem.one_sided.iter().zip(&states[self.laws.len()..]).zip(of_riders) {
+        for ((&r, is), asked) in self
+            .problem
+            .one_sided
+            .iter()
+            .zip(&states[self.laws.len()..])
+            .zip(of_riders)
+        {
             let presses = match is {
                 State::Open => self.problem.left_over(r, &solution) > 0.0,
                 _ => solution.riders[r] > 0.0,

@@ -217,7 +217,12 @@ impl Crossings {
     }
 
     /// Changes to another step length.
-    pub(crate) fn take_step(&mut self, lane: usize, compliance: Arc<WheelCompliance>, riding: &Arc<[Option<Arc<RidingStep>>]>) {
+    pub(crate) fn take_step(
+        &mut self,
+        lane: usize,
+        compliance: Arc<WheelCompliance>,
+        riding: &Arc<[Option<Arc<RidingStep>>]>,
+    ) {
         let of = &mut self.lanes[lane];
         of.contact.forget();
         if let Some(crossing) = &mut of.crossing {
@@ -260,11 +265,16 @@ impl Crossings {
             apply_forces((&wheels.nodes[..], width, first), &of.mass_forces, inertia, lane);
             if !of.spring_forces.is_empty() {
                 let rows = weights.rows();
-                sum_forces((&wheels.nodes[..], width, first), &of.spring_forces, rows, |from, sums| {
-                    for (row, sum) in weights.rows_from_mut(from).zip(sums) {
-                        row[lane] += sum;
-                    }
-                });
+                sum_forces(
+                    (&wheels.nodes[..], width, first),
+                    &of.spring_forces,
+                    rows,
+                    |from, sums| {
+                        for (row, sum) in weights.rows_from_mut(from).zip(sums) {
+                            row[lane] += sum;
+                        }
+                    },
+                );
             }
         }
         let end_s = &end_s[..self.lanes.len()];
@@ -429,7 +439,10 @@ impl Reading for LaneReading<'_> {
 
     fn is_on(&self, vehicle: usize, wheel: usize) -> bool {
         let lane = &self.of.lanes[self.lane];
-        let of = lane.crossing.as_ref().map(|crossing| &crossing.wheels.vehicles[vehicle].vehicle);
+        let of = lane
+            .crossing
+            .as_ref()
+            .map(|crossing| &crossing.wheels.vehicles[vehicle].vehicle);
         of.is_some_and(|of| lane.placements[vehicle].is_on(&of.patches[wheel]))
     }
 

@@ -293,7 +293,13 @@ impl Lane {
                 |from, sums| seen[from..][..sums.len()].copy_from_slice(sums),
             );
             loads.add_springs(lane, seen, spring_factor(constants));
-            self.ridden = end_rides(masses, &mut self.rides, &self.placements, constants, (compliance, scaled, links));
+            self.ridden = end_rides(
+                masses,
+                &mut self.rides,
+                &self.placements,
+                constants,
+                (compliance, scaled, links),
+            );
         }
         n.gather(lane, &mut self.n);
         let found = StepForces {

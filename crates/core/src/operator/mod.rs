@@ -35,6 +35,7 @@ mod residual;
 mod residual_rows;
 mod rider_block;
 mod rides;
+mod riding_places;
 mod small_matrix;
 mod step;
 mod step_constants;

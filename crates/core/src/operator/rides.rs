@@ -104,7 +104,9 @@ impl LaneRide {
     pub(super) fn wheel(&self, wheel: usize, placement: &VehiclePlacement) -> WheelOnDeck {
         let (of, kappa) = (&self.step.springs().wheels[wheel], self.step.kappa[wheel]);
         let speed_m_s = placement.heading.speed_m_s;
-        let [height, slope] = self.traffic.under(self.vehicle, wheel, |ahead_m| placement.place_m(ahead_m));
+        let [height, slope] = self
+            .traffic
+            .under(self.vehicle, wheel, |ahead_m| placement.place_m(ahead_m));
         let (of_spring, of_damper) = (of.stiffness_n_m / kappa, of.damping_n_s_m / kappa);
         let road = [height, speed_m_s * slope];
         WheelOnDeck {
@@ -156,7 +158,13 @@ impl LaneRide {
             on_deck_j: 0.0,
         };
         let per_scale = 1.0 / *scale;
-        let energies = step.finish(ride, free, |wheel| scaled[wheel] * per_scale, under, driven_m_s2(placement));
+        let energies = step.finish(
+            ride,
+            free,
+            |wheel| scaled[wheel] * per_scale,
+            under,
+            driven_m_s2(placement),
+        );
         energies.scaled(*scale)
     }
 }

@@ -54,7 +54,8 @@ impl<C: StepClock> WithSimd for Step<'_, C> {
         let unsettled = c.solve_contact(operator, constants, self.newton_limit, clock); // (C1), (C2)
         let terms = c.correct(o, operator, constants, clock); // (O6), (O7)
         let ridden = c.lanes.iter().map(|lane| lane.ridden);
-        c.energy.take_rides(c.lanes.iter().any(|lane| !lane.rides.is_empty()), ridden);
+        c.energy
+            .take_rides(c.lanes.iter().any(|lane| !lane.rides.is_empty()), ridden);
         c.energy.account(o, constants, &terms, c.connectors.energy(o)); // (R1)
         clock.lap(StepPart::Accounting, || 2.0 * c.connectors.count() as f64);
         c.update_envelope(o, operator, constants);

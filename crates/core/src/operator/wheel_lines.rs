@@ -139,7 +139,11 @@ impl WheelLines {
             }
             vehicles.push(VehicleLines {
                 vehicle: Arc::clone(vehicle),
-                masses: if vehicle.inertia == Inertia::None { Vec::new() } else { lines },
+                masses: if vehicle.inertia == Inertia::None {
+                    Vec::new()
+                } else {
+                    lines
+                },
                 points,
                 first_axle: axles,
             });
@@ -148,7 +152,11 @@ impl WheelLines {
         let band = band(track, traffic);
         let ride = traffic.vehicles.iter().any(|driven| rides(&driven.vehicle));
         let across: Vec<_> = places_y.iter().map(|y| track.across(*y)).collect();
-        let residual_band = if vehicles.len() > 1 { band.min(operator.near) } else { band };
+        let residual_band = if vehicles.len() > 1 {
+            band.min(operator.near)
+        } else {
+            band
+        };
         let residual = if ride {
             residual(operator, &across, residual_band)
         } else {
@@ -176,7 +184,11 @@ impl WheelLines {
     /// No fewer nodes, masses and wheels than vehicles have that are not on the deck yet.
     pub(crate) fn most_nodes_of(operator: &BridgeOperator, traffic: &Traffic) -> usize {
         let of = |vehicle: &Vehicle| {
-            let wheels = if vehicle.springs.is_some() { vehicle.patches.len() } else { 0 };
+            let wheels = if vehicle.springs.is_some() {
+                vehicle.patches.len()
+            } else {
+                0
+            };
             // as many masses as nodes at most, and the wheels
             lines_across(vehicle).len() * (vehicle_band(&operator.track, vehicle) + 1) + wheels
         };

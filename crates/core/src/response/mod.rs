@@ -6,6 +6,7 @@ mod dead;
 mod energy;
 mod peaks;
 mod recorder;
+mod ride;
 mod rides;
 mod subject;
 
@@ -17,8 +18,10 @@ pub use peaks::{
 };
 pub(crate) use recorder::Recorder;
 pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
-pub use rides::{BodyMotion, MotionPeaks, WheelPeaks};
-pub(crate) use rides::{RidePart, RideReading};
+pub use ride::BodyMotion;
+pub(crate) use ride::RideReading;
+pub(crate) use rides::RidePart;
+pub use rides::{MotionPeaks, WheelPeaks};
 use std::sync::Arc;
 pub use subject::{Axis, Quantity, SECTIONS, Section, Subject};
 pub(crate) use subject::{BankPart, BankSource, JointParts, JointReading, Reading};

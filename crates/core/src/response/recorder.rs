@@ -219,8 +219,11 @@ impl Recorder {
         }
         let [now_s, balance_s] = reading.times_s();
         if !self.rides.is_empty() {
-            self.rides
-                .take(now_s, |vehicle| reading.ride(vehicle), |vehicle, wheel| reading.is_on(vehicle, wheel));
+            self.rides.take(
+                now_s,
+                |vehicle| reading.ride(vehicle),
+                |vehicle, wheel| reading.is_on(vehicle, wheel),
+            );
         }
         take_banks(&self.banks, banks, reading);
         for (index, corner) in corners.iter_mut().enumerate() {

@@ -3,30 +3,7 @@
 //! Knows what is kept of each. Does not know how a vehicle moves.
 
 use super::peaks::Peak;
-use crate::vehicle::VehicleMotion;
-
-/// How a body moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum BodyMotion {
-    /// Its centre up from rest on a level road `[m]`.
-    Bounce,
-    /// Its front up `[rad]`.
-    Pitch,
-    /// Its left side up `[rad]`.
-    Roll,
-}
-
-impl BodyMotion {
-    /// What a motion of a vehicle is to its body; none of an axle's.
-    pub fn of(motion: VehicleMotion) -> Option<Self> {
-        match motion {
-            VehicleMotion::Bounce => Some(Self::Bounce),
-            VehicleMotion::Pitch => Some(Self::Pitch),
-            VehicleMotion::Roll => Some(Self::Roll),
-            VehicleMotion::Hop { .. } => None,
-        }
-    }
-}
+use super::ride::{BodyMotion, RideReading};
 
 /// What a vehicle on springs consists of.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,33 +48,6 @@ pub struct MotionPeaks {
     pub acceleration: Peak,
 }
 
-/// A vehicle on springs at the end of a step, to be read.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RideReading<'a> {
-    /// Force of each wheel `[N]`, at the weight that its springs are given for.
-    pub wheels_n: &'a [f64],
-    /// What these are multiplied by.
-    pub scale: f64,
-    /// What each motion is; state, rest on a level road and acceleration.
-    pub motions: &'a [VehicleMotion],
-    pub state: &'a [f64],
-    pub rest: &'a [f64],
-    pub accelerations: &'a [f64],
-}
-
-impl RideReading<'_> {
-    /// Force of a wheel `[N]`.
-    pub(crate) fn wheel_n(&self, wheel: usize) -> f64 {
-        self.scale * self.wheels_n.get(wheel).copied().unwrap_or(0.0)
-    }
-
-    /// How far a body is from rest on a level road; 0 where it does not move so.
-    pub(crate) fn moved(&self, motion: BodyMotion) -> f64 {
-        let place = self.motions.iter().position(|of| BodyMotion::of(*of) == Some(motion));
-        place.map_or(0.0, |place| self.state[place] - self.rest[place])
-    }
-}
-
 /// Watches the vehicles on springs of a crossing.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RideWatch {
@@ -131,8 +81,14 @@ impl RideWatch {
             acceleration: Peak::default(),
         };
         Self {
-            wheels: parts.iter().flat_map(|part| part.wheels.iter().map(move |of| wheel(part, of))).collect(),
-            motions: parts.iter().flat_map(|part| part.motions.iter().map(move |of| motion(part, of))).collect(),
+            wheels: parts
+                .iter()
+                .flat_map(|part| part.wheels.iter().map(move |of| wheel(part, of)))
+                .collect(),
+            motions: parts
+                .iter()
+                .flat_map(|part| part.motions.iter().map(move |of| motion(part, of)))
+                .collect(),
             parts,
             lost_s: 0.0,
             last_s: from_s,

@@ -2,7 +2,7 @@
 //!
 //! Knows which numbers a bridge has and which a joint's others come from. Does not know solvers or tables.
 
-use super::rides::{BodyMotion, RideReading};
+use super::ride::{BodyMotion, RideReading};
 
 /// What a recorded number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

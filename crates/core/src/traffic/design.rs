@@ -187,7 +187,11 @@ impl TrafficDesign {
                 "vehicles {one} and {other} in one place of a lane, {:.2} m at {:.2} s",
                 met.x_m, met.time_s
             );
-            let key = if self.column.is_some() { "column.spacing_m" } else { "traffic" };
+            let key = if self.column.is_some() {
+                "column.spacing_m"
+            } else {
+                "traffic"
+            };
             let refused = InvalidInput::new(key, found, "vehicles that keep apart while they are on the bridge");
             return Err(refused.because(Problem::Conflict));
         }
@@ -208,11 +212,16 @@ fn road(
 ) -> Result<Arc<Road>, InvalidInput> {
     let vehicles = || traffic.vehicles.iter().map(|driven| &driven.vehicle);
     if let Some(number) = vehicles().position(|vehicle| vehicle.patches.iter().any(|patch| patch.rigid > 0.0)) {
-        let found = format!("vehicle {}, of which a mass lies on the road without a spring", number + 1);
+        let found = format!(
+            "vehicle {}, of which a mass lies on the road without a spring",
+            number + 1
+        );
         let refused = InvalidInput::new("", found, "vehicles on springs alone: a mass without one would jump");
         return Err(refused.because(Problem::Conflict));
     }
-    let mut y_m: Vec<f64> = vehicles().flat_map(|vehicle| vehicle.patches.iter().map(|patch| patch.y_m)).collect();
+    let mut y_m: Vec<f64> = vehicles()
+        .flat_map(|vehicle| vehicle.patches.iter().map(|patch| patch.y_m))
+        .collect();
     y_m.sort_by(f64::total_cmp);
     y_m.dedup();
     let length_m = |vehicle: &Arc<Vehicle>| {
@@ -251,14 +260,13 @@ fn is_backward(direction: Option<i8>) -> Result<bool, InvalidInput> {
 }
 
 /// A vehicle in its lane.
-fn placed(
-    design: &VehicleDesign,
-    y_m: Option<f64>,
-    backward: bool,
-    deck: Deck,
-) -> Result<Arc<Vehicle>, InvalidInput> {
+fn placed(design: &VehicleDesign, y_m: Option<f64>, backward: bool, deck: Deck) -> Result<Arc<Vehicle>, InvalidInput> {
     let vehicle = design.check(deck.breadth_m).map_err(|e| e.under("vehicle"))?;
-    Ok(Arc::new(vehicle.in_lane(y_m.unwrap_or(0.0), backward, deck.breadth_m)?))
+    Ok(Arc::new(vehicle.in_lane(
+        y_m.unwrap_or(0.0),
+        backward,
+        deck.breadth_m,
+    )?))
 }
 
 fn listed(entries: &[TrafficEntry], study: StudyVehicle<'_>, deck: Deck) -> Result<Vec<Driven>, InvalidInput> {
@@ -267,7 +275,11 @@ fn listed(entries: &[TrafficEntry], study: StudyVehicle<'_>, deck: Deck) -> Resu
             0 => "an empty list".to_owned(),
             many => format!("{many} vehicles"),
         };
-        return Err(InvalidInput::new("traffic", found, format!("1 to {MOST_VEHICLES} vehicles")));
+        return Err(InvalidInput::new(
+            "traffic",
+            found,
+            format!("1 to {MOST_VEHICLES} vehicles"),
+        ));
     }
     let mut vehicles: Vec<Driven> = Vec::new();
     for (number, entry) in entries.iter().enumerate() {
@@ -286,7 +298,9 @@ impl TrafficEntry {
             backward,
             start_s: self.start_time_s.unwrap_or(0.0),
             acceleration_m_s2: self.acceleration_m_s2.unwrap_or(0.0),
-            stop_way_m: self.stop_x_m.map(|x_m| if backward { deck.length_m - x_m } else { x_m }),
+            stop_way_m: self
+                .stop_x_m
+                .map(|x_m| if backward { deck.length_m - x_m } else { x_m }),
         };
         if !drive.start_s.is_finite() {
             return Err(InvalidInput::new("start_time_s", drive.start_s, "a finite number"));
@@ -311,7 +325,8 @@ impl TrafficEntry {
         backward: bool,
     ) -> Result<f64, InvalidInput> {
         not_negative("behind_m", behind_m)?;
-        let misplaced = |allowed: &str| Err(InvalidInput::new("behind_m", behind_m, allowed).because(Problem::Misplaced));
+        let misplaced =
+            |allowed: &str| Err(InvalidInput::new("behind_m", behind_m, allowed).because(Problem::Misplaced));
         if self.start_time_s.is_some() {
             return misplaced("behind_m or start_time_s, one of the two");
         }

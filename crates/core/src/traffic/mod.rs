@@ -6,9 +6,9 @@
 mod design;
 
 use crate::input::{InvalidInput, Problem, bound, positive};
-use crate::response::{BodyMotion, RidePart};
+use crate::response::RidePart;
 use crate::road::Road;
-use crate::vehicle::{Vehicle, VehicleMotion};
+use crate::vehicle::Vehicle;
 pub use design::{ColumnDesign, Deck, SpacingFrom, StudyVehicle, TrafficDesign, TrafficEntry, VehicleOrFile};
 use std::sync::Arc;
 
@@ -102,7 +102,11 @@ impl Drive {
                     return Err(InvalidInput::new("stop_x_m", x_m, allowed));
                 }
                 if a >= 0.0 {
-                    return conflict("acceleration_m_s2", a, "a number below 0, with which it brakes to its stop".to_owned());
+                    return conflict(
+                        "acceleration_m_s2",
+                        a,
+                        "a number below 0, with which it brakes to its stop".to_owned(),
+                    );
                 }
                 let braking_m = -0.5 * v * v / a;
                 if braking_m > way_m {
@@ -171,7 +175,11 @@ impl Drive {
         let pieces: Vec<Piece> = self.pieces().collect();
         let until = |i: usize| pieces.get(i + 1).map_or(f64::INFINITY, |next| next.from_s);
         let found = pieces.iter().enumerate().find_map(|(i, piece)| {
-            let Progress { way_m: from_m, speed_m_s: v, acceleration_m_s2: a } = piece.then;
+            let Progress {
+                way_m: from_m,
+                speed_m_s: v,
+                acceleration_m_s2: a,
+            } = piece.then;
             roots([from_m - way_m, v, 0.5 * a])
                 .map(|t| piece.from_s + t)
                 .find(|&time_s| (i == 0 || time_s >= piece.from_s) && time_s <= until(i))
@@ -297,11 +305,15 @@ impl Traffic {
     pub(crate) fn ride_parts(&self) -> Vec<RidePart> {
         let of = |(vehicle, driven): (usize, &Driven)| {
             let springs = driven.vehicle.springs.as_ref()?;
-            let of_body = |(place, motion): (usize, &VehicleMotion)| Some((BodyMotion::of(*motion)?, place));
             Some(RidePart {
                 vehicle,
-                wheels: driven.vehicle.patches.iter().map(|patch| (patch.axle, patch.y_m)).collect(),
-                motions: springs.motions.iter().enumerate().filter_map(of_body).collect(),
+                wheels: driven
+                    .vehicle
+                    .patches
+                    .iter()
+                    .map(|patch| (patch.axle, patch.y_m))
+                    .collect(),
+                motions: springs.body.clone(),
             })
         };
         self.vehicles.iter().enumerate().filter_map(of).collect()
@@ -386,7 +398,11 @@ fn meeting(one: &Driven, other: &Driven, length_m: f64) -> Option<(f64, f64)> {
                     } else {
                         (1.0, 0.0, if end == 0 { rear } else { front })
                     };
-                    let Progress { way_m, speed_m_s: v, acceleration_m_s2: a } = piece.then;
+                    let Progress {
+                        way_m,
+                        speed_m_s: v,
+                        acceleration_m_s2: a,
+                    } = piece.then;
                     let t = piece.from_s;
                     [
                         from_m + sign * (way_m + own - v * t + 0.5 * a * t * t),
@@ -441,9 +457,17 @@ mod tests {
             ..Drive::steady(10.0)
         };
         let drive = braked(-2.0);
-        for (t, way, speed) in [(-1.0, -10.0, 10.0), (3.5, 35.0, 10.0), (6.0, 53.75, 5.0), (9.0, 60.0, 0.0)] {
+        for (t, way, speed) in [
+            (-1.0, -10.0, 10.0),
+            (3.5, 35.0, 10.0),
+            (6.0, 53.75, 5.0),
+            (9.0, 60.0, 0.0),
+        ] {
             let now = drive.at(t);
-            assert!((now.way_m - way).abs() < 1e-12 && (now.speed_m_s - speed).abs() < 1e-12, "{t}: {now:?}");
+            assert!(
+                (now.way_m - way).abs() < 1e-12 && (now.speed_m_s - speed).abs() < 1e-12,
+                "{t}: {now:?}"
+            );
         }
         assert!((braked(-2.1).at(6.0).way_m - 53.75).abs() > 0.1);
         assert_eq!(drive.reaches_s(60.5), None);
@@ -484,7 +508,10 @@ mod tests {
         };
         let met = found(10.0, 0.0, 100.0).expect("they meet");
         let (time_s, x_m) = (4.0 + 16.65 / 5.0, 5.0 * (4.0 + 16.65 / 5.0) - 1.675);
-        assert!((met.time_s - time_s).abs() < 1e-9 && (met.x_m - x_m).abs() < 1e-9, "{met:?}");
+        assert!(
+            (met.time_s - time_s).abs() < 1e-9 && (met.x_m - x_m).abs() < 1e-9,
+            "{met:?}"
+        );
         assert!((found(10.5, 0.0, 100.0).expect("they meet").x_m - x_m).abs() > 0.5);
         assert_eq!(found(10.0, 1.5, 100.0), None, "another lane");
         assert_eq!(found(10.0, 0.0, 30.0), None, "the first has left");

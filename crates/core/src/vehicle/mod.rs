@@ -3,6 +3,7 @@
 //! | module | charter |
 //! |---|---|
 //! | `design` | a vehicle as it is written, and its checks |
+//! | `written` | axles and bodies as they are written |
 //! | `springs` | masses on springs: matrices, wheels, the state at rest |
 //!
 //! Knows axles, patches and where their points stand for a given place of the vehicle. Does not know the bridge: what
@@ -10,13 +11,15 @@
 
 mod design;
 mod springs;
+mod written;
 
 use crate::input::{InvalidInput, within};
-pub use design::{Axle, Body, VehicleDesign};
+pub use design::VehicleDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use springs::{SpringWheel, Springs, VehicleMotion};
 use std::sync::Arc;
+pub use written::{Axle, Body};
 
 /// Standard gravity `[m/s^2]`, by which a weight becomes a mass.
 pub const GRAVITY_M_S2: f64 = 9.806_65;
@@ -131,7 +134,12 @@ impl Vehicle {
 
     /// Ends of what it covers along, ahead of its front: rear and front of its patches `[m]`.
     pub fn reach_m(&self) -> [f64; 2] {
-        let ends = |patch: &Patch| [patch.ahead_m - 0.5 * patch.length_m, patch.ahead_m + 0.5 * patch.length_m];
+        let ends = |patch: &Patch| {
+            [
+                patch.ahead_m - 0.5 * patch.length_m,
+                patch.ahead_m + 0.5 * patch.length_m,
+            ]
+        };
         let join = |[lo, hi]: [f64; 2], [a, b]: [f64; 2]| [lo.min(a), hi.max(b)];
         let all = self.patches.iter().map(ends);
         all.fold([f64::INFINITY, f64::NEG_INFINITY], join)

@@ -6,8 +6,9 @@
 //! `M z'' + C z' + K z = -W + G^T lambda`, K and C those of what is above the wheels' springs, lambda their forces.
 
 use super::GRAVITY_M_S2;
-use super::design::{Axle, Body};
+use super::written::{Axle, Body};
 use crate::input::{Found, InvalidInput, Problem, bound, not_negative, positive};
+use crate::response::BodyMotion;
 use nalgebra::{DMatrix, DVector};
 
 /// How a vehicle on springs may move.
@@ -58,6 +59,8 @@ pub struct Springs {
     pub rest: Vec<f64>,
     /// Mass of the body times the height of its centre `[kg m]`: its product with a forward acceleration lifts the front.
     pub braking_kg_m: f64,
+    /// The motions of the body, each with its place among all.
+    pub body: Vec<(BodyMotion, usize)>,
     /// Weight that lies on the deck without a spring, of each patch `[N]`.
     rigid_n: Vec<f64>,
     /// Axle of each patch.
@@ -79,6 +82,18 @@ impl Wheel<'_> {
     }
 }
 
+impl VehicleMotion {
+    /// What it is to the body; none of an axle's.
+    pub fn of_body(self) -> Option<BodyMotion> {
+        match self {
+            Self::Bounce => Some(BodyMotion::Bounce),
+            Self::Pitch => Some(BodyMotion::Pitch),
+            Self::Roll => Some(BodyMotion::Roll),
+            Self::Hop { .. } => None,
+        }
+    }
+}
+
 impl Springs {
     /// The springs of checked places; none of a vehicle without any.
     ///
@@ -96,7 +111,14 @@ impl Springs {
         for (k, axle) in axles.iter().enumerate() {
             let sprung = axle.tyre_stiffness_n_m.or(axle.suspension_stiffness_n_m);
             if sprung.is_none() {
-                let key = format!("axles[{k}].{}", if body.is_some() { "suspension_stiffness_n_m" } else { "tyre_stiffness_n_m" });
+                let key = format!(
+                    "axles[{k}].{}",
+                    if body.is_some() {
+                        "suspension_stiffness_n_m"
+                    } else {
+                        "tyre_stiffness_n_m"
+                    }
+                );
                 let refused = InvalidInput::new(key, Found::Nothing, "a spring of every axle, where one has any");
                 return Err(refused.because(Problem::Missing));
             }
@@ -110,7 +132,12 @@ impl Springs {
             .enumerate()
             .flat_map(|(number, axle)| {
                 let tracks = axle.track_y_m.len() as f64;
-                axle.track_y_m.iter().map(move |&y_m| Wheel { axle, number, y_m, tracks })
+                axle.track_y_m.iter().map(move |&y_m| Wheel {
+                    axle,
+                    number,
+                    y_m,
+                    tracks,
+                })
             })
             .collect();
         let (mut motions, mut inertia) = (Vec::new(), Vec::new());
@@ -144,7 +171,9 @@ impl Springs {
         let mut on_deck = Vec::new();
         for (patch, wheel) in wheels.iter().enumerate() {
             let axle = wheel.axle;
-            let hop = motions.iter().position(|motion| *motion == VehicleMotion::Hop { patch });
+            let hop = motions
+                .iter()
+                .position(|motion| *motion == VehicleMotion::Hop { patch });
             let mut row = body_row(wheel);
             let (mut k, mut c) = (axle.suspension_stiffness_n_m, axle.suspension_damping_n_s_m);
             if let Some(hop) = hop {
@@ -182,6 +211,10 @@ impl Springs {
             axles: wheels.iter().map(|wheel| wheel.number).collect(),
             braking_kg_m: body.map_or(0.0, |body| body.mass_kg * body.height_m.unwrap_or(0.0)),
             rest: vec![0.0; n],
+            body: (0..)
+                .zip(&motions)
+                .filter_map(|(place, motion)| Some((motion.of_body()?, place)))
+                .collect(),
             motions,
             inertia,
             stiffness,
@@ -204,10 +237,15 @@ impl Springs {
 
     /// Finds the state at rest, `(K + G^T k G) z_0 = -W`, and the wheels' forces there.
     fn come_to_rest(&mut self) -> Result<(), InvalidInput> {
-        let free = |found: String, allowed: &str| Err(InvalidInput::new("body", found, allowed).because(Problem::Conflict));
+        let free =
+            |found: String, allowed: &str| Err(InvalidInput::new("body", found, allowed).because(Problem::Conflict));
         let whole = self.whole_stiffness();
         // each motion by its own stiffness: what is left of a free one is rounding
-        let scale: Vec<f64> = whole.diagonal().iter().map(|k| 1.0 / k.max(f64::MIN_POSITIVE).sqrt()).collect();
+        let scale: Vec<f64> = whole
+            .diagonal()
+            .iter()
+            .map(|k| 1.0 / k.max(f64::MIN_POSITIVE).sqrt())
+            .collect();
         let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| whole[(i, j)] * scale[i] * scale[j]);
         let least = scaled.clone().symmetric_eigenvalues().min();
         let Some(factor) = scaled.cholesky().filter(|_| least > FREE) else {
@@ -279,30 +317,38 @@ fn check_axle(axle: &Axle, has_body: bool) -> Result<(), InvalidInput> {
     optional("tyre_damping_n_s_m", axle.tyre_damping_n_s_m, not_negative)?;
     optional("suspension_stiffness_n_m", axle.suspension_stiffness_n_m, positive)?;
     optional("suspension_damping_n_s_m", axle.suspension_damping_n_s_m, not_negative)?;
-    let misplaced = |key: &str, value: f64, allowed: &str| {
-        Err(InvalidInput::new(key, value, allowed).because(Problem::Misplaced))
-    };
-    let missing = |key: &str, allowed: &str| {
-        Err(InvalidInput::new(key, Found::Nothing, allowed).because(Problem::Missing))
-    };
+    let misplaced =
+        |key: &str, value: f64, allowed: &str| Err(InvalidInput::new(key, value, allowed).because(Problem::Misplaced));
+    let missing =
+        |key: &str, allowed: &str| Err(InvalidInput::new(key, Found::Nothing, allowed).because(Problem::Missing));
     let (tyre, suspension) = (axle.tyre_stiffness_n_m, axle.suspension_stiffness_n_m);
     if let (Some(damping), None) = (axle.tyre_damping_n_s_m, tyre) {
         return misplaced("tyre_damping_n_s_m", damping, "a tyre_stiffness_n_m beside it");
     }
     if let (Some(damping), None) = (axle.suspension_damping_n_s_m, suspension) {
-        return misplaced("suspension_damping_n_s_m", damping, "a suspension_stiffness_n_m beside it");
+        return misplaced(
+            "suspension_damping_n_s_m",
+            damping,
+            "a suspension_stiffness_n_m beside it",
+        );
     }
     match (axle.unsprung_mass_kg, tyre, suspension) {
-        (_, _, Some(stiffness)) if !has_body => {
-            misplaced("suspension_stiffness_n_m", stiffness, "a body that the suspension carries")
-        }
+        (_, _, Some(stiffness)) if !has_body => misplaced(
+            "suspension_stiffness_n_m",
+            stiffness,
+            "a body that the suspension carries",
+        ),
         (None, Some(_), Some(_)) => missing("unsprung_mass_kg", "the mass between tyres and suspension"),
         (None, Some(_), None) if !has_body => missing("unsprung_mass_kg", "the mass on the tyres"),
         (Some(_), Some(_), None) if has_body => missing(
             "suspension_stiffness_n_m",
             "the suspension between the axle's mass and the body",
         ),
-        (Some(mass), None, None) => misplaced("unsprung_mass_kg", mass, "a tyre_stiffness_n_m or a suspension beside it"),
+        (Some(mass), None, None) => misplaced(
+            "unsprung_mass_kg",
+            mass,
+            "a tyre_stiffness_n_m or a suspension beside it",
+        ),
         _ => Ok(()),
     }
 }
@@ -316,7 +362,8 @@ fn check_body(body: &Body, axles: &[Axle]) -> Result<(), InvalidInput> {
     ] {
         inertia.map_or(Ok(0.0), |inertia| positive(key, inertia))?;
     }
-    body.height_m.map_or(Ok(0.0), |height_m| not_negative("height_m", height_m))?;
+    body.height_m
+        .map_or(Ok(0.0), |height_m| not_negative("height_m", height_m))?;
     if body.pitch_inertia_kg_m2.is_none() {
         let apart = |axle: &&Axle| (axle.behind_front_m - body.behind_front_m).abs() > 1e-9;
         if let Some(axle) = axles.iter().find(apart) {

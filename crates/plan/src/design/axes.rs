@@ -244,7 +244,9 @@ impl Varies {
             return Some(Self::Path(Root::Traffic, DocumentPath::parse(path)?));
         }
         let (root, path) = path.split_once('.')?;
-        let root = Root::ALL.into_iter().find(|known| known.word() == root && !root.is_empty())?;
+        let root = Root::ALL
+            .into_iter()
+            .find(|known| known.word() == root && !root.is_empty())?;
         Some(Self::Path(root, DocumentPath::parse(path)?))
     }
 }

@@ -111,7 +111,8 @@ pub struct SampleSpec {
 pub struct RangeMap(pub Map<String, Value>);
 
 /// Pattern of the axes that are named by their path.
-const PATH_PATTERN: &str = r"^(bridge|vehicle|analysis|wear|traffic|column|roughness)(\.[a-z0-9_]+|\[[0-9]+(\.\.[0-9]+)?\])+$";
+const PATH_PATTERN: &str =
+    r"^(bridge|vehicle|analysis|wear|traffic|column|roughness)(\.[a-z0-9_]+|\[[0-9]+(\.\.[0-9]+)?\])+$";
 
 /// The schema of an object of axes, where `number` and `word` make the schemas of one axis of numbers and of words.
 fn object_of(text: &str, number: &Value, word: &dyn Fn(Value) -> Value, any: &Value) -> Schema {

@@ -198,7 +198,10 @@ impl Documents {
                 (format!("vehicles.{name}"), named)
             }
         };
-        let asked = changes.text().map(|text| format!("{place};{text}")).or((place != "vehicle").then(|| place.clone()));
+        let asked = changes
+            .text()
+            .map(|text| format!("{place};{text}"))
+            .or((place != "vehicle").then(|| place.clone()));
         let read = || {
             // the defaults of the single footprint can be changed in part, unless axles take its place
             let axles = changes.list.iter().any(|(_, path, _)| path.begins_with("axles"));
@@ -214,17 +217,16 @@ impl Documents {
             let document = to_value(&design);
             Ok((canonical_text(&document), (vehicle, design, document)))
         };
-        self.vehicles.get(
-            (breadth_m.to_bits(), asked),
-            read,
-            |id, (vehicle, design, document)| VehicleEntry {
-                id,
-                vehicle: Arc::new(vehicle),
-                design,
-                key: canonical_text(&document).into(),
-                document,
-            },
-        )
+        self.vehicles
+            .get((breadth_m.to_bits(), asked), read, |id, (vehicle, design, document)| {
+                VehicleEntry {
+                    id,
+                    vehicle: Arc::new(vehicle),
+                    design,
+                    key: canonical_text(&document).into(),
+                    document,
+                }
+            })
     }
 
     /// The analysis of a point.

@@ -104,7 +104,10 @@ impl Jobs<'_> {
         let job = Job {
             number: self.seen.len(),
             bridge,
-            vehicle_name: short.value(JobAxis::Vehicle).and_then(|cell| cell.word()).map(Arc::from),
+            vehicle_name: short
+                .value(JobAxis::Vehicle)
+                .and_then(|cell| cell.word())
+                .map(Arc::from),
             vehicle,
             traffic,
             analysis,

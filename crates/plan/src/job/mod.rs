@@ -28,7 +28,7 @@ pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};
 pub use shard::{NoShard, Shard};
-pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word};
+pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word, has_springs, on_springs};
 
 use crate::design::{JobAxis, Root, Varies};
 use crate::input::Cell;
@@ -380,7 +380,10 @@ impl Job {
                 None => speed_m_s.into(),
             },
             (JobAxis::Load, Task::Crossing { .. }) if self.traffic.is_some() => {
-                let common = self.traffic.as_ref().and_then(|traffic| traffic.common(|driven| driven.load_n));
+                let common = self
+                    .traffic
+                    .as_ref()
+                    .and_then(|traffic| traffic.common(|driven| driven.load_n));
                 common.into()
             }
             (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),

@@ -24,32 +24,37 @@ pub struct SpringWheelPlace {
     pub y_m: f64,
 }
 
-impl Job {
-    /// Whether any vehicle of a crossing rides on springs.
-    pub fn has_springs(&self) -> bool {
-        let Some(crossing) = self.as_crossing() else { return false };
-        match &crossing.job.traffic {
-            None => self.vehicle.vehicle.springs.is_some(),
-            Some(traffic) => traffic.traffic.vehicles.iter().any(|driven| driven.vehicle.springs.is_some()),
-        }
+/// Whether any vehicle of a crossing rides on springs.
+pub fn has_springs(job: &Job) -> bool {
+    let Some(crossing) = job.as_crossing() else {
+        return false;
+    };
+    match &crossing.job.traffic {
+        None => job.vehicle.vehicle.springs.is_some(),
+        Some(traffic) => traffic
+            .traffic
+            .vehicles
+            .iter()
+            .any(|driven| driven.vehicle.springs.is_some()),
     }
+}
 
-    /// The wheels of a crossing's vehicles on springs, and each such vehicle's number with the words of its body's motions.
-    pub fn on_springs(&self) -> (Vec<SpringWheelPlace>, Vec<(usize, &'static str)>) {
-        let (mut wheels, mut bodies) = (Vec::new(), Vec::new());
-        let Some(crossing) = self.as_crossing().filter(|_| self.has_springs()) else {
-            return (wheels, bodies);
+/// The wheels of a crossing's vehicles on springs, and each such vehicle's number with the words of its body's motions.
+pub fn on_springs(job: &Job) -> (Vec<SpringWheelPlace>, Vec<(usize, &'static str)>) {
+    let (mut wheels, mut bodies) = (Vec::new(), Vec::new());
+    let Some(crossing) = job.as_crossing().filter(|_| has_springs(job)) else {
+        return (wheels, bodies);
+    };
+    for (vehicle, driven) in (1..).zip(&crossing.traffic().vehicles) {
+        let Some(springs) = &driven.vehicle.springs else {
+            continue;
         };
-        for (vehicle, driven) in (1..).zip(&crossing.traffic().vehicles) {
-            let Some(springs) = &driven.vehicle.springs else { continue };
-            wheels.extend(driven.vehicle.patches.iter().map(|patch| SpringWheelPlace {
-                vehicle,
-                axle: patch.axle + 1,
-                y_m: patch.y_m,
-            }));
-            let motions = springs.motions.iter().filter_map(|motion| BodyMotion::of(*motion));
-            bodies.extend(motions.map(|motion| (vehicle, body_word(motion))));
-        }
-        (wheels, bodies)
+        wheels.extend(driven.vehicle.patches.iter().map(|patch| SpringWheelPlace {
+            vehicle,
+            axle: patch.axle + 1,
+            y_m: patch.y_m,
+        }));
+        bodies.extend(springs.body.iter().map(|(motion, _)| (vehicle, body_word(*motion))));
     }
+    (wheels, bodies)
 }

@@ -4,7 +4,7 @@
 
 use crate::input::{FoundValue, Refusal, RefusalKind};
 use pontoon_core::bridge::BridgeDesign;
-use pontoon_core::response::{Axis, BodyMotion, PeakOf, Record, Section, Subject, WatchedPeak};
+use pontoon_core::response::{Axis, PeakOf, Record, Section, Subject, WatchedPeak};
 use pontoon_core::traffic::Traffic;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
@@ -240,12 +240,17 @@ impl RecordSpec {
         let mut record = self.of_bridge(design);
         for &number in &self.histories.vehicles {
             let vehicle = number - 1;
-            let Some(driven) = traffic.vehicles.get(vehicle) else { continue };
+            let Some(driven) = traffic.vehicles.get(vehicle) else {
+                continue;
+            };
             let wheels = 0..driven.vehicle.patches.len();
-            record.more.extend(wheels.map(|wheel| Subject::Wheel { vehicle, wheel }));
-            let motions = driven.vehicle.springs.iter().flat_map(|springs| &springs.motions);
-            let body = motions.filter_map(|motion| BodyMotion::of(*motion));
-            record.more.extend(body.map(|motion| Subject::Body { vehicle, motion }));
+            record
+                .more
+                .extend(wheels.map(|wheel| Subject::Wheel { vehicle, wheel }));
+            let body = driven.vehicle.springs.iter().flat_map(|springs| &springs.body);
+            record
+                .more
+                .extend(body.map(|&(motion, _)| Subject::Body { vehicle, motion }));
         }
         record
     }

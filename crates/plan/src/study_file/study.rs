@@ -129,7 +129,9 @@ impl Study {
         check_name(&file, &spec.name)?;
         let breadth_m = bridge.design.module.breadth_m;
         for (name, design) in &spec.vehicles {
-            let checked = design.check(breadth_m).map_err(|e| Refusal::of(&file, &format!("vehicles.{name}"), e));
+            let checked = design
+                .check(breadth_m)
+                .map_err(|e| Refusal::of(&file, &format!("vehicles.{name}"), e));
             checked.map_err(|refusal| at_home(&vehicle_files, refusal))?;
         }
         let vehicle = filled_vehicle(&spec.vehicle).and_then(|v| v.check(breadth_m).map(|_| v));

@@ -54,7 +54,13 @@ pub(super) fn with_vehicle_files(file: &Path, document: Document) -> Result<(Doc
     if let Some(Value::Object(column)) = keys.get_mut("column") {
         reader.put(column, &format!("column.{VEHICLE}"))?;
     }
-    for (number, entry) in keys.get_mut("traffic").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
+    for (number, entry) in keys
+        .get_mut("traffic")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten()
+        .enumerate()
+    {
         if let Value::Object(entry) = entry {
             reader.put(entry, &format!("traffic[{number}].{VEHICLE}"))?;
         }
@@ -104,7 +110,9 @@ fn words_of(path: &str, value: &Value, words: &mut Vec<(String, String)>) {
                 words_of(&format!("{path}[{number}]"), value, words);
             }
         }
-        Value::Object(map) => map.iter().for_each(|(key, value)| words_of(&format!("{path}.{key}"), value, words)),
+        Value::Object(map) => map
+            .iter()
+            .for_each(|(key, value)| words_of(&format!("{path}.{key}"), value, words)),
         _ => {}
     }
 }
@@ -118,7 +126,9 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// Puts the vehicle of a file in the place of its path.
     fn put(&mut self, of: &mut Map<String, Value>, path: &str) -> Result<(), Refusal> {
-        let Some(Value::String(word)) = of.get(VEHICLE) else { return Ok(()) };
+        let Some(Value::String(word)) = of.get(VEHICLE) else {
+            return Ok(());
+        };
         let vehicle = match self.named.get(word) {
             Some(named) => named.clone(),
             None => self.read(path, &word.clone(), path)?,
@@ -141,7 +151,8 @@ impl Reader<'_> {
         let file = self.study.parent().unwrap_or(Path::new("")).join(word);
         if !file.is_file() {
             let found = FoundValue::value(word).which("which is no file");
-            let allowed = "the path of a vehicle file, relative to the study file, or a name among the study's vehicles";
+            let allowed =
+                "the path of a vehicle file, relative to the study file, or a name among the study's vehicles";
             return Err(Refusal::new(self.study, path, found, allowed));
         }
         let (document, _) = read_vehicle(&file)?;
@@ -159,7 +170,9 @@ pub(crate) fn at_home(files: &[VehicleFile], refusal: Refusal) -> Refusal {
         let rest = refusal.path.strip_prefix(of.path.as_str());
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
     };
-    let Some(of) = files.iter().find(beyond) else { return refusal };
+    let Some(of) = files.iter().find(beyond) else {
+        return refusal;
+    };
     let path = refusal.path[of.path.len()..].trim_start_matches('.').to_owned();
     Refusal {
         path,

@@ -13,8 +13,8 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, OperatorSolver, REFINEMENTS};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::response::{
-    AtPeak, BankPeaks, CrossingResponse, DeadState, ForcePeaks, JointPeaks, MotionPeaks, Peak, PlacePeaks, PositionPeaks,
-    Record, Recorded, Subject, WheelPeaks,
+    AtPeak, BankPeaks, CrossingResponse, DeadState, ForcePeaks, JointPeaks, MotionPeaks, Peak, PlacePeaks,
+    PositionPeaks, Record, Recorded, Subject, WheelPeaks,
 };
 use pontoon_core::traffic::Traffic;
 use pontoon_core::vehicle::Patch;
@@ -330,9 +330,10 @@ impl Named<'_> {
             Subject::Position(_) | Subject::Joint(_) | Subject::Section { .. } | Subject::Body { .. } => (None, None),
         };
         let (vehicle, axle) = match subject {
-            Subject::Wheel { vehicle, wheel } => {
-                (Some(vehicle + 1), self.patch(vehicle, wheel).map(|patch| patch.axle + 1))
-            }
+            Subject::Wheel { vehicle, wheel } => (
+                Some(vehicle + 1),
+                self.patch(vehicle, wheel).map(|patch| patch.axle + 1),
+            ),
             Subject::Body { vehicle, .. } => (Some(vehicle + 1), None),
             _ => (None, None),
         };

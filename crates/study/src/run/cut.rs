@@ -5,7 +5,7 @@
 
 use pontoon_core::bridge::BankSpec;
 use pontoon_core::response::SECTIONS;
-use pontoon_plan::job::Job;
+use pontoon_plan::job::{Job, on_springs};
 use pontoon_plan::study_file::Study;
 
 /// What a batch holds at most; a single job is a batch of its own however many rows it has.
@@ -47,7 +47,7 @@ pub(super) fn cut<'a>(study: &'a Study, jobs: &'a [Job], batch: Batch) -> impl I
 
 /// Series of the histories of so many vehicles at most, and rows of all vehicles on springs.
 fn rows_of_vehicles(recorded: usize, job: &Job) -> (usize, usize) {
-    let (wheels, bodies) = job.on_springs();
+    let (wheels, bodies) = on_springs(job);
     let rows = wheels.len() + bodies.len();
     (if recorded == 0 { 0 } else { rows }, rows)
 }
@@ -81,5 +81,13 @@ fn rows(study: &Study, job: &Job) -> usize {
     } else {
         0
     };
-    1 + vehicles.1 + positions + places + banks + freeboards + dead + (of_joint + pins + sections) * joints + at_peaks + series
+    1 + vehicles.1
+        + positions
+        + places
+        + banks
+        + freeboards
+        + dead
+        + (of_joint + pins + sections) * joints
+        + at_peaks
+        + series
 }

@@ -8,6 +8,7 @@ mod free_bodies;
 mod halving;
 mod observe;
 mod operated;
+mod riders;
 mod run;
 mod step;
 

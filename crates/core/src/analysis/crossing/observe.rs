@@ -203,7 +203,10 @@ impl Reading for MotionReading<'_> {
     }
 
     fn is_on(&self, vehicle: usize, wheel: usize) -> bool {
-        let (placement, of) = (&self.now.load.placements[vehicle], &self.traffic.vehicles[vehicle].vehicle);
+        let (placement, of) = (
+            &self.now.load.placements[vehicle],
+            &self.traffic.vehicles[vehicle].vehicle,
+        );
         placement.is_on(&of.patches[wheel])
     }
 }

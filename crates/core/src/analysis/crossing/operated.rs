@@ -10,7 +10,9 @@ use crate::contact::NotSettled;
 use crate::operator::{
     BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
 };
-use crate::response::{BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder, RideReading};
+use crate::response::{
+    BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder, RideReading,
+};
 use crate::riding::RidingStep;
 use crate::traffic::{Driven, Traffic};
 use std::sync::{Arc, OnceLock};
@@ -275,10 +277,7 @@ impl<C: StepClock> Crew<'_, C> {
         let (compliance, riding) = mount.steps[halvings].get_or_insert_with(|| {
             let compliance = WheelCompliance::new(operator, level, &mount.wheels);
             let of = |driven: &Driven| Some(Arc::new(level.riding(driven.vehicle.springs.as_ref()?)));
-            (
-                Arc::new(compliance),
-                mount.traffic.vehicles.iter().map(of).collect(),
-            )
+            (Arc::new(compliance), mount.traffic.vehicles.iter().map(of).collect())
         });
         (Arc::clone(compliance), Arc::clone(riding))
     }

@@ -3,6 +3,7 @@
 //! Knows the balance at alpha and its energies. Does not know when to stop or what is reported.
 
 use super::StepMatrix;
+use super::riders::{DeckMotion, MeasuredRider, Pressing, Riders};
 use crate::analysis::modes::Rayleigh;
 use crate::analysis::snapshot::RideNow;
 use crate::bridge::{Bridge, Heading, Load, PinPlace, Rider, Rides, Track};
@@ -10,7 +11,7 @@ use crate::connector::State;
 use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled, rest_force_n};
 use crate::fem::SparseRow;
 use crate::response::{DeadState, StepEnergies};
-use crate::riding::{FreeRide, Ride, RideEnergies, RidingStep, UnderWheels};
+use crate::riding::{FreeRide, Ride, RideEnergies, RidingStep};
 use crate::scheme::{Newmark, Scalar};
 use crate::traffic::{Driven, Presence, Traffic};
 use nalgebra::{DMatrix, DVector};
@@ -74,6 +75,23 @@ impl Motion {
         self.dashpots.by_law(&self.forces)
     }
 
+    /// The bridge's motion.
+    fn deck(&self) -> DeckMotion<'_> {
+        DeckMotion {
+            u: &self.u,
+            v: &self.v,
+            a: &self.a,
+        }
+    }
+
+    /// What rides along with its forces.
+    fn pressing(&self) -> Pressing<'_> {
+        Pressing {
+            load: &self.load,
+            forces: &self.rider_forces,
+        }
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         self.spent.kinetic.is_finite() && self.spent.strain.is_finite()
     }
@@ -107,7 +125,12 @@ impl Stepper<'_> {
         let connectors = self.laws.len();
         Motion {
             time_s,
-            rides: self.traffic.vehicles.iter().map(|driven| self.ride_at_rest(driven)).collect(),
+            rides: self
+                .traffic
+                .vehicles
+                .iter()
+                .map(|driven| self.ride_at_rest(driven))
+                .collect(),
             states: self.laws.iter().map(|law| law.state(0.0)).collect(),
             forces: (0..connectors).map(|i| self.rest_n(i)).collect(),
             elongations: vec![0.0; connectors],
@@ -127,7 +150,8 @@ impl Stepper<'_> {
     ) -> Result<Motion, NotSettled> {
         let load = self.load(time_s); // (V1)
         let mut d = self.predict(matrix, old, &load); // (T3), (T4)
-        let mut free = self.predict_rides(matrix, old, &load); // (V4)
+        let riders = self.riders(matrix);
+        let mut free = riders.predict(&old.rides, &load); // (V4)
         let problem = self.contact_problem(matrix, old, &load, &d, &free); // (C1), (T5), (V5)
         let h = matrix.scheme.h;
         let laws = old.dashpots.laws(&self.dashpots, &self.laws, &old.elongations, h); // (C4)
@@ -139,7 +163,11 @@ impl Stepper<'_> {
         new.rider_forces = self.unscaled(matrix, &new.load, &contact.riders);
         contact.states.truncate(self.laws.len());
         new.states = contact.states;
-        let ridden = self.finish_rides(matrix, old, &mut new, &d, &contact.riders, &mut free);
+        let mut rides = old.rides.clone();
+        let along = |row: &SparseRow| matrix.flexibility.track_dot(row, &d);
+        let pressing = [old.pressing(), new.pressing()];
+        let ridden = riders.finish(&mut rides, &mut free, new.deck(), pressing, along);
+        new.rides = rides;
         new.forces = contact.forces;
         new.elongations = contact.elongations;
         let way = [&*old.elongations, &*new.elongations];
@@ -203,7 +231,13 @@ impl Stepper<'_> {
         let mut load = Load::default();
         for (driven, presence) in self.traffic.vehicles.iter().zip(&self.presences) {
             let heading = Heading::of(self.track, &driven.drive, time_s);
-            load.add(self.track, &driven.vehicle, driven.load_n, heading, presence.holds(time_s));
+            load.add(
+                self.track,
+                &driven.vehicle,
+                driven.load_n,
+                heading,
+                presence.holds(time_s),
+            );
         }
         load
     }
@@ -232,8 +266,7 @@ impl Stepper<'_> {
         f
     }
 
-    /// The small system of the step. Riders are measured in displacement: a mass by `q' / ((1 - alpha_m) m c_a) = g . d + known`
-    /// with `g = r + (2 V c_v/c_a) r_x + (V^2 r_xx + V' r_x) / c_a` and `q' = (1 - alpha_m) q`, a wheel on springs by [`Self::wheel`].
+    /// The small system of the step.
     fn contact_problem<'l>(
         &self,
         matrix: &'l StepMatrix,
@@ -242,26 +275,18 @@ impl Stepper<'_> {
         d: &[f64],
         free: &[FreeRide],
     ) -> ContactProblem<'l> {
-        let flexibility = &matrix.flexibility;
+        let (flexibility, along) = (&matrix.flexibility, self.riders(matrix));
         let connectors = &self.bridge.links;
         let (nc, nr) = (connectors.len(), load.riders.len());
-        let rows: Vec<MeasuredRider> = load
-            .riders
-            .iter()
-            .map(|rider| match &rider.rides {
-                Rides::Mass { mass_kg, derivatives } => {
-                    self.mass(matrix, old, load, rider, (*mass_kg, derivatives.as_ref()))
-                }
-                Rides::Spring { wheel, slope } => self.wheel(matrix, old, load, rider, (*wheel, slope), free),
-            })
-            .collect();
+        let measured = |rider: &Rider| along.measured(old.deck(), load, rider, free);
+        let rows: Vec<MeasuredRider> = load.riders.iter().map(measured).collect();
         let mut riders = DMatrix::from_fn(nr, nr, |i, j| {
             flexibility.track_to_track(&rows[i].measure, &load.riders[j].row)
         });
         for (i, row) in rows.iter().enumerate() {
             riders[(i, i)] += row.own;
             for (j, other) in load.riders.iter().enumerate() {
-                riders[(i, j)] += self.among_wheels(matrix, &load.riders[i], other);
+                riders[(i, j)] += along.among_wheels(&load.riders[i], other);
             }
         }
         let problem = ContactProblem {
@@ -277,7 +302,8 @@ impl Stepper<'_> {
             riders,
             riders_free: DVector::from_iterator(
                 nr,
-                rows.iter().map(|row| flexibility.track_dot(&row.measure, d) + row.known),
+                rows.iter()
+                    .map(|row| flexibility.track_dot(&row.measure, d) + row.known),
             ),
             one_sided: (0..nr).filter(|&r| load.riders[r].is_spring()).collect(),
         };
@@ -287,105 +313,14 @@ impl Stepper<'_> {
         }
     }
 
-    /// A mass's row of the small system. Equation (T5).
-    fn mass(
-        &self,
-        matrix: &StepMatrix,
-        old: &Motion,
-        load: &Load,
-        rider: &Rider,
-        (mass_kg, derivatives): (f64, Option<&(SparseRow, SparseRow)>),
-    ) -> MeasuredRider {
-        let s = &matrix.scheme;
-        let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| self.on_track(row, x);
-        let mut known = on(&rider.row, &|i| s.a_v * old.v[i] + s.a_a * old.a[i]);
-        let mut measure = rider.row.clone();
-        if let Some((r_x, r_xx)) = derivatives {
-            let heading = load.placements[rider.vehicle].heading;
-            let (speed, rate) = (heading.speed_m_s, heading.acceleration_m_s2);
-            known += 2.0 * speed * on(r_x, &|i| s.v_v * old.v[i] + s.v_a * old.a[i]);
-            known += speed * speed * on(r_xx, &|i| old.u[i]);
-            let mut terms = vec![
-                (1.0, &rider.row),
-                (2.0 * speed * s.c_v / s.c_a, r_x),
-                (speed * speed / s.c_a, r_xx),
-            ];
-            if rate != 0.0 {
-                known += rate * on(r_x, &|i| old.u[i]);
-                terms.push((rate / s.c_a, r_x));
-            }
-            measure = SparseRow::combine(&terms);
+    /// What rides along at the length of a step.
+    fn riders<'r>(&'r self, matrix: &'r StepMatrix) -> Riders<'r> {
+        Riders {
+            track: self.track,
+            traffic: self.traffic,
+            riding: &self.riding[matrix.halvings],
+            scheme: &matrix.scheme,
         }
-        MeasuredRider {
-            measure,
-            own: 1.0 / ((1.0 - s.alpha_m) * mass_kg * s.c_a),
-            known: known / s.c_a,
-        }
-    }
-
-    /// The row of a wheel on springs, `lambda' / ((1 - alpha_f) kappa) + S lambda' = g . d + known` with
-    /// `g = r + (c V / kappa) r_x` and `lambda' = (1 - alpha_f) lambda`. Equation (V5).
-    fn wheel(
-        &self,
-        matrix: &StepMatrix,
-        old: &Motion,
-        load: &Load,
-        rider: &Rider,
-        (wheel, slope): (usize, &SparseRow),
-        free: &[FreeRide],
-    ) -> MeasuredRider {
-        let s = &matrix.scheme;
-        let none = || MeasuredRider {
-            measure: SparseRow::default(),
-            own: 1.0,
-            known: 0.0,
-        };
-        let Some(riding) = self.riding(matrix, rider.vehicle) else {
-            return none();
-        };
-        let (of, kappa) = (&riding.springs().wheels[wheel], riding.kappa[wheel]);
-        let speed = load.placements[rider.vehicle].heading.speed_m_s;
-        let [height, road_slope] = self.road(load, rider.vehicle, wheel);
-        let on = |row: &SparseRow, x: &dyn Fn(usize) -> f64| self.on_track(row, x);
-        let free = &free[rider.vehicle];
-        let spring = on(&rider.row, &|i| old.u[i]) + height - free.y[wheel];
-        let rate = on(&rider.row, &|i| s.v_v * old.v[i] + s.v_a * old.a[i])
-            + speed * (on(slope, &|i| old.u[i]) + road_slope)
-            - free.rate[wheel];
-        let driven = &self.traffic.vehicles[rider.vehicle];
-        MeasuredRider {
-            measure: SparseRow::combine(&[(1.0, &rider.row), (of.damping_n_s_m * speed / kappa, slope)]),
-            own: 1.0 / ((1.0 - s.alpha_f) * kappa * driven.scale()),
-            known: (of.stiffness_n_m * spring + of.damping_n_s_m * rate) / kappa,
-        }
-    }
-
-    /// What a wheel on springs sees of another one of its vehicle (V4).
-    fn among_wheels(&self, matrix: &StepMatrix, one: &Rider, other: &Rider) -> f64 {
-        let (Rides::Spring { wheel: i, .. }, Rides::Spring { wheel: j, .. }) = (&one.rides, &other.rides) else {
-            return 0.0;
-        };
-        if one.vehicle != other.vehicle {
-            return 0.0;
-        }
-        let scale = self.traffic.vehicles[one.vehicle].scale();
-        self.riding(matrix, one.vehicle).map_or(0.0, |riding| riding.among[(*i, *j)] / scale)
-    }
-
-    /// The sum of a row of the track over what its columns have.
-    fn on_track(&self, row: &SparseRow, x: &dyn Fn(usize) -> f64) -> f64 {
-        row.0.iter().map(|&(c, v)| v * x(self.track.dof(c))).sum()
-    }
-
-    /// A vehicle's springs at the length of a step; none of a rigid vehicle.
-    fn riding(&self, matrix: &StepMatrix, vehicle: usize) -> Option<&RidingStep> {
-        self.riding[matrix.halvings][vehicle].as_ref()
-    }
-
-    /// Height of the road under a wheel and its slope, means over its points.
-    fn road(&self, load: &Load, vehicle: usize, wheel: usize) -> [f64; 2] {
-        let placement = &load.placements[vehicle];
-        self.traffic.under(vehicle, wheel, |ahead_m| placement.place_m(ahead_m))
     }
 
     /// Vehicles on springs as they are.
@@ -410,26 +345,6 @@ impl Stepper<'_> {
         })
     }
 
-    /// Vehicles awake in a step without new forces of their wheels.
-    fn predict_rides(&self, matrix: &StepMatrix, old: &Motion, load: &Load) -> Vec<FreeRide> {
-        let free = |(vehicle, ride): (usize, &Ride)| match self.riding(matrix, vehicle) {
-            Some(riding) if load.riders.iter().any(|r| r.vehicle == vehicle && r.is_spring()) => {
-                let mut free = FreeRide::new(riding.springs());
-                riding.predict(ride, self.driven_m_s2(load, vehicle), &mut free);
-                free
-            }
-            _ => FreeRide::default(),
-        };
-        old.rides.iter().enumerate().map(free).collect()
-    }
-
-    /// Acceleration of a vehicle along its own direction `[m/s^2]`.
-    fn driven_m_s2(&self, load: &Load, vehicle: usize) -> f64 {
-        let heading = load.placements[vehicle].heading;
-        let sign = if heading.backward { -1.0 } else { 1.0 };
-        sign * heading.acceleration_m_s2
-    }
-
     /// First guess of the states: those before, a wheel pressing where it did.
     fn first_states(&self, old: &Motion, load: &Load) -> Vec<State> {
         let pressing = |rider: &Rider| match rider.rides {
@@ -437,7 +352,11 @@ impl Stepper<'_> {
             Rides::Spring { .. } => Some(State::Open),
             Rides::Mass { .. } => None,
         };
-        old.states.iter().copied().chain(load.riders.iter().filter_map(pressing)).collect()
+        old.states
+            .iter()
+            .copied()
+            .chain(load.riders.iter().filter_map(pressing))
+            .collect()
     }
 
     /// Forces of riders from their scaled ones.
@@ -445,59 +364,6 @@ impl Stepper<'_> {
         let s = &matrix.scheme;
         let force = |(rider, q): (&Rider, &f64)| q / (1.0 - if rider.is_spring() { s.alpha_f } else { s.alpha_m });
         load.riders.iter().zip(scaled).map(force).collect()
-    }
-
-    /// Takes the vehicles awake to the end of the step; gives their energies.
-    fn finish_rides(
-        &self,
-        matrix: &StepMatrix,
-        old: &Motion,
-        new: &mut Motion,
-        d: &[f64],
-        scaled: &[f64],
-        free: &mut [FreeRide],
-    ) -> RideEnergies {
-        let s = &matrix.scheme;
-        let mut sum = RideEnergies::default();
-        let mut rides = old.rides.clone();
-        for (vehicle, ride) in rides.iter_mut().enumerate() {
-            let Some(riding) = self.riding(matrix, vehicle) else { continue };
-            let scale = self.traffic.vehicles[vehicle].scale();
-            let of = |load: &Load| -> Vec<usize> {
-                let is = |r: &usize| load.riders[*r].vehicle == vehicle && load.riders[*r].is_spring();
-                (0..load.riders.len()).filter(is).collect()
-            };
-            let on_deck = |load: &Load, forces: &[f64]| -> f64 {
-                let all = of(load).into_iter();
-                all.map(|r| forces[r] * matrix.flexibility.track_dot(&load.riders[r].row, d)).sum()
-            };
-            let on_deck_j = -s.at_f(on_deck(&new.load, &new.rider_forces), on_deck(&old.load, &old.rider_forces));
-            let own = of(&new.load);
-            if own.is_empty() {
-                sum.work += on_deck_j;
-                continue;
-            }
-            let speed = new.load.placements[vehicle].heading.speed_m_s;
-            let (mut height_m, mut rate_m_s) = (Vec::new(), Vec::new());
-            for &r in &own {
-                let rider = &new.load.riders[r];
-                let Rides::Spring { wheel, slope } = &rider.rides else { continue };
-                let [height, road_slope] = self.road(&new.load, vehicle, *wheel);
-                height_m.push(self.on_track(&rider.row, &|i| new.u[i]) + height);
-                let moved = self.on_track(&rider.row, &|i| new.v[i]);
-                rate_m_s.push(moved + speed * (self.on_track(slope, &|i| new.u[i]) + road_slope));
-            }
-            let under = UnderWheels {
-                height_m: &height_m,
-                rate_m_s: &rate_m_s,
-                on_deck_j: -on_deck_j / scale,
-            };
-            let driven_m_s2 = self.driven_m_s2(&new.load, vehicle);
-            let spent = riding.finish(ride, &mut free[vehicle], |w| scaled[own[w]] / scale, under, driven_m_s2);
-            sum = sum.and(spent.scaled(scale));
-        }
-        new.rides = rides;
-        sum
     }
 
     /// The forces of connectors and pins where the balance holds, and when that is.
@@ -535,7 +401,14 @@ impl Stepper<'_> {
 
     /// Energies of the step by the scheme's own increments: each term of the balance at alpha times `d`. What a term gives
     /// beyond the change of its energy is numerical dissipation.
-    fn account(&self, matrix: &StepMatrix, old: &Motion, new: &Motion, d: &[f64], ridden: RideEnergies) -> StepEnergies {
+    fn account(
+        &self,
+        matrix: &StepMatrix,
+        old: &Motion,
+        new: &Motion,
+        d: &[f64],
+        ridden: RideEnergies,
+    ) -> StepEnergies {
         let (s, flexibility) = (&matrix.scheme, &matrix.flexibility);
         let kinetic = 0.5 * dot(&new.v, &new.mv);
         let strain = 0.5 * dot(&new.u, &new.ku);
@@ -584,13 +457,6 @@ impl Stepper<'_> {
             work: ridden.work - weights - s.at_m(riders(new), riders(old)),
         }
     }
-}
-
-/// A rider's row of the small system: what measures it, its own compliance, what is known of its measure.
-struct MeasuredRider {
-    measure: SparseRow,
-    own: f64,
-    known: f64,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -192,7 +192,12 @@ impl StaticSolver {
             u,
             inertial: None,
             connectors: connectors(&contact.states, &contact.forces, &elongations),
-            wheels: wheels(self.flexibility.track(), [(&vehicle.standing(), case.load_n)], &load, &[]),
+            wheels: wheels(
+                self.flexibility.track(),
+                [(&vehicle.standing(), case.load_n)],
+                &load,
+                &[],
+            ),
             rides: Vec::new(),
             dead: case.dead.clone(),
         })
