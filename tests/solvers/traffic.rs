@@ -136,13 +136,16 @@ fn rough(ready: &Ready, lines: RoadLines, seed: u64) -> Option<Arc<pontoon_core:
     Some(Arc::new(design.road(&ways).expect("a road")))
 }
 
+/// A traffic whose springs are multiplied by a factor.
+type TrafficOf = Box<dyn Fn(f64) -> Traffic>;
+
 /// Every mode in the operator: the same motion through both solvers, the same solutions and switches, energies that close with the
 /// vehicles inside. Tolerance: rounding. Twins: springs 5 % off in the operator's crossing, a road of
 /// another seed.
 #[test]
 fn operator_takes_traffic_as_the_reference_does() {
     let (ready, both) = four();
-    let cases: Vec<(&str, Connection, Box<dyn Fn(f64) -> Traffic>)> = vec![
+    let cases: Vec<(&str, Connection, TrafficOf)> = vec![
         (
             "a truck",
             PAPER_GAPS,

@@ -105,7 +105,7 @@ impl Ride {
     }
 
     /// How far each motion is from rest on a level road `[m, rad]`.
-    pub(crate) fn from_rest<'a>(&'a self, springs: &'a Springs) -> impl Iterator<Item = f64> + 'a {
+    pub(crate) fn moved<'a>(&'a self, springs: &'a Springs) -> impl Iterator<Item = f64> + 'a {
         self.z.iter().zip(&springs.rest).map(|(z, rest)| z - rest)
     }
 }
