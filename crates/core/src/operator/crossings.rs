@@ -46,8 +46,7 @@ pub(crate) struct Saved {
     numbers: Vec<f64>,
     states: Vec<State>,
     local: LocalResidual,
-    mass_forces: Vec<StationForce>,
-    spring_forces: Vec<StationForce>,
+    rider_forces: (Vec<StationForce>, usize),
     /// Motion of each vehicle on springs.
     rides: Vec<Ride>,
     statistics: Statistics,
@@ -103,7 +102,8 @@ impl Crossings {
         of.statistics = Statistics::default();
         of.unloaded = 0;
         of.masses.leave();
-        of.mass_forces.clear();
+        of.rider_forces.clear();
+        of.first_spring = 0;
         of.take(crossing, operator.track.length_m());
         of.place(time_s);
         of.place_loads(lane, operator, &mut self.loads);
@@ -141,8 +141,8 @@ impl Crossings {
         of.dashpots = None;
         of.dead = None;
         of.weights.clear();
-        of.mass_forces.clear();
-        of.spring_forces.clear();
+        of.rider_forces.clear();
+        of.first_spring = 0;
         of.rides.clear();
         of.leave();
     }
@@ -178,8 +178,7 @@ impl Crossings {
             numbers,
             states: of.contact.states.clone(),
             local: of.masses.local_residual().clone(),
-            mass_forces: of.mass_forces.clone(),
-            spring_forces: of.spring_forces.clone(),
+            rider_forces: (of.rider_forces.clone(), of.first_spring),
             rides: of.rides.iter().map(|of| of.ride.clone()).collect(),
             statistics: of.statistics,
             before_s: of.dashpots.as_ref().map_or(f64::INFINITY, |of| of.before_s),
@@ -198,8 +197,8 @@ impl Crossings {
             dashpots.before_s = saved.before_s;
         }
         of.masses.put_local_residual(&saved.local);
-        of.mass_forces.clone_from(&saved.mass_forces);
-        of.spring_forces.clone_from(&saved.spring_forces);
+        of.rider_forces.clone_from(&saved.rider_forces.0);
+        of.first_spring = saved.rider_forces.1;
         for (of, saved) in of.rides.iter_mut().zip(&saved.rides) {
             of.ride.clone_from(saved);
         }
@@ -262,19 +261,15 @@ impl Crossings {
             let (wheels, [weights, inertia]) = (&crossing.wheels, self.pins.loads_now());
             let width = wheels.influence_width;
             apply_forces((&wheels.weights[..], width, first), &of.weights, weights, lane);
-            apply_forces((&wheels.nodes[..], width, first), &of.mass_forces, inertia, lane);
-            if !of.spring_forces.is_empty() {
+            let (masses, springs) = of.rider_forces.split_at(of.first_spring);
+            apply_forces((&wheels.nodes[..], width, first), masses, inertia, lane);
+            if !springs.is_empty() {
                 let rows = weights.rows();
-                sum_forces(
-                    (&wheels.nodes[..], width, first),
-                    &of.spring_forces,
-                    rows,
-                    |from, sums| {
-                        for (row, sum) in weights.rows_from_mut(from).zip(sums) {
-                            row[lane] += sum;
-                        }
-                    },
-                );
+                sum_forces((&wheels.nodes[..], width, first), springs, rows, |from, sums| {
+                    for (row, sum) in weights.rows_from_mut(from).zip(sums) {
+                        row[lane] += sum;
+                    }
+                });
             }
         }
         let end_s = &end_s[..self.lanes.len()];

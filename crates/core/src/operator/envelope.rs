@@ -284,7 +284,7 @@ impl Envelope {
     ) {
         let mut loads = [0.0; MOST_LANES];
         for (load, of) in loads.iter_mut().zip(each) {
-            for (.., force) in of.weights.iter().chain(&of.mass_forces).chain(&of.spring_forces) {
+            for (.., force) in of.weights.iter().chain(&of.rider_forces) {
                 *load += force.abs();
             }
         }
@@ -333,7 +333,7 @@ impl Envelope {
             for &(line, station, force) in &of.weights {
                 z -= force * wheels.weights[line].influence[station * wheels.influence_width + first + i];
             }
-            for &(line, station, force) in of.mass_forces.iter().chain(&of.spring_forces) {
+            for &(line, station, force) in &of.rider_forces {
                 z -= force * wheels.influence(DeckNode { line, station })[first + i];
             }
             let edge = self.edge.at_mut(0, lane);

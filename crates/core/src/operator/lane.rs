@@ -59,8 +59,9 @@ pub(super) struct Lane {
     pub(super) beyond_weight: Vec<f64>,
     /// Downward forces on stations of the lines of the weights, then on nodes of the masses and of wheels on springs.
     pub(super) weights: Vec<StationForce>,
-    pub(super) mass_forces: Vec<StationForce>,
-    pub(super) spring_forces: Vec<StationForce>,
+    pub(super) rider_forces: Vec<StationForce>,
+    /// The first of those of wheels on springs.
+    pub(super) first_spring: usize,
     /// What the rows see of the springs, and whether there are any in the step under way.
     seen_springs: Vec<f64>,
     pressed: bool,
@@ -91,8 +92,8 @@ impl Lane {
             axles: Vec::new(),
             beyond_weight: Vec::new(),
             weights: Vec::with_capacity(most_nodes),
-            mass_forces: Vec::with_capacity(most_nodes),
-            spring_forces: Vec::new(),
+            rider_forces: Vec::with_capacity(most_nodes),
+            first_spring: 0,
             seen_springs: vec![0.0; sizes.followed()],
             pressed: false,
             ridden: RideEnergies::default(),
@@ -111,7 +112,6 @@ impl Lane {
         self.beyond_weight = vec![0.0; axles];
         self.placements = vec![VehiclePlacement::default(); crossing.traffic.vehicles.len()];
         self.rides = LaneRide::all(&crossing.traffic, &crossing.riding, length_m);
-        self.spring_forces.clear();
         self.leave();
         self.dashpots = LaneDashpots::new(&crossing.dashpots, &crossing.laws);
         self.dead = crossing.dead.as_ref().map(LaneDead::new);
@@ -197,8 +197,8 @@ impl Lane {
         clock.lap(StepPart::GatherAndScatter, || 0.0);
         let forces = StepForces {
             weights: &self.weights,
-            masses: &self.mass_forces,
-            springs: &self.spring_forces,
+            masses: &self.rider_forces[..self.first_spring],
+            springs: &self.rider_forces[self.first_spring..],
             n: &self.n,
         };
         masses.follow(wheels, constants, m, forces);
@@ -270,8 +270,8 @@ impl Lane {
             return;
         };
         self.beyond_weight.fill(0.0);
-        self.mass_forces.clear();
-        self.spring_forces.clear();
+        self.rider_forces.clear();
+        self.first_spring = 0;
         (self.pressed, self.ridden) = (false, RideEnergies::default());
         if masses.count() == 0 {
             return;
@@ -280,15 +280,16 @@ impl Lane {
         let (compliance, links) = (&*crossing.compliance, &self.contact.linear.forces);
         masses.add_forces(compliance, constants, scaled, links, &mut self.beyond_weight);
         let s = &constants.scheme;
-        masses.masses_on_nodes(scaled, 1.0 / (1.0 - s.alpha_m), &mut self.mass_forces);
-        loads.apply_inertia(lane, wheels, &self.mass_forces);
+        masses.masses_on_nodes(scaled, 1.0 / (1.0 - s.alpha_m), &mut self.rider_forces);
+        self.first_spring = self.rider_forces.len();
+        loads.apply_inertia(lane, wheels, &self.rider_forces);
         if masses.wheels_on_springs() > 0 {
             self.pressed = true;
-            masses.springs_on_nodes(scaled, 1.0 / (1.0 - s.alpha_f), &mut self.spring_forces);
+            masses.springs_on_nodes(scaled, 1.0 / (1.0 - s.alpha_f), &mut self.rider_forces);
             let (columns, seen) = (self.seen_springs.len(), &mut self.seen_springs);
             sum_forces(
                 (&wheels.nodes[..], wheels.influence_width, 0),
-                &self.spring_forces,
+                &self.rider_forces[self.first_spring..],
                 columns,
                 |from, sums| seen[from..][..sums.len()].copy_from_slice(sums),
             );
@@ -304,8 +305,8 @@ impl Lane {
         n.gather(lane, &mut self.n);
         let found = StepForces {
             weights: &[],
-            masses: &self.mass_forces,
-            springs: &self.spring_forces,
+            masses: &self.rider_forces[..self.first_spring],
+            springs: &self.rider_forces[self.first_spring..],
             n: &self.n,
         };
         masses.lead(wheels, constants, constants.c.len(), found);

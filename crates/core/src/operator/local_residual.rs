@@ -32,7 +32,7 @@ pub(super) struct LocalResidual {
     /// Of the weights at the step under way; the change of x without new inertia and connector forces.
     weights_now: Vec<f64>,
     free: Vec<f64>,
-    /// Of wheels on springs at the step under way; of the last one they are among the weights.
+    /// Of wheels on springs at the step under way, to add them up; of the last step they are among the weights.
     springs: Vec<f64>,
 }
 
@@ -78,9 +78,8 @@ impl LocalResidual {
         new
     }
 
-    fn lists(&mut self) -> [&mut Vec<f64>; 9] {
-        let [x, v, a] = &mut self.x;
-        let (now, free, springs) = (&mut self.weights_now, &mut self.free, &mut self.springs);
+    fn lists(&mut self) -> [&mut Vec<f64>; 8] {
+        let ([x, v, a], now, free) = (&mut self.x, &mut self.weights_now, &mut self.free);
         [
             x,
             v,
@@ -90,13 +89,12 @@ impl LocalResidual {
             &mut self.contact,
             now,
             free,
-            springs,
         ]
     }
 
-    fn listed(&self) -> [&Vec<f64>; 9] {
-        let ([x, v, a], now, free, springs) = (&self.x, &self.weights_now, &self.free, &self.springs);
-        [x, v, a, &self.weights, &self.inertia, &self.contact, now, free, springs]
+    fn listed(&self) -> [&Vec<f64>; 8] {
+        let ([x, v, a], now, free) = (&self.x, &self.weights_now, &self.free);
+        [x, v, a, &self.weights, &self.inertia, &self.contact, now, free]
     }
 
     /// No nodes.
@@ -213,27 +211,37 @@ impl LocalResidual {
         for &(line, at, force) in found.masses {
             press(&self.runs, &mut self.inertia, wheels, line, at, force);
         }
-        self.springs.fill(0.0);
-        for &(line, at, force) in found.springs {
-            press(&self.runs, &mut self.springs, wheels, line, at, force);
-        }
         for run in &self.runs {
             for (i, contact) in self.contact[run.from..][..run.count].iter_mut().enumerate() {
                 *contact = of_connectors(wheels, run.line, run.first + i, modes, n);
             }
         }
         let s = &constants.scheme;
+        if !found.springs.is_empty() {
+            self.press_springs(wheels, constants, found.springs);
+        }
         let count = self.free.len();
         let (inertia, contact, free) = (&self.inertia[..count], &self.contact[..count], &self.free[..count]);
-        let springs = &self.springs[..count];
         let [x, v, a] = self.x.each_mut().map(|x| &mut x[..count]);
         let newmark = Newmark::of(Scalar, s);
         for i in 0..count {
-            let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * (contact[i] + springs[i]);
+            let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * contact[i];
             [x[i], v[i], a[i]] = newmark.advance(Scalar, free[i] - constants.rho * late, [x[i], v[i], a[i]]);
         }
-        for ((to, weight), spring) in self.weights.iter_mut().zip(&self.weights_now).zip(&self.springs) {
-            *to = weight + spring;
+        self.weights.copy_from_slice(&self.weights_now);
+    }
+
+    /// Forces of wheels on springs: with the connectors in this step, with the weights in the next.
+    fn press_springs(&mut self, wheels: &WheelLines, constants: &StepConstants, springs: &[StationForce]) {
+        self.springs.clear();
+        self.springs.resize(self.free.len(), 0.0);
+        for &(line, at, force) in springs {
+            press(&self.runs, &mut self.springs, wheels, line, at, force);
+        }
+        let factor = constants.rho * (1.0 - constants.scheme.alpha_f);
+        for ((free, now), spring) in self.free.iter_mut().zip(&mut self.weights_now).zip(&self.springs) {
+            *free -= factor * spring;
+            *now += spring;
         }
     }
 

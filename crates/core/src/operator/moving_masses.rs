@@ -13,6 +13,7 @@ use super::step_constants::StepConstants;
 use super::sums::{add_to, dot};
 use super::wheel_lines::{DeckNode, WheelCompliance, WheelLines};
 use crate::bridge::{Track, VehiclePlacement};
+use crate::scheme::Scheme;
 
 /// Free motion of the modes at the end of a step: `q, v, a` as they would be without connector and mass forces.
 #[derive(Debug, Default)]
@@ -388,12 +389,8 @@ impl MovingMasses {
         axles: &mut [f64],
     ) {
         let (nr, s) = (self.places.list.len(), &constants.scheme);
-        for (wheel, q) in self.places.list.iter().zip(scaled).skip(self.places.first_wheel) {
-            axles[wheel.axle] += q / (1.0 - s.alpha_f);
-        }
-        let patches = self.places.list[..self.places.first_wheel].iter().zip(scaled);
-        for (mass, q) in patches.filter(|(mass, _)| mass.slopes.0 != mass.slopes.1) {
-            axles[mass.axle] += q / (1.0 - s.alpha_m);
+        if self.places.needs_motion() {
+            self.add_own_forces(s, scaled, axles);
         }
         if self.places.points.is_empty() {
             return;
@@ -406,6 +403,17 @@ impl MovingMasses {
         for p in &self.places.points {
             let (left, right) = (self.on_nodes[p.node], self.on_nodes[p.node + 1]);
             axles[p.axle] += p.mass_kg * ((1.0 - p.part) * left + p.part * right);
+        }
+    }
+
+    /// Adds forces that riders have by themselves: of patches and of wheels on springs.
+    fn add_own_forces(&self, s: &Scheme, scaled: &[f64], axles: &mut [f64]) {
+        for (wheel, q) in self.places.list.iter().zip(scaled).skip(self.places.first_wheel) {
+            axles[wheel.axle] += q / (1.0 - s.alpha_f);
+        }
+        let patches = self.places.list[..self.places.first_wheel].iter().zip(scaled);
+        for (mass, q) in patches.filter(|(mass, _)| mass.slopes.0 != mass.slopes.1) {
+            axles[mass.axle] += q / (1.0 - s.alpha_m);
         }
     }
 }

@@ -149,15 +149,20 @@ impl Drive {
     }
 
     /// Where it is at a time.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, time_s: f64) -> Progress {
-        if self.acceleration_m_s2 == 0.0 {
-            return Progress {
-                way_m: self.speed_m_s * (time_s - self.start_s),
-                speed_m_s: self.speed_m_s,
-                acceleration_m_s2: 0.0,
-            };
+        if self.acceleration_m_s2 != 0.0 {
+            return self.accelerated(time_s);
         }
+        Progress {
+            way_m: self.speed_m_s * (time_s - self.start_s),
+            speed_m_s: self.speed_m_s,
+            acceleration_m_s2: 0.0,
+        }
+    }
+
+    /// Where it is where it accelerates or brakes.
+    fn accelerated(&self, time_s: f64) -> Progress {
         let mut now = None;
         for piece in self.pieces() {
             if now.is_none() || piece.from_s <= time_s {
