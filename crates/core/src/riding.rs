@@ -105,7 +105,7 @@ impl Ride {
     }
 
     /// How far each motion is from rest on a level road `[m, rad]`.
-    pub(crate) fn from_rest<'a>(&'a self, springs: &'a Springs) -> impl Iterator<Item = f64> + 'a {
+    pub(crate) fn moved<'a>(&'a self, springs: &'a Springs) -> impl Iterator<Item = f64> + 'a {
         self.z.iter().zip(&springs.rest).map(|(z, rest)| z - rest)
     }
 }
@@ -323,4 +323,86 @@ impl RidingStep {
 
 fn dot(row: &[f64], x: &[f64]) -> f64 {
     row.iter().zip(x).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FreeRide, Ride, RidingStep, UnderWheels};
+    use crate::scheme::Scheme;
+    use crate::vehicle::{Axle, Springs, VehicleDesign};
+    use std::sync::Arc;
+
+    /// A mass of 1 kg on 100 N/m, its weight 10 N.
+    fn ball(stiffness_n_m: f64) -> Arc<Springs> {
+        let axle = Axle {
+            track_y_m: vec![0.0],
+            unsprung_mass_kg: Some(1.0),
+            tyre_stiffness_n_m: Some(stiffness_n_m),
+            ..Axle::default()
+        };
+        let design = VehicleDesign {
+            axles: Some(vec![axle]),
+            ..VehicleDesign::default()
+        };
+        let vehicle = design.check(2.0).expect("a mass");
+        let mut springs = vehicle.springs.as_deref().expect("springs").clone();
+        springs.weight_n = vec![10.0];
+        Arc::new(springs)
+    }
+
+    /// Falls from z = 0 with -1 m/s onto a ground at -2 m: times of contact and release, z at 1.0 and 1.1 s, largest force.
+    fn bounced(stiffness_n_m: f64, h: f64) -> [f64; 5] {
+        let springs = ball(stiffness_n_m);
+        let step = RidingStep::new(&springs, Scheme::new(h, 0.9));
+        let mut ride = Ride::at_rest(&springs, 0.0);
+        (ride.z, ride.v, ride.a) = (vec![0.0], vec![-1.0], vec![-10.0]);
+        (ride.wheels_n, ride.under_m) = (vec![0.0], vec![-2.0]);
+        let mut free = FreeRide::new(&springs);
+        let (mut times, mut heights, mut most) = ([0.0; 2], [0.0; 2], 0.0_f64);
+        for i in 1..=(1.1 / h).round() as usize {
+            step.predict(&ride, 0.0, &mut free);
+            // the row of a wheel on a ground that stands still, which only presses
+            let known = -2.0 - free.y[0];
+            let scaled = known / (step.among[(0, 0)] + 1.0 / (step.unscaling() * step.kappa[0]));
+            let before = ride.wheels_n[0];
+            let under = UnderWheels {
+                height_m: &[-2.0],
+                rate_m_s: &[0.0],
+                on_deck_j: 0.0,
+            };
+            step.finish(&mut ride, &mut free, |_| scaled.max(0.0), under, 0.0);
+            let (now, t) = (ride.wheels_n[0], i as f64 * h);
+            most = most.max(now);
+            if before == 0.0 && now > 0.0 {
+                times[0] = t;
+            }
+            if before > 0.0 && now == 0.0 {
+                times[1] = t;
+            }
+            if (t - 1.0).abs() < 0.5 * h {
+                heights[0] = ride.z[0];
+            }
+            if (t - 1.1).abs() < 0.5 * h {
+                heights[1] = ride.z[0];
+            }
+        }
+        [times[0], times[1], heights[0], heights[1], most]
+    }
+
+    /// The closed solution: free fall, a half wave about -2.1 m at 10 rad/s, free flight. Contact at 0.540312 s and release at
+    /// 0.885456 s within a step of 0.1 ms, heights to 1e-5 m, the largest force to 1e-5 of itself. A spring that is 5 % off is found.
+    #[test]
+    fn a_mass_bounces_as_in_closed_form() {
+        let h = 1e-4;
+        let expected = [0.540_312, 0.885_456, -1.332_163, -0.856_394, 74.8074];
+        let off = |found: [f64; 5]| -> [f64; 5] { std::array::from_fn(|i| (found[i] - expected[i]).abs()) };
+        let right = off(bounced(100.0, h));
+        let bounds = [h, h, 1e-5, 1e-5, 1e-5 * expected[4]];
+        assert!(right.iter().zip(&bounds).all(|(off, bound)| off <= bound), "{right:?}");
+        let wrong = off(bounced(105.0, h));
+        assert!(
+            wrong.iter().zip(&bounds).skip(1).all(|(off, bound)| off > bound),
+            "{wrong:?}"
+        );
+    }
 }

@@ -29,3 +29,4 @@ mod results;
 mod shells;
 mod shown_places;
 mod terminal;
+mod traffic;

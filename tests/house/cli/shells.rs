@@ -203,7 +203,7 @@ fn zsh_completes_words_where_a_word_is_due() {
         ("pontoon comp", vec!["compare", "completions"]),
         (
             "pontoon schema ",
-            vec!["bridge", "parameters", "reference", "study", "tables"],
+            vec!["bridge", "parameters", "reference", "study", "tables", "vehicle"],
         ),
         (
             "pontoon completions ",

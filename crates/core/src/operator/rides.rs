@@ -47,12 +47,11 @@ pub(super) struct WheelOnDeck {
 impl LaneRide {
     /// The vehicles on springs of a traffic, at rest.
     pub(super) fn all(traffic: &Arc<Traffic>, steps: &[Option<Arc<RidingStep>>], length_m: f64) -> Vec<Self> {
-        let presences = traffic.presences(length_m);
-        let each = traffic.vehicles.iter().zip(steps).zip(presences).enumerate();
-        let ride = |(vehicle, ((driven, step), presence)): (usize, ((_, &Option<Arc<RidingStep>>), Presence))| {
-            let (driven, step): (&crate::traffic::Driven, _) = (driven, step.as_ref()?);
-            let wheels = step.springs().wheels.len();
-            Some(Self {
+        let mut rides = Vec::new();
+        for (vehicle, presence) in traffic.presences(length_m).into_iter().enumerate() {
+            let Some(step) = &steps[vehicle] else { continue };
+            let (driven, wheels) = (&traffic.vehicles[vehicle], step.springs().wheels.len());
+            rides.push(Self {
                 vehicle,
                 traffic: Arc::clone(traffic),
                 presence,
@@ -63,9 +62,9 @@ impl LaneRide {
                 awake: false,
                 height_m: vec![0.0; wheels],
                 rate_m_s: vec![0.0; wheels],
-            })
-        };
-        each.filter_map(ride).collect()
+            });
+        }
+        rides
     }
 
     /// Takes another step length.

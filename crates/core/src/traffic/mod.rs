@@ -174,7 +174,7 @@ impl Drive {
         }
         let pieces: Vec<Piece> = self.pieces().collect();
         let until = |i: usize| pieces.get(i + 1).map_or(f64::INFINITY, |next| next.from_s);
-        let found = pieces.iter().enumerate().find_map(|(i, piece)| {
+        pieces.iter().enumerate().find_map(|(i, piece)| {
             let Progress {
                 way_m: from_m,
                 speed_m_s: v,
@@ -183,8 +183,7 @@ impl Drive {
             roots([from_m - way_m, v, 0.5 * a])
                 .map(|t| piece.from_s + t)
                 .find(|&time_s| (i == 0 || time_s >= piece.from_s) && time_s <= until(i))
-        });
-        found
+        })
     }
 }
 
@@ -246,7 +245,7 @@ impl Presence {
 
 impl Driven {
     /// What its masses, springs and dampers are multiplied by for its weight; 1 of a rigid vehicle.
-    pub(crate) fn scale(&self) -> f64 {
+    pub fn scale(&self) -> f64 {
         let springs = self.vehicle.springs.as_ref();
         springs.map_or(1.0, |springs| self.load_n / springs.whole_weight_n())
     }

@@ -2,9 +2,10 @@
 //!
 //! Knows what bridges and vehicles are like. Refuses nothing: a person may mean what nobody else would.
 
-use super::{Job, Task};
+use super::{Job, Task, has_springs};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::module::ModuleDesign;
+use pontoon_core::traffic::Driven;
 use std::borrow::Cow;
 use std::collections::HashSet;
 
@@ -16,6 +17,22 @@ const LIGHT_N: f64 = 1000.0;
 const SOFT_PA: f64 = 1e9;
 /// Thickness above which a plate is a doubt `[m]`.
 const THICK_M: f64 = 0.1;
+
+/// Stiffness above which a wheel's spring on a point is a doubt `[N/m]`.
+const STIFF_N_M: f64 = 1e7;
+
+/// The stiffness of a wheel's spring that stands on a point and is too stiff for that `[N/m]`.
+fn stiff_point(job: &Job) -> Option<f64> {
+    let crossing = job.as_crossing().filter(|_| has_springs(job))?;
+    let stiff = |driven: &Driven| {
+        let springs = driven.vehicle.springs.as_ref()?;
+        let wheels = springs.wheels.iter().zip(&driven.vehicle.patches);
+        let mut points = wheels.filter(|(_, patch)| patch.length_m == 0.0);
+        let found = points.find(|(wheel, _)| driven.scale() * wheel.stiffness_n_m > STIFF_N_M);
+        found.map(|(wheel, _)| driven.scale() * wheel.stiffness_n_m)
+    };
+    crossing.traffic().vehicles.iter().find_map(stiff)
+}
 
 /// A number that is in doubt.
 #[derive(Debug)]
@@ -65,6 +82,15 @@ impl Doubts {
                 crossing.first_time_step_s(),
                 "the vehicle goes more than half of its shortest patch in a time step, so that peaks may be far too large: take a \
                  smaller step or \"auto\" (column step_warning)",
+            );
+        }
+        if let Some(stiffness_n_m) = stiff_point(job) {
+            self.note(
+                true,
+                "vehicle.axles",
+                stiffness_n_m,
+                "a spring above 1e7 N/m on a patch of no length: the deck is straight between stations and kicks it at each; state a \
+                 patch_length_m",
             );
         }
         if job.task != Task::Modes {

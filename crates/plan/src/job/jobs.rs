@@ -117,6 +117,9 @@ impl Jobs<'_> {
             record: Arc::clone(&self.study.record),
             task,
         };
+        if let Some(crossing) = job.as_crossing().filter(|_| !job.record.histories.vehicles.is_empty()) {
+            job.record.check_vehicles(&self.study.file, &crossing.traffic())?;
+        }
         match job.checked_laws() {
             Ok(_) => Ok(job),
             Err(refused) => Err(Short {

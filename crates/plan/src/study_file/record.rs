@@ -318,6 +318,30 @@ impl RecordSpec {
         self.check_peaks(file, design)
     }
 
+    /// Refuses vehicles that a traffic does not have, those without springs, and one twice.
+    ///
+    /// # Errors
+    /// [`Refusal`] at `record.histories.vehicles`.
+    pub(crate) fn check_vehicles(&self, file: &Path, traffic: &Traffic) -> Result<(), Refusal> {
+        let list = &self.histories.vehicles;
+        for (i, &number) in list.iter().enumerate() {
+            let key = format!("record.histories.vehicles[{i}]");
+            let count = traffic.vehicles.len();
+            if !(1..=count).contains(&number) {
+                return Err(Refusal::new(file, key, number, format!("a number from 1 to {count}")));
+            }
+            if traffic.vehicles[number - 1].vehicle.springs.is_none() {
+                let found = FoundValue::value(number).which("which is a vehicle without springs");
+                let refused = Refusal::new(file, key, found, "a vehicle on springs");
+                return Err(refused.because(RefusalKind::Conflict));
+            }
+            if list[..i].contains(&number) {
+                return Err(Refusal::new(file, key, number, "each vehicle once").because(RefusalKind::Repeated));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses places off the bridge, one twice, and histories of others.
     fn check_places(&self, file: &Path, length_m: f64) -> Result<(), Refusal> {
         let known = |list: &[f64], x_m: f64| list.iter().any(|place| (place - x_m).abs() < ONE_PLACE_M);

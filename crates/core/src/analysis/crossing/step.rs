@@ -330,7 +330,7 @@ impl Stepper<'_> {
             let springs = driven.vehicle.springs.as_ref()?;
             Some(RideNow {
                 vehicle,
-                moved: ride.from_rest(springs).collect(),
+                moved: ride.moved(springs).collect(),
                 accelerations: ride.a.clone(),
                 wheels_n: ride.wheels_n.iter().map(|force| driven.scale() * force).collect(),
             })
