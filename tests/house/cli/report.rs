@@ -191,7 +191,7 @@ fn crossings_that_are_played_reach_the_peaks_of_the_tables() {
             let by_sample = if *force < 0.0 { 1 } else { 2 };
             assert!(force.abs() <= scale || *state == by_sample, "{state} at {force} N");
         }
-        for (time, front) in f32s(&play["time_s"]).iter().zip(f32s(&play["front_x_m"])) {
+        for (time, front) in f32s(&play["time_s"]).iter().zip(f32s(&play["vehicles"][0]["front_x_m"])) {
             let expected = speed[job].unwrap() * time.unwrap();
             assert!((front.unwrap() - expected).abs() < 1e-4, "{front:?} m at {time:?} s");
         }

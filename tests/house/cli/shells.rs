@@ -114,7 +114,7 @@ fn fish_completes_words_where_a_word_is_due_and_files_where_a_file_is() {
     for (line, mut expected) in [
         (
             "pontoon schema ",
-            vec!["study", "bridge", "reference", "parameters", "tables"],
+            vec!["study", "bridge", "reference", "parameters", "tables", "vehicle"],
         ),
         (
             "pontoon completions ",

@@ -168,7 +168,7 @@ fn a_journal_of_another_form_or_program_is_refused_by_name() {
     rebound(&stage, "r", "\"form\":6", "\"form\":1");
     let output = run(&stage, "r", &[]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    for words in ["a journal of form 1", "this one reads form 5", "--fresh"] {
+    for words in ["a journal of form 1", "this one reads form 6", "--fresh"] {
         assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
     }
     rebound(&stage, "r", "\"form\":1", "\"form\":6");

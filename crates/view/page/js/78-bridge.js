@@ -91,7 +91,7 @@
       river = bridge.water_level_m ?? 0,
       force = array(play.force_n),
       state = array(play.state),
-      front = array(play.front_x_m);
+      vehicles = play.vehicles.map(v => ({ ...v, front: array(v.front_x_m), sense: v.backward ? -1 : 1 }));
     const down = w.reduce((a, v) => Math.max(a, v), 0),
       up = w.reduce((a, v) => Math.max(a, -v), 0),
       most = force.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
@@ -159,8 +159,10 @@
           .map(j =>
             svg('rect', { class: 'force', 'data-joint': bridge.joints[j], width: Math.max(2, 0.45 * module * s) }),
           ),
-        wheels: play.axles.map(a => svg('line', { class: 'wheel', 'data-behind': a.behind_front_m })),
-        body: svg('path', { class: 'vehicle' }),
+        wheels: vehicles.map((v, k) =>
+          v.axles.map(a => svg('line', { class: 'wheel', 'data-vehicle': k, 'data-behind': a.behind_front_m })),
+        ),
+        bodies: vehicles.map(() => svg('path', { class: 'vehicle' })),
         size,
       };
       const node = svg(
@@ -189,8 +191,8 @@
           spring(X(xs[b.position - 1]), base - bottomAt(b.position - 1) * px + b.clearance_m * E * s, b.bank),
         ),
         part.modules,
-        part.body,
-        part.wheels,
+        part.bodies,
+        part.wheels.flat(),
         part.joints,
         part.wanting.map(w => w.node),
         svg(
@@ -256,7 +258,7 @@
     function draw(f, time) {
       const at = i => base + between(w, f, i, P) * E * s,
         whole = Math.floor(f),
-        x0 = between(front, f, 0, 1);
+        x0 = between(vehicles[0].front, f, 0, 1);
       part.modules.forEach((node, i) => {
         const a = at(i),
           b = at(i + 1),
@@ -298,30 +300,36 @@
         const p = bridge.joints[j] - 1;
         node.setAttribute('transform', `translate(${X(xs[p]).toFixed(2)},${(at(p) - deckAt(p) * px).toFixed(2)})`);
       }
-      let from = Infinity,
-        to = -Infinity,
-        high = -Infinity;
-      play.axles.forEach((axle, i) => {
-        const x = x0 - axle.behind_front_m,
-          half = axle.patch_length_m / 2,
-          y = deckY(f, x) - 2.5;
-        const line = part.wheels[i];
-        line.setAttribute('x1', X(x - half).toFixed(2));
-        line.setAttribute('x2', Math.max(X(x + half), X(x - half) + 3).toFixed(2));
-        line.setAttribute('y1', (deckY(f, x - half) - 2.5).toFixed(2));
-        line.setAttribute('y2', (deckY(f, x + half) - 2.5).toFixed(2));
-        from = Math.min(from, X(x - half));
-        to = Math.max(to, X(x + half));
-        high = Math.max(high, -y);
+      vehicles.forEach((vehicle, k) => {
+        const at = between(vehicle.front, f, 0, 1);
+        let from = Infinity,
+          to = -Infinity,
+          high = -Infinity;
+        vehicle.axles.forEach((axle, i) => {
+          const x = at - vehicle.sense * axle.behind_front_m,
+            half = axle.patch_length_m / 2,
+            y = deckY(f, x) - 2.5;
+          const line = part.wheels[k][i];
+          line.setAttribute('x1', X(x - half).toFixed(2));
+          line.setAttribute('x2', Math.max(X(x + half), X(x - half) + 3).toFixed(2));
+          line.setAttribute('y1', (deckY(f, x - half) - 2.5).toFixed(2));
+          line.setAttribute('y2', (deckY(f, x + half) - 2.5).toFixed(2));
+          from = Math.min(from, X(x - half));
+          to = Math.max(to, X(x + half));
+          high = Math.max(high, -y);
+        });
+        // the cab is at the end that drives ahead
+        const tall = Math.max(12, 0.02 * width),
+          y = -high - 3,
+          ahead = vehicle.sense > 0,
+          tail = ahead ? from : to,
+          head = ahead ? Math.max(to, from + 8) : Math.min(from, to - 8),
+          cab = head - vehicle.sense * Math.min(tall, Math.abs(head - tail) * 0.35);
+        part.bodies[k].setAttribute(
+          'd',
+          `M${tail.toFixed(2)} ${y.toFixed(2)}V${(y - tall * 0.7).toFixed(2)}H${cab.toFixed(2)}V${(y - tall).toFixed(2)}H${((head + cab) / 2).toFixed(2)}L${head.toFixed(2)} ${(y - tall * 0.5).toFixed(2)}V${y.toFixed(2)}z`,
+        );
       });
-      const tallBody = Math.max(12, 0.02 * width),
-        y = -high - 3,
-        b = Math.max(to, from + 8),
-        cab = b - Math.min(tallBody, (b - from) * 0.35);
-      part.body.setAttribute(
-        'd',
-        `M${from.toFixed(2)} ${y.toFixed(2)}V${(y - tallBody * 0.7).toFixed(2)}H${cab.toFixed(2)}V${(y - tallBody).toFixed(2)}H${((b + cab) / 2).toFixed(2)}L${b.toFixed(2)} ${(y - tallBody * 0.5).toFixed(2)}V${y.toFixed(2)}z`,
-      );
       part.node.setAttribute('data-frame', f);
       part.node.setAttribute('data-time', time);
       part.node.setAttribute('data-front', x0);

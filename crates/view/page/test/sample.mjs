@@ -291,9 +291,23 @@ function play(job) {
     job: job.job,
     frames: F,
     time_s: f32(time),
-    front_x_m: f32(front),
-    axles: [{ behind_front_m: 0, share: 1, patch_length_m: 3.35 }],
-    load_n: job.load_n,
+    vehicles: [
+      {
+        front_x_m: f32(front),
+        axles: [{ behind_front_m: 0, share: 1, patch_length_m: 3.35 }],
+        load_n: job.load_n,
+      },
+      // another one comes from the right end, half as fast
+      {
+        front_x_m: f32(front.map(x => 15 * LENGTH - 0.5 * x)),
+        backward: true,
+        axles: [
+          { behind_front_m: 0, share: 0.4, patch_length_m: 0.3 },
+          { behind_front_m: 4.5, share: 0.6, patch_length_m: 0.3 },
+        ],
+        load_n: job.load_n,
+      },
+    ],
     deflection_m: i16(
       front.flatMap(f => bridge.position_x_m.map(x => depth(x, f))),
       w / 32000,

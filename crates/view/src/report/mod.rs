@@ -38,7 +38,7 @@ pub use headline::{FailureNote, PageCard};
 pub use histories::HistoryLine;
 pub use open::OpenedResults;
 pub use packed::{Packed, Scaled};
-pub use playback::{AxlePatch, Play};
+pub use playback::{AxlePatch, Play, PlayedVehicle};
 pub use rows::{ColumnData, JobRows, PageEnvelope, PageProfile, RowColumn, WordList};
 pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};

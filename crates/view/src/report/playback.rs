@@ -7,6 +7,8 @@ use super::cells::PageMeasure;
 use super::packed::{Packed, Scaled};
 use super::rows::severest;
 use crate::thinning::spread;
+use pontoon_core::traffic::Driven;
+use pontoon_core::vehicle::Vehicle;
 use pontoon_plan::job::{Job, Task};
 use pontoon_plan::study_file::{ModelSpec, Study};
 use pontoon_results::{HistoryRows, JobRecord, Results, Table};
@@ -34,6 +36,20 @@ pub struct AxlePatch {
     pub patch_length_m: f64,
 }
 
+/// A vehicle of a crossing to be played.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlayedVehicle {
+    /// Place of its front in each frame `[m]`.
+    pub front_x_m: Packed,
+    /// Whether it drives toward the left end.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub backward: bool,
+    /// Its axles.
+    pub axles: Vec<AxlePatch>,
+    /// Its weight `[N]`.
+    pub load_n: f64,
+}
+
 /// A crossing to be played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Play {
@@ -46,12 +62,8 @@ pub struct Play {
     pub frames: usize,
     /// Time of each frame `[s]`.
     pub time_s: Packed,
-    /// Place of the vehicle's front `[m]`.
-    pub front_x_m: Packed,
-    /// Its axles.
-    pub axles: Vec<AxlePatch>,
-    /// Its weight `[N]`.
-    pub load_n: f64,
+    /// The vehicles in the order of their numbers.
+    pub vehicles: Vec<PlayedVehicle>,
     /// Deflection of each position at rest, from where the modules float by themselves `[m]`; empty without a dead load.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rest_m: Vec<f64>,
@@ -157,9 +169,7 @@ fn choose(jobs: &Table, measures: &[PageMeasure], fit: &[(usize, &Job)], most: u
 
 /// The frames of a record; none where it failed this time.
 fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
-    let Task::Crossing { speed_m_s } = job.task else {
-        return None;
-    };
+    let traffic = job.as_crossing()?.traffic();
     let histories = &record.histories;
     let of = |quantity: &str| -> Vec<&Vec<f64>> {
         let named = histories.series.iter().filter(|series| series.of.quantity == quantity);
@@ -183,32 +193,25 @@ fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
         _ => 0,
     };
     let time = |frame: &usize| histories.time_s[*frame];
-    let axles = job
-        .vehicle
-        .vehicle
-        .patches
-        .iter()
-        .fold(Vec::<AxlePatch>::new(), |mut axles, patch| {
-            if axles.len() == patch.axle {
-                axles.push(AxlePatch {
-                    behind_front_m: -patch.ahead_m,
-                    share: 0.0,
-                    patch_length_m: patch.length_m,
-                });
-            }
-            if let Some(axle) = axles.last_mut() {
-                axle.share += patch.share;
-            }
-            axles
-        });
+    let length_m = job.bridge.design.length_m();
+    let played = |driven: &Driven| {
+        let front_x_m = |frame: &usize| {
+            let way_m = driven.drive.at(time(frame)).way_m;
+            Some(if driven.drive.backward { length_m - way_m } else { way_m })
+        };
+        PlayedVehicle {
+            front_x_m: Packed::numbers(frames.iter().map(front_x_m)),
+            backward: driven.drive.backward,
+            axles: axles(&driven.vehicle),
+            load_n: driven.load_n,
+        }
+    };
     Some(Play {
         job: u32::try_from(job.number).unwrap_or(u32::MAX),
         bridge: Some(BridgeNote::of(job)).filter(|own| first.map(BridgeNote::of).as_ref() != Some(own)),
         frames: frames.len(),
         time_s: Packed::numbers(frames.iter().map(|frame| Some(time(frame)))),
-        front_x_m: Packed::numbers(frames.iter().map(|frame| Some(speed_m_s * time(frame)))),
-        axles,
-        load_n: job.load_n,
+        vehicles: traffic.vehicles.iter().map(played).collect(),
         rest_m: record
             .dead
             .iter()
@@ -219,6 +222,24 @@ fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
         state: Packed::U8(force.iter().map(state).collect()),
         force_n: Scaled::new(&force),
     })
+}
+
+/// The axles of a vehicle, each as its first patch is.
+fn axles(vehicle: &Vehicle) -> Vec<AxlePatch> {
+    let mut axles: Vec<AxlePatch> = Vec::new();
+    for patch in &vehicle.patches {
+        if axles.len() == patch.axle {
+            axles.push(AxlePatch {
+                behind_front_m: -patch.ahead_m,
+                share: 0.0,
+                patch_length_m: patch.length_m,
+            });
+        }
+        if let Some(axle) = axles.last_mut() {
+            axle.share += patch.share;
+        }
+    }
+    axles
 }
 
 /// Steps that are frames: evenly spaced ones, and those of the largest deflection, uplift, compression and tension.
