@@ -23,7 +23,9 @@ WHEN = {
     "sections": "; where sections are recorded",
     "freeboards": "; where freeboards are recorded",
     "place_histories": "; with histories of places",
-    "pin_histories": "; with histories of pins",
+    "pin_histories": "; with histories of pins or vehicles",
+    "springs": "; of vehicles on springs",
+    "vehicle_histories": "; with histories of vehicles",
 }
 
 

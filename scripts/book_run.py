@@ -6,6 +6,7 @@ Knows how each language is run. Does not know where pages come from.
 |---|---|
 | `console` | lines that begin with `$ ` are run by bash, `\\` goes on; what follows is their standard output, or of a command that must fail (`exit=N`) its standard error. Spaces count as one. What moves from run to run (`MOVES`) matches whatever is of its kind; `within=0.01` lets numbers be off by that share; all else is equal. `head=12`, `tail=2` or `lines=3-9` say which lines of the last command's output are shown. Outside the guide `...` on a line of its own stands for any lines, within one for any text |
 | `json study`, `json bridge`, `json reference` | written to `file=PATH` where there is one, and refused or not by the program. `with=PATH`: the keys of the block in place of those of that file. `exit=2`: must be refused. `equals=PATH`: must hold what that file holds |
+| `json vehicle` | as those, by a study that names it |
 | `json parameters` | written to `file=PATH`, for the commands below |
 | `python` | run in the page's one Python; `text output` right after it is what it prints |
 | `text` | not run |
@@ -298,15 +299,16 @@ class Sandbox:
     def document(self, block):
         document = json.loads(block.body)
         self.number += 1
-        kinds = {"study", "bridge", "reference", "parameters"} & set(block.words)
+        kinds = {"study", "bridge", "reference", "vehicle", "parameters"} & set(block.words)
         if len(kinds) != 1:
-            raise Mismatch("json is one of study, bridge, reference, parameters")
+            raise Mismatch("json is one of study, bridge, reference, vehicle, parameters")
         kind = kinds.pop()
         if "with" in block.settings:
             base = self.folder / block.settings["with"]
             document = replaced(json.loads(base.read_text()), document)
         else:
-            base = self.folder / {"bridge": "studies/bridges/x"}.get(kind, "studies/x/x")
+            homes = {"bridge": "studies/bridges/x", "vehicle": "studies/vehicles/x"}
+            base = self.folder / homes.get(kind, "studies/x/x")
         if "equals" in block.settings:
             kept = json.loads((self.folder / block.settings["equals"]).read_text())
             if document != kept:
@@ -315,8 +317,12 @@ class Sandbox:
         path = self.folder / block.settings["file"] if "file" in block.settings else base.with_name(name)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(block.body if "with" not in block.settings else json.dumps(document, indent=2))
+        crossed = path.with_suffix(".crossed.json")
+        if kind == "vehicle":
+            crossed.write_text(json.dumps(self.crossed_by(path)))
         command = {
             "study": f"pontoon plan '{path}'",
+            "vehicle": f"pontoon plan '{crossed}'",
             "bridge": f"pontoon modes '{path}' --model super-element --count 1",
             "reference": f"pontoon compare results/{block.settings.get('results')} --with '{path}'",
             "parameters": "true",
@@ -325,6 +331,16 @@ class Sandbox:
         exits = {int(block.settings["exit"])} if "exit" in block.settings else ({0, 1} if kind == "reference" else {0})
         if done.returncode not in exits:
             raise Mismatch(f"`{command}`: exit status {done.returncode}\n{done.stdout}{done.stderr}")
+
+    def crossed_by(self, vehicle):
+        """A study of one crossing by the vehicle of a file."""
+        return {
+            "name": "crossed",
+            "bridge": os.path.relpath(self.folder / "studies/bridges/smoke.json", vehicle.parent),
+            "vehicle": vehicle.name,
+            "analysis": {"kind": "crossing"},
+            "design": [{"grid": {"speed_m_s": 5, "load_n": 1e5}}],
+        }
 
 
 def keep_figures(sandbox, to):
