@@ -124,7 +124,7 @@ def chain_steps_s(chain):
 def compare_crossings(table, rounds):
     """A step alone and with all lanes full beside a step of the chain's, and the share of the core's peak."""
     chain = json.loads(peers.CHAIN.read_text())
-    ours, theirs, deflections, peak = {}, {}, {}, 0.0
+    ours, theirs, trucks, deflections, peak = {}, {}, {}, {}, 0.0
     for turn in range(rounds):
         note(f"crossings, round {turn + 1} of {rounds}")
         speed = json.loads(subprocess.check_output([os.environ["PONTOON_SPEED"]]))
@@ -133,6 +133,10 @@ def compare_crossings(table, rounds):
             best = ours.setdefault((c["speed_m_s"], c["inertia"]), c)
             for key in ("lone_step_s", "full_step_s"):
                 best[key] = min(best[key], c[key])
+        for c in speed["trucks"]:
+            for key in ("lone_step_s", "full_step_s"):
+                of = trucks.setdefault((c["speed_m_s"], key), {})
+                of[c["truck"]] = min(of.get(c["truck"], c[key]), c[key])
         chain |= {"time_step_s": speed["time_step_s"], "tail_s": speed["tail_s"]}
         for case, (seconds, deepest_m) in chain_steps_s(chain).items():
             theirs[case] = min(theirs.get(case, seconds), seconds)
@@ -162,6 +166,15 @@ def compare_crossings(table, rounds):
                 f"{c['flop_per_step']:,.0f} a step, {rate / 1e9:.1f} Gflop/s",
                 f"{peak / 1e9:.1f} Gflop/s peak of a core",
                 f"{100 * rate / peak:.0f} %",
+            )
+    for (speed_m_s, key), of in trucks.items():
+        how = {"lone_step_s": "alone", "full_step_s": f"{speed['lanes']} lanes full"}[key]
+        for rigid in ("convective", "local"):
+            table.row(
+                f"step of a truck of two axles on springs at {speed_m_s:g} m/s, {how}",
+                micro(of["on springs"]),
+                f"{micro(of[rigid])} without springs, {rigid}",
+                f"{of['on springs'] / of[rigid]:.2f} of its cost",
             )
     print_breakdown(speed["breakdown"], peak)
     sizes = speed["operator"]

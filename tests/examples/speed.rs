@@ -17,7 +17,7 @@
 use pontoon_core::operator::{InstructionPath, StepClock, StepPart};
 use pontoon_core::response::{CrossingResponse, Quantity};
 use pontoon_core::vehicle::{Inertia, Vehicle};
-use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, vehicle, vehicle_off_centre};
+use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, truck, vehicle, vehicle_off_centre};
 use pontoon_tests::{SingleCrossing, SolvesSingle, solve_side_by_side};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::{Value, json};
@@ -53,6 +53,7 @@ fn main() {
             "observed_rows": sizes.observed,
         },
         "crossings": crossings,
+        "trucks": trucks(&scenario, seconds),
         "breakdown": breakdown(&scenario, seconds),
         "peak_flop_per_s": peak_flop_per_s(seconds),
     });
@@ -107,26 +108,65 @@ fn figures(scenario: &Scenario, sizes: &Sizes, vehicle: &Vehicle, crossing: &Sin
     })
 }
 
-/// Where the time of a step goes at 15 m/s: weight only, `local` and `convective`, on the centre line and off it, one lane at work
-/// and all of them.
+/// What a step costs with the truck on springs, and with its axle loads as masses on the deck.
+fn trucks(scenario: &Scenario, seconds: f64) -> Vec<Value> {
+    let solver = &scenario.solver;
+    let mut trucks = Vec::new();
+    for speed_m_s in [15.0, 7.0] {
+        for (kind, vehicle) in [
+            ("on springs", truck(None)),
+            ("convective", truck(Some(Inertia::Convective))),
+            ("local", truck(Some(Inertia::Local))),
+        ] {
+            let crossing = SingleCrossing {
+                load_n: vehicle.weight_n.expect("axle loads"),
+                ..scenario.crossing(speed_m_s, scenario.everything())
+            };
+            let steps = solver
+                .solve_single(&vehicle, &crossing)
+                .expect("a crossing")
+                .statistics
+                .steps as f64;
+            let jobs = vec![(&vehicle, &crossing); ROUNDS * InstructionPath::of_this_machine().lanes];
+            let lone_s = least_s(seconds, || drop(black_box(solver.solve_single(&vehicle, &crossing))));
+            let full_s = least_s(seconds, || drop(black_box(solve_side_by_side(solver, &jobs, 0))));
+            trucks.push(json!({
+                "speed_m_s": speed_m_s,
+                "truck": kind,
+                "lone_step_s": lone_s / steps,
+                "full_step_s": full_s / steps / jobs.len() as f64,
+            }));
+        }
+    }
+    trucks
+}
+
+/// Where the time of a step goes at 15 m/s: weight only, `local` and `convective`, on the centre line and off it, and the truck
+/// with and without its springs; one lane at work and all of them.
 fn breakdown(scenario: &Scenario, seconds: f64) -> Vec<Value> {
     let crossing = scenario.crossing(15.0, scenario.everything());
     let lanes = InstructionPath::of_this_machine().lanes;
-    let mut cases = Vec::new();
+    let mut vehicles = Vec::new();
     for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
-        for (place, vehicle) in [
-            ("centred", vehicle(inertia)),
-            ("off the centre", vehicle_off_centre(inertia)),
-        ] {
-            for at_work in [1, lanes] {
-                let jobs = vec![(&vehicle, &crossing); at_work];
-                cases.push(json!({
-                    "inertia": inertia,
-                    "place": place,
-                    "lanes": at_work,
-                    "parts": parts(scenario, &jobs, seconds),
-                }));
-            }
+        vehicles.push((json!(inertia), "centred", vehicle(inertia)));
+        vehicles.push((json!(inertia), "off the centre", vehicle_off_centre(inertia)));
+    }
+    vehicles.push((json!("convective"), "two axles", truck(Some(Inertia::Convective))));
+    vehicles.push((json!("on springs"), "two axles", truck(None)));
+    let mut cases = Vec::new();
+    for (inertia, place, vehicle) in &vehicles {
+        let crossing = SingleCrossing {
+            load_n: vehicle.weight_n.unwrap_or(crossing.load_n),
+            ..crossing.clone()
+        };
+        for at_work in [1, lanes] {
+            let jobs = vec![(vehicle, &crossing); at_work];
+            cases.push(json!({
+                "inertia": inertia,
+                "place": place,
+                "lanes": at_work,
+                "parts": parts(scenario, &jobs, seconds),
+            }));
         }
     }
     cases

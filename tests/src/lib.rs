@@ -23,6 +23,7 @@ use pontoon_core::response::{CrossingResponse, DeadState, Quantity, Record, Stat
 use pontoon_core::stop::Stop;
 use pontoon_core::traffic::Traffic;
 use pontoon_core::vehicle::{Inertia, Vehicle, VehicleDesign};
+use serde::de::DeserializeOwned;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::Mutex;
@@ -44,20 +45,25 @@ pub const fn gaps(gap_tension_m: f64, gap_compression_m: f64) -> Connection {
 
 /// A bridge of `studies/bridges`.
 pub fn design(name: &str) -> BridgeDesign {
-    read_design(&format!("bridges/{name}"))
+    read(&format!("bridges/{name}"))
 }
 
 /// The bridge that the identification starts from, with its hinges where the prototype has them: the prototype's water,
 /// masses, truss and places.
 pub fn prototype_design() -> BridgeDesign {
-    let mut design = read_design("identification/start");
+    let mut design: BridgeDesign = read("identification/start");
     design.hinges.y_m = vec![-1.125, 0.0, 1.125];
     let lines = &mut design.module.stiffeners.longitudinal_y_m;
     (lines[4], lines[6]) = (-1.125, 1.125);
     design
 }
 
-fn read_design(place: &str) -> BridgeDesign {
+/// The vehicle of a file of `studies/vehicles`.
+pub fn read_vehicle(name: &str) -> VehicleDesign {
+    read(&format!("vehicles/{name}"))
+}
+
+fn read<T: DeserializeOwned>(place: &str) -> T {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../studies/{place}.json"));
     let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display()))

@@ -2,7 +2,7 @@
 //!
 //! Knows what benchmarks run. Does not know a clock.
 
-use crate::{PAPER_GAPS, PAPER_LOAD_N, Ready, SingleCrossing, design, footprint, gaps, settings};
+use crate::{PAPER_GAPS, PAPER_LOAD_N, Ready, SingleCrossing, design, footprint, gaps, read_vehicle, settings};
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::bridge::Model;
 use pontoon_core::operator::BridgeOperator;
@@ -128,4 +128,14 @@ pub fn vehicle(inertia: Inertia) -> Vehicle {
 /// The paper's vehicle, a metre and a half off the centre line.
 pub fn vehicle_off_centre(inertia: Inertia) -> Vehicle {
     footprint(&[0.1, 2.9], inertia)
+}
+
+/// The shipped truck with two axles: on its springs, or its axle loads as masses on the deck.
+///
+/// # Panics
+/// Where the file holds no vehicle.
+pub fn truck(inertia: Option<Inertia>) -> Vehicle {
+    let mut design = read_vehicle(if inertia.is_some() { "truck_rigid" } else { "truck" });
+    design.inertia = inertia.unwrap_or(design.inertia);
+    design.check(f64::INFINITY).expect("a vehicle")
 }

@@ -32,6 +32,8 @@ pub(crate) struct Ride {
     pub z: Vec<f64>,
     pub v: Vec<f64>,
     pub a: Vec<f64>,
+    /// `K z`, what the vehicle's own springs hold.
+    held: Vec<f64>,
     /// Force of each wheel's spring and damper `[N]`, and of the spring alone.
     pub wheels_n: Vec<f64>,
     springs_n: Vec<f64>,
@@ -54,28 +56,31 @@ impl Ride {
         let mut ride = Self {
             z: springs.rest.iter().zip(&springs.motions).map(lifted).collect(),
             v: zeros.clone(),
-            a: zeros,
+            a: zeros.clone(),
+            held: zeros,
             wheels_n: springs.wheels.iter().map(|wheel| wheel.rest_n).collect(),
             springs_n: springs.wheels.iter().map(|wheel| wheel.rest_n).collect(),
             under_m: vec![height_m; springs.wheels.len()],
             driven_m_s2: 0.0,
             stored_j: 0.0,
         };
+        ride.hold(springs);
         ride.stored_j = ride.energy_j(springs);
         ride
     }
 
+    /// Takes note of what the springs hold in the state as it is.
+    fn hold(&mut self, springs: &Springs) {
+        for (held, row) in self.held.iter_mut().zip(columns(&springs.stiffness)) {
+            *held = dot(row, &self.z);
+        }
+    }
+
     /// Energy of masses and springs, those of the wheels as far as these press `[J]`.
     fn energy_j(&self, springs: &Springs) -> f64 {
-        let mut twice = 0.0;
-        for (i, (z, v)) in self.z.iter().zip(&self.v).enumerate() {
-            let force: f64 = self
-                .z
-                .iter()
-                .enumerate()
-                .map(|(j, z)| springs.stiffness[(i, j)] * z)
-                .sum();
-            twice += springs.inertia[i] * v * v + z * force;
+        let mut twice = dot(&self.z, &self.held);
+        for (inertia, v) in springs.inertia.iter().zip(&self.v) {
+            twice += inertia * v * v;
         }
         for (wheel, under_m) in springs.wheels.iter().zip(&self.under_m) {
             let compressed_m = (under_m - dot(&wheel.row, &self.z)).max(0.0);
@@ -119,6 +124,8 @@ pub(crate) struct FreeRide {
     pub y: Vec<f64>,
     pub rate: Vec<f64>,
     known: Vec<f64>,
+    /// Rates of the state, at the places where they are needed.
+    rates: Vec<f64>,
 }
 
 impl FreeRide {
@@ -130,6 +137,7 @@ impl FreeRide {
             y: vec![0.0; wheels],
             rate: vec![0.0; wheels],
             known: vec![0.0; n],
+            rates: vec![0.0; n],
         }
     }
 }
@@ -225,31 +233,30 @@ impl RidingStep {
         let (s, springs) = (&self.scheme, &*self.springs);
         let (at_v, at_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
         let (m_v, m_a) = ((1.0 - s.alpha_m) * s.a_v, (1.0 - s.alpha_m) * s.a_a + s.alpha_m);
-        let n = old.z.len();
-        for i in 0..n {
-            let mut known = -springs.weight_n[i] - springs.inertia[i] * (m_v * old.v[i] + m_a * old.a[i]);
-            for j in 0..n {
-                known -= springs.damping[(i, j)] * (at_v * old.v[j] + at_a * old.a[j])
-                    + springs.stiffness[(i, j)] * old.z[j];
-            }
-            for (wheel, force) in springs.wheels.iter().zip(&old.wheels_n) {
-                known += s.alpha_f * wheel.row[i] * force;
-            }
-            if springs.motions[i] == VehicleMotion::Pitch {
-                known += springs.braking_kg_m * s.at_f(driven_m_s2, old.driven_m_s2);
-            }
-            free.known[i] = known;
+        for (rate, (v, a)) in free.rates.iter_mut().zip(old.v.iter().zip(&old.a)) {
+            *rate = at_v * v + at_a * a;
         }
-        for i in 0..n {
-            free.d[i] = (0..n).map(|j| self.inverse[(i, j)] * free.known[j]).sum();
+        for (i, (known, damping)) in free.known.iter_mut().zip(columns(&springs.damping)).enumerate() {
+            *known = -springs.weight_n[i]
+                - springs.inertia[i] * (m_v * old.v[i] + m_a * old.a[i])
+                - dot(damping, &free.rates)
+                - old.held[i];
+            if springs.motions[i] == VehicleMotion::Pitch {
+                *known += springs.braking_kg_m * s.at_f(driven_m_s2, old.driven_m_s2);
+            }
+        }
+        for (wheel, force) in springs.wheels.iter().zip(&old.wheels_n) {
+            add(s.alpha_f * force, &wheel.row, &mut free.known);
+        }
+        for (d, row) in free.d.iter_mut().zip(columns(&self.inverse)) {
+            *d = dot(row, &free.known);
+        }
+        for (rate, (d, (v, a))) in free.rates.iter_mut().zip(free.d.iter().zip(old.v.iter().zip(&old.a))) {
+            *rate = s.c_v * d + s.v_v * v + s.v_a * a;
         }
         for (w, wheel) in springs.wheels.iter().enumerate() {
-            let (mut y, mut rate) = (0.0, 0.0);
-            for i in 0..n {
-                y += wheel.row[i] * (old.z[i] + free.d[i]);
-                rate += wheel.row[i] * (s.c_v * free.d[i] + s.v_v * old.v[i] + s.v_a * old.a[i]);
-            }
-            (free.y[w], free.rate[w]) = (y, rate);
+            free.y[w] = dot(&wheel.row, &old.z) + dot(&wheel.row, &free.d);
+            free.rate[w] = dot(&wheel.row, &free.rates);
         }
     }
 
@@ -264,14 +271,9 @@ impl RidingStep {
         driven_m_s2: f64,
     ) -> RideEnergies {
         let (s, springs) = (&self.scheme, &*self.springs);
-        let (n, wheels) = (ride.z.len(), springs.wheels.len());
-        for w in 0..wheels {
-            let force = scaled(w);
-            if force != 0.0 {
-                for i in 0..n {
-                    free.d[i] += self.lift[(i, w)] * force;
-                }
-            }
+        let FreeRide { d, known, rates, .. } = free;
+        for (w, lift) in columns(&self.lift).enumerate() {
+            add(scaled(w), lift, d);
         }
         let mut energies = RideEnergies {
             work: -under.on_deck_j,
@@ -279,9 +281,8 @@ impl RidingStep {
         };
         // each term of the balance at alpha times the change of the state
         let mut spent = 0.0;
-        for i in 0..n {
+        for (i, &d) in d.iter().enumerate() {
             let [z, v, a] = [ride.z[i], ride.v[i], ride.a[i]];
-            let d = free.d[i];
             let v_1 = s.c_v * d + s.v_v * v + s.v_a * a;
             let a_1 = s.c_a * d + s.a_v * v + s.a_a * a;
             spent += d * springs.inertia[i] * s.at_m(a_1, a);
@@ -289,20 +290,19 @@ impl RidingStep {
             if springs.motions[i] == VehicleMotion::Pitch {
                 energies.work += d * springs.braking_kg_m * s.at_f(driven_m_s2, ride.driven_m_s2);
             }
-            // the old state in place of what is known, which is not needed any more
-            free.known[i] = v;
+            rates[i] = s.at_f(v_1, v);
             (ride.z[i], ride.v[i], ride.a[i]) = (z + d, v_1, a_1);
         }
-        for i in 0..n {
-            for j in 0..n {
-                let at_f = s.at_f(ride.z[j], ride.z[j] - free.d[j]);
-                spent += free.d[i] * springs.stiffness[(i, j)] * at_f;
-                energies.dampers += free.d[i] * springs.damping[(i, j)] * s.at_f(ride.v[j], free.known[j]);
-            }
+        // what is known is not needed any more
+        known.copy_from_slice(&ride.held);
+        ride.hold(springs);
+        for (i, (d, damping)) in d.iter().zip(columns(&springs.damping)).enumerate() {
+            spent += d * s.at_f(ride.held[i], known[i]);
+            energies.dampers += d * dot(damping, rates);
         }
-        for w in 0..wheels {
+        for (w, wheel) in springs.wheels.iter().enumerate() {
             let old_under_m = std::mem::replace(&mut ride.under_m[w], under.height_m[w]);
-            let raised: f64 = springs.wheels[w].row.iter().zip(&free.d).map(|(g, d)| g * d).sum();
+            let raised = dot(&wheel.row, d);
             let (before, now) = (ride.wheels_n[w], scaled(w) / (1.0 - s.alpha_f));
             let [law, spring] = ride.by_law_n(springs, w, under.rate_m_s[w]);
             let spring_before = std::mem::replace(&mut ride.springs_n[w], spring);
@@ -321,6 +321,21 @@ impl RidingStep {
     }
 }
 
+/// Columns of a matrix, which are rows of one that is symmetric.
+#[inline(always)]
+fn columns(matrix: &DMatrix<f64>) -> impl Iterator<Item = &[f64]> {
+    matrix.as_slice().chunks_exact(matrix.nrows().max(1))
+}
+
+/// Adds a multiple of a row.
+#[inline(always)]
+fn add(factor: f64, row: &[f64], to: &mut [f64]) {
+    for (to, value) in to.iter_mut().zip(row) {
+        *to += factor * value;
+    }
+}
+
+#[inline(always)]
 fn dot(row: &[f64], x: &[f64]) -> f64 {
     row.iter().zip(x).map(|(a, b)| a * b).sum()
 }

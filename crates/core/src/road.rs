@@ -148,13 +148,13 @@ impl RoadDesign {
                 }
             }
         }
-        let level = |profile: Profile| Road {
-            run_in_m: 0.0,
+        let stated = |profile: Profile| Road {
+            run_in_m: profile.beyond_m(ways.length_m),
             lines: vec![(None, Line::of(profile))],
         };
         if let Some(table) = &self.table {
             check_table(table, ways.length_m)?;
-            return Ok(level(Profile::Table(table.clone())));
+            return Ok(stated(Profile::Table(table.clone())));
         }
         for (key, of, profile) in [
             ("bump", self.bump, Profile::Bump as fn(Unevenness) -> Profile),
@@ -162,7 +162,7 @@ impl RoadDesign {
         ] {
             let Some(of) = of else { continue };
             check_unevenness(&of, ways.length_m).map_err(|e| e.under(key))?;
-            return Ok(level(profile(of)));
+            return Ok(stated(profile(of)));
         }
         let Some(class) = self.iso_8608 else {
             return Err(InvalidInput::new("", Found::Nothing, "a form of the road"));
@@ -281,7 +281,7 @@ fn check_unevenness(of: &Unevenness, length_m: f64) -> Result<(), InvalidInput> 
 /// An uneven road, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Road {
-    /// Way before the bridge on which vehicles settle on it `[m]`.
+    /// Way before either end of the bridge on which vehicles drive on it, from where it is level `[m]`.
     pub run_in_m: f64,
     /// Profiles by place across in whole millimetres; one for all places where none is named.
     lines: Vec<(Option<i64>, Line)>,
@@ -385,6 +385,20 @@ pub enum Profile {
 }
 
 impl Profile {
+    /// How far it is uneven beyond an end of a bridge, the farther of both `[m]`.
+    fn beyond_m(&self, length_m: f64) -> f64 {
+        let uneven = match self {
+            Self::Table(table) => {
+                let rises = |pair: &[[f64; 2]]| pair[0][1] != pair[1][1];
+                let first = table.windows(2).position(rises).map(|i| table[i][0]);
+                first.zip(table.windows(2).rposition(rises).map(|i| table[i + 1][0]))
+            }
+            Self::Bump(of) | Self::Step(of) => Some((of.x_m, of.x_m + of.length_m)),
+            Self::Places { .. } => None,
+        };
+        uneven.map_or(0.0, |(from_m, to_m)| 0.0_f64.max(-from_m).max(to_m - length_m))
+    }
+
     /// Height `[m]` and slope at a place along the bridge; of a kink the slope on its right.
     #[inline]
     pub fn at(&self, x_m: f64) -> [f64; 2] {
@@ -514,7 +528,7 @@ impl SplitMix64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{IsoClass, Profile, RoadDesign, SplitMix64, Ways};
+    use super::{IsoClass, Profile, RoadDesign, SplitMix64, Unevenness, Ways};
 
     fn class_c(seed: u64) -> Profile {
         let design = RoadDesign {
@@ -579,5 +593,48 @@ mod tests {
             }
         }
         assert!(worst[0] < 1e-8 && worst[1] < 5e-6, "{worst:?}");
+    }
+
+    /// What begins before the bridge or ends behind it is driven on; of a table the level places before its first rise are not.
+    #[test]
+    fn a_stated_road_is_driven_on_from_where_it_is_level() {
+        let ways = Ways {
+            length_m: 100.5,
+            beyond_m: 8.0,
+            y_m: &[],
+        };
+        let table = |table: &[[f64; 2]]| RoadDesign {
+            table: Some(table.to_vec()),
+            ..RoadDesign::default()
+        };
+        let bump = |x_m: f64| RoadDesign {
+            bump: Some(Unevenness {
+                x_m,
+                length_m: 2.0,
+                height_m: 0.05,
+            }),
+            ..RoadDesign::default()
+        };
+        for (design, run_in_m) in [
+            (table(&[[-40.0, 0.1], [-5.0, 0.1], [0.0, 0.0], [110.0, 0.0]]), 5.0),
+            (table(&[[-5.0, 0.0], [90.0, 0.0], [104.0, 0.2], [120.0, 0.2]]), 3.5),
+            (table(&[[-5.0, 0.1], [110.0, 0.1]]), 0.0),
+            (bump(-1.0), 1.0),
+            (bump(50.0), 0.0),
+            (bump(100.0), 1.5),
+        ] {
+            let road = design.road(&ways).expect("a road");
+            assert!(
+                (road.run_in_m - run_in_m).abs() < 1e-12,
+                "{design:?}: {}",
+                road.run_in_m
+            );
+            let at = road.profile(0.0).at(-road.run_in_m);
+            assert!(
+                (at[0] - road.level_m(false)).abs() < 1e-12,
+                "{design:?} begins at {} m",
+                at[0]
+            );
+        }
     }
 }

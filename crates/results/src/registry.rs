@@ -126,7 +126,7 @@ pub const COLUMNS: &[Column] = &[
     of_connector("peak_tension_time_s", Numbers, ("peak tension time", "its time"), |r| r.row.tension.time_s.into()).unit("s"),
 
     of_sample("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
-    of_sample("time_s", Numbers, ("time", "time since the vehicle's front passed x = 0; below zero before; forces of pins and sections hold a part of a time step before the others"), |r| r.time_s.into()).unit("s").role(ColumnRole::Key),
+    of_sample("time_s", Numbers, ("time", "time, at 0 of which the front of a single vehicle passes x = 0, or x = L where it comes from there; below zero before; forces of pins and sections hold a part of a time step before the others"), |r| r.time_s.into()).unit("s").role(ColumnRole::Key),
     of_sample("quantity", Words(&QUANTITIES), ("quantity", "what the history is of: deflection positive downward, force tension positive"), |r| r.of.quantity.as_str().into()).role(ColumnRole::Key),
     of_sample("position", Counts, ("position", "position of a deflection, joint of a force; null of a place"), |r| r.of.position.into()).role(ColumnRole::Key),
     of_sample("x_m", Numbers, ("x", "place along the bridge, of the deflection of a place"), |r| r.of.x_m.into()).unit("m").role(ColumnRole::Key).when(When::PlaceHistories),

@@ -236,7 +236,7 @@ fn what_no_vehicle_or_traffic_may_be_is_refused_at_its_key() {
         json!(30_000),
         &["axles[0].load_n", "the masses give"],
     );
-    in_file(&["body", "behind_front_m"], json!(5.0), &["body", "lifts axle 0"]);
+    in_file(&["body", "behind_front_m"], json!(5.0), &["body", "lifts axle 1"]);
     in_file(
         &["body", "pitch_inertia_kg_m2"],
         json!(null),

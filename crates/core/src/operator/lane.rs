@@ -335,13 +335,18 @@ fn end_rides(
     constants: &StepConstants,
     (compliance, scaled, links): (&WheelCompliance, &[f64], &[f64]),
 ) -> RideEnergies {
-    let mut awake: Vec<(usize, usize)> = Vec::new();
-    for (number, ride) in rides.iter().enumerate().filter(|(_, ride)| ride.is_awake()) {
-        awake.extend((0..ride.wheels()).map(|wheel| (number, wheel)));
-    }
+    // wheels come in the order of the vehicles that are there
+    let (mut number, mut first) = (0, 0);
     masses.under_wheels(compliance, constants, scaled, links, |rider, on_deck, under| {
-        let (number, wheel) = awake[rider];
-        rides[number].note_deck(wheel, under, on_deck);
+        while !rides[number].is_awake() || rider - first >= rides[number].wheels() {
+            first += if rides[number].is_awake() {
+                rides[number].wheels()
+            } else {
+                0
+            };
+            number += 1;
+        }
+        rides[number].note_deck(rider - first, under, on_deck);
     });
     let mut from = masses.count() - masses.wheels_on_springs();
     let mut sum = RideEnergies::default();

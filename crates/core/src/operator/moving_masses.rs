@@ -167,20 +167,15 @@ impl MovingMasses {
         for (i, wheel) in (self.places.first_wheel..).zip(&self.places.wheels) {
             let (row, of) = (self.block.row_mut(i), self.places.list[i]);
             let mut free = wheel.known;
-            for &(node, w) in &self.places.force[of.force.0..of.force.1] {
+            let slopes = &self.places.slopes[of.slopes.0..of.slopes.1];
+            for (&(node, w), (_, r_x, _)) in self.places.force[of.force.0..of.force.1].iter().zip(slopes) {
                 let DeckNode { line, station } = self.places.nodes[node];
-                add_to(row.among, w, &self.seen[node * nr..][..nr]);
-                let there = compliance.with_connectors(line, station);
-                add_to(row.of_links, w, there);
+                let (there, damped) = (compliance.with_connectors(line, station), wheel.by_slope * r_x);
+                add_to(row.among, w + damped, &self.seen[node * nr..][..nr]);
+                add_to(row.of_links, w + damped, there);
                 add_to(row.on_links, w, there);
                 let [_, v, x] = self.dots[node];
-                free += w * (wheel.of_spring * x + wheel.of_damper * v);
-            }
-            for &(node, r_x, _) in &self.places.slopes[of.slopes.0..of.slopes.1] {
-                let (w, DeckNode { line, station }) = (wheel.by_slope * r_x, self.places.nodes[node]);
-                add_to(row.among, w, &self.seen[node * nr..][..nr]);
-                add_to(row.of_links, w, compliance.with_connectors(line, station));
-                free += w * self.dots[node][2];
+                free += (w * wheel.of_spring + damped) * x + w * wheel.of_damper * v;
             }
             *row.free = free;
         }

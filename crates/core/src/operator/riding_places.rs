@@ -19,7 +19,7 @@ pub(super) struct MovingMass {
     pub heading: Heading,
     /// Entries of its row r.
     pub force: (usize, usize),
-    /// Entries of its rows r_x and r_xx, where convective.
+    /// Entries of its rows r_x and r_xx, where convective; of a wheel r_x on the nodes of r.
     pub slopes: (usize, usize),
 }
 
@@ -110,7 +110,7 @@ impl RidingPlaces {
         }
     }
 
-    /// Wheels on springs: the mean over a patch's points, and the slope where a damper asks for it.
+    /// Wheels on springs: the mean over a patch's points and the mean slope, on one list of nodes.
     #[inline(always)]
     fn place_wheels(&mut self, of: &VehicleLines, placement: &VehiclePlacement, ride: &LaneRide) {
         if !ride.is_awake() {
@@ -127,11 +127,15 @@ impl RidingPlaces {
                         (place.station + 1, place.fraction, w / place.length_m),
                     ] {
                         let node = self.node(DeckNode { line, station });
-                        if part != 0.0 {
-                            add(&mut self.force, forces, node, w * part);
-                        }
-                        if on_deck.by_slope != 0.0 {
-                            self.slopes.push((node, slope, 0.0));
+                        match self.force[forces..].iter().position(|(n, _)| *n == node) {
+                            Some(known) => {
+                                self.force[forces + known].1 += w * part;
+                                self.slopes[slopes + known].1 += slope;
+                            }
+                            None => {
+                                self.force.push((node, w * part));
+                                self.slopes.push((node, slope, 0.0));
+                            }
                         }
                     }
                 }

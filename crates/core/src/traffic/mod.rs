@@ -121,6 +121,12 @@ impl Drive {
         Ok(())
     }
 
+    /// Its largest speed while its front is on a bridge `[m/s]`.
+    pub fn top_speed_m_s(&self, length_m: f64) -> f64 {
+        let (v, a) = (self.speed_m_s, self.acceleration_m_s2);
+        (v * v + 2.0 * a.max(0.0) * length_m).sqrt()
+    }
+
     /// Spans of constant acceleration in their order; the first has no beginning.
     fn pieces(&self) -> impl Iterator<Item = Piece> {
         let (v, a) = (self.speed_m_s, self.acceleration_m_s2);

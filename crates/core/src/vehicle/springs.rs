@@ -261,7 +261,7 @@ impl Springs {
             let height: f64 = wheel.row.iter().zip(&self.rest).map(|(g, z)| g * z).sum();
             wheel.rest_n = -wheel.stiffness_n_m * height;
             if wheel.rest_n <= 0.0 {
-                let axle = self.axles[number];
+                let axle = self.axles[number] + 1;
                 return free(
                     format!("a centre that lifts axle {axle} off the road at rest"),
                     "a centre of mass between the axles, so that each presses the road",

@@ -15,7 +15,7 @@ pub struct Axle {
     /// for all axles. A vehicle on springs needs neither: its masses have the weight, and what is stated must agree with them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub share: Option<f64>,
-    /// Weight on the axle `[N]`; the sum of all axles is the vehicle's weight, and a study states no other.
+    /// Weight on the axle `[N]`; the sum of all axles is the vehicle's weight, which a study may scale by its `load_n`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_n: Option<f64>,
     /// Length of the patch along the bridge `[m]`; 0 is a point.

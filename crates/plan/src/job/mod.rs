@@ -150,11 +150,11 @@ impl<'a> CrossingJob<'a> {
     /// Whether the vehicle goes more than half of its shortest patch in a time step, where its mass rides along and the step is
     /// stated: the deck then answers to jumps of the mass and no longer to its motion. None where the program finds the step.
     pub fn is_step_long(&self) -> Option<bool> {
-        let step_s = self.first_time_step_s();
+        let (step_s, length_m) = (self.first_time_step_s(), self.job.bridge.design.length_m());
         let is_long = |driven: &Driven| {
             let rigid = driven.vehicle.patches.iter().filter(|patch| patch.rigid > 0.0);
             let shortest_m = rigid.map(|p| p.length_m).fold(f64::INFINITY, f64::min);
-            driven.vehicle.inertia != Inertia::None && driven.drive.speed_m_s * step_s > 0.5 * shortest_m
+            driven.vehicle.inertia != Inertia::None && driven.drive.top_speed_m_s(length_m) * step_s > 0.5 * shortest_m
         };
         let long = self.traffic().vehicles.iter().any(is_long);
         self.analysis.time_step.tolerance().is_none().then_some(long)
