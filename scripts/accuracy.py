@@ -16,6 +16,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOINTS = list(range(2, 16))
 # of the largest joint force of a job
 JOINT_PERCENT = 3.0
+# largest deviation asked of a job in percent
+ASKED = {"deflection": 0.5, "compression": 2.0, "tension": 10.0, "wheel force": 1.0}
 # changes that say nothing about a bridge: of the load, in either direction, and of the time step
 NUDGE, STEP_S = 1e-4, 0.009
 
@@ -39,12 +41,46 @@ def drawn(count, seed, connection):
     return cases
 
 
-def run(folder, name, cases, analysis, histories=False):
+TRUCK = {"vehicle": str(ROOT / "studies/vehicles/truck.json")}
+# what a study of traffic says beside its cases
+TRAFFIC = {
+    "trucks on springs": {"traffic": [TRUCK]},
+    "trucks on rough roads": {"traffic": [TRUCK], "roughness": {"iso_8608": "C"}},
+    "columns of three": {"vehicle": TRUCK["vehicle"], "column": {"count": 3, "spacing_m": 30.5}},
+    "meetings": {"traffic": [TRUCK | {"y_m": -1.2}, TRUCK | {"y_m": 1.2, "direction": -1, "start_time_s": 0}]},
+}
+
+
+def drawn_traffic(what, count, seed):
+    """Cases of traffic over gaps 0 to 40 mm, 2 to 20 m/s, trucks of 50 to 500 kN; lanes, roads, spacings from 15 to 60 m, and
+    times of meeting."""
+    draw = random.Random(f"{what} {seed}")
+    cases = []
+    for _ in range(count):
+        case = {f"gap_{sense}_m": draw.uniform(0.0, 0.04) for sense in ("tension", "compression")}
+        entries = TRAFFIC[what].get("traffic", [])
+        for name in [f"traffic[{i}]." for i in range(len(entries))] or [""]:
+            case |= {f"{name}speed_m_s": draw.uniform(2.0, 20.0), f"{name}load_n": draw.uniform(50e3, 500e3)}
+        if len(entries) == 1:
+            case["traffic[0].y_m"] = draw.uniform(-2.0, 2.0)
+        if what == "trucks on rough roads":
+            case["roughness.seed"] = draw.randrange(1, 10_000)
+        if what == "columns of three":
+            case["column.spacing_m"] = draw.uniform(15.0, 60.0)
+        if what == "meetings":
+            case["traffic[1].start_time_s"] = draw.uniform(0.0, 8.0)
+        cases.append(case)
+    return cases
+
+
+def run(folder, name, cases, analysis, histories=False, traffic=None):
     """The tables of a study of cases."""
     study = {
-        "name": name,
+        "name": name.replace(", ", "-").replace(" ", "-"),
         "bridge": str(ROOT / "studies/bridges/fu2005.json"),
-        "vehicle": {"footprint_length_m": 3.35, "inertia": "local"},
+    }
+    study |= traffic or {"vehicle": {"footprint_length_m": 3.35, "inertia": "local"}}
+    study |= {
         "analysis": {"kind": "crossing", "time_step_s": 0.01, "tail_s": 6.0} | analysis,
         "design": [{"cases": cases}],
     }
@@ -79,15 +115,25 @@ def deviations(found, judge):
             value = f"peak_{sense}_n"
             off = 100 * abs(x[value] - y[value]) / scale[x["job"]]
             joints.append((off, x["job"], x["joint"], sense, x, y))
-    return {
+    off = {
         "deflection": per("peak_deflection_m", b["peak_deflection_m"]),
         "compression": per("peak_compression_n", b["peak_compression_n"]),
         "tension": per("peak_tension_n", scale),
         "joints": joints,
     }
+    return off | ({"wheel force": wheel_deviations(found, judge)} if "wheels" in judge else {})
 
 
-def nudged(folder, cases, jobs, judge):
+def wheel_deviations(found, judge):
+    """Of each job in percent of a wheel's largest force: the largest forces of its wheels."""
+    off = {}
+    for x, y in zip(found["wheels"].iter_rows(named=True), judge["wheels"].iter_rows(named=True), strict=True):
+        by = 100 * abs(x["peak_wheel_n"] - y["peak_wheel_n"]) / y["peak_wheel_n"]
+        off[x["job"]] = max(off.get(x["job"], 0.0), by)
+    return [off[job] for job in sorted(off)]
+
+
+def nudged(folder, cases, jobs, judge, what=None):
     """How far the reference solver itself moves a job's deflection, compression and tension by NUDGE more or less load
     or by steps of 9 instead of 10 ms, in percent: what no solver can be asked to hit better. By job."""
     if not jobs:
@@ -98,14 +144,21 @@ def nudged(folder, cases, jobs, judge):
         )
         for name, table in judge.items()
     }
-    moved = {job: [0.0] * 3 for job in jobs}
+    moved = {job: dict.fromkeys(ASKED, 0.0) for job in jobs}
     for name, factor, step_s in (("more", 1 + NUDGE, 0.01), ("less", 1 - NUDGE, 0.01), ("step", 1.0, STEP_S)):
-        there = [cases[job] | {"load_n": factor * cases[job]["load_n"]} for job in jobs]
-        off = deviations(run(folder, name, there, {"solver": "reference", "time_step_s": step_s}), only)
+        heavier = lambda case, by=factor: {k: by * v if k.endswith("load_n") else v for k, v in case.items()}
+        there = [heavier(cases[job]) for job in jobs]
+        analysis = {"solver": "reference", "time_step_s": step_s}
+        nudge = f"{what}, {name}" if what else name
+        off = deviations(run(folder, nudge, there, analysis, traffic=TRAFFIC.get(what)), only)
         for i, job in enumerate(jobs):
-            found = off["deflection"][i], off["compression"][i], off["tension"][i]
-            moved[job] = [max(a, b) for a, b in zip(moved[job], found, strict=True)]
+            moved[job] |= {of: max(by, off[of][i]) for of, by in moved[job].items() if of in off}
     return moved
+
+
+def beyond(off):
+    """Jobs whose deviations are beyond what is asked."""
+    return {job for name, most in ASKED.items() for job, x in enumerate(off.get(name, [])) if x > most}
 
 
 def contacts(tables, job, joint):
@@ -133,8 +186,8 @@ class Table:
 
     def forces(self, what, off, moved):
         """Deviations of jobs; those that chaos takes beyond what is asked are counted apart."""
-        for name, most, sense in (("deflection", 0.5, 0), ("compression", 2.0, 1), ("tension", 10.0, 2)):
-            chaotic = [job for job, by in moved.items() if off[name][job] > most and by[sense] > 0.5 * off[name][job]]
+        for name, most in ((name, most) for name, most in ASKED.items() if name in off):
+            chaotic = [job for job, by in moved.items() if off[name][job] > most and by[name] > 0.5 * off[name][job]]
             left = [x for job, x in enumerate(off[name]) if job not in chaotic]
             median, worst_left = worst(left)
             asked = f"{most:g} %" if name != "tension" else "median 3 %, worst 10 %"
@@ -163,12 +216,6 @@ def main():
             max(c, p) for c, p in zip(t["jobs"]["peak_compression_n"], t["jobs"]["peak_tension_n"], strict=True)
         ]
         off_auto = [100 * abs(a - b) / b for a, b in zip(peak(auto), peak(finest), strict=True)]
-        beyond = lambda o: {
-            j
-            for n, m in (("deflection", 0.5), ("compression", 2.0), ("tension", 10.0))
-            for j, x in enumerate(o[n])
-            if x > m
-        }
         suspects = sorted(
             beyond(off) | beyond(off_fine) | beyond(off_half) | {j for j, x in enumerate(off_auto) if x > 2}
         )
@@ -201,9 +248,19 @@ def main():
         table.row(
             f"{len(linear)} linear crossings: deflection, all joints", "0.2 %", f"worst {most:.3f} %", most <= 0.2
         )
+        for what, traffic in TRAFFIC.items():
+            drawn_cases = drawn_traffic(what, max(options.jobs // 4, 1), options.seed)
+            found = run(folder, what, drawn_cases, {}, traffic=traffic)
+            judge = run(folder, f"{what}, reference", drawn_cases, {"solver": "reference"}, traffic=traffic)
+            off = deviations(found, judge)
+            table.forces(
+                f"{len(drawn_cases)} {what}", off, nudged(folder, drawn_cases, sorted(beyond(off)), judge, what)
+            )
+            residual = max(found["jobs"]["energy_residual"])
+            table.row(f"{what}: energy balance of the operator", "1e-9", f"{residual:.1e}", residual <= 1e-9)
         table.forces("time step 10 against 2.5 ms", off_fine, moved)
         table.forces("time step 5 against 2.5 ms", off_half, moved)
-        chaotic = [j for j in suspects if off_auto[j] > 2 and max(moved[j][1:]) > 0.5 * off_auto[j]]
+        chaotic = [j for j in suspects if off_auto[j] > 2 and max(moved[j]["compression"], moved[j]["tension"]) > 0.5 * off_auto[j]]
         median, most = worst(x for j, x in enumerate(off_auto) if j not in chaotic)
         apart = f"; apart: {', '.join(f'job {j} {off_auto[j]:.1f} %' for j in chaotic)}" if chaotic else ""
         steps = auto["jobs"].group_by("time_step_s").len().sort("time_step_s", descending=True)
@@ -217,7 +274,7 @@ def main():
     for job, by in moved.items():
         print(
             f"job {job}: 0.01 % of the load or a tenth of the step moves the reference solver's own "
-            f"deflection by {by[0]:.2f}, compression by {by[1]:.2f}, tension by {by[2]:.2f} %"
+            f"deflection by {by['deflection']:.2f}, compression by {by['compression']:.2f}, tension by {by['tension']:.2f} %"
         )
     print(f"\n{len(listed)} joints beyond {JOINT_PERCENT:g} %")
     print("\n".join(listed))

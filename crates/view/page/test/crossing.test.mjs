@@ -108,7 +108,10 @@ function check(data, play, f, d) {
     assert.ok(Math.abs(bar.height - (most ? (34 * Math.abs(F[j])) / most : 0)) < 0.011, `bar ${j}`);
     if (Math.abs(F[j]) > 0) assert.equal(bar.kind, F[j] < 0 ? 'compression' : 'tension');
   });
-  assert.equal(d.wheels.length, play.vehicles.reduce((sum, vehicle) => sum + vehicle.axles.length, 0));
+  assert.equal(
+    d.wheels.length,
+    play.vehicles.reduce((sum, vehicle) => sum + vehicle.axles.length, 0),
+  );
   d.wheels.forEach(wheel => {
     const vehicle = play.vehicles[wheel.vehicle],
       axle = vehicle.axles.find(a => a.behind_front_m === wheel.behind),
