@@ -15,6 +15,10 @@
     shear_z_n: ['Vertical shear', 'shear, upward on the part on the left', false],
     torsion_nm: ['Torsion', 'torsion', false],
     bending_nm: ['Bending moment', 'bending moment, deck compressed upward', false],
+    wheel_n: ['Wheel force', 'force of a wheel on the deck', false],
+    bounce_m: ['Bounce', 'bounce of the body, upward', false],
+    pitch_rad: ['Pitch', 'pitch, front of the body upward', false],
+    roll_rad: ['Roll', 'roll, left side of the body upward', false],
     lateral_bending_nm: ['Lateral bending moment', 'bending moment about the vertical', false],
   };
 

@@ -148,6 +148,11 @@ impl FigureMeasure {
     pub(super) const ANGLE: Self = Self::up("Joint angle", "mrad", 1e3);
     /// A joint's bending moment, the deck compressed upward.
     pub(super) const BENDING: Self = Self::up("Bending moment", "kN m", 1e-3);
+    pub(super) const WHEEL_FORCE: Self = Self::up("Wheel force", "kN", 1e-3);
+    /// A body's rise from rest.
+    pub(super) const BOUNCE: Self = Self::up("Bounce", "m", 1.0);
+    /// A body's pitch, front up, or roll, left side up.
+    pub(super) const BODY_ANGLE: Self = Self::up("Body angle", "mrad", 1e3);
     pub(super) const ALONG: Self = Self::up("Distance along the bridge", "m", 1.0);
     pub(super) const TIME: Self = Self::up("Time", "s", 1.0);
     pub(super) const SPEED: Self = Self::up("Speed", "m/s", 1.0);

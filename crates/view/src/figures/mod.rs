@@ -86,9 +86,12 @@ impl Figures {
             Kind::Static => profiles::deflected(&mut context),
             Kind::Modes => modes::frequencies(&mut context, reference),
             Kind::Crossing => {
-                let mut figures = histories::histories(&mut context);
+                let [of_bridge, of_vehicles] = histories::histories(&mut context);
+                let mut figures = of_bridge;
                 figures.extend(speeds::speeds(&mut context));
                 figures.extend(profiles::envelopes(&mut context));
+                // wheels are many: they give way to all else where figures are too many
+                figures.extend(of_vehicles);
                 figures
             }
         };

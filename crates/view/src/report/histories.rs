@@ -42,12 +42,14 @@ struct Gathered {
     value: Vec<f64>,
 }
 
-/// Where a history is: at a position or joint, at a place along, of a pin across.
+/// Where a history is: at a position or joint, at a place along, of a pin across, of a vehicle or its wheel.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 struct Place {
     position: Option<f64>,
     x_m: Option<f64>,
     y_m: Option<f64>,
+    vehicle: Option<f64>,
+    axle: Option<f64>,
 }
 
 impl Place {
@@ -57,11 +59,21 @@ impl Place {
             position: number("position"),
             x_m: number("x_m"),
             y_m: number("y_m"),
+            vehicle: number("vehicle"),
+            axle: number("axle"),
         }
     }
 
     fn words(self, quantity: &str) -> String {
         let along = match (self.position, self.x_m) {
+            _ if self.vehicle.is_some() => {
+                let axle = self.axle.map(|axle| format!(", axle {axle}"));
+                format!(
+                    "vehicle {}{}",
+                    self.vehicle.unwrap_or_default(),
+                    axle.unwrap_or_default()
+                )
+            }
             (Some(position), _) if quantity == "deflection_m" => format!("position {position}"),
             (Some(joint), _) => format!("joint {joint}"),
             (None, x_m) => format!("x {} m", labels::as_written(x_m.unwrap_or_default())),
@@ -110,7 +122,9 @@ pub(super) fn histories(
             lines.push(now.line(row.map(row_label).unwrap_or_default()));
         }
     };
-    let columns = ["job", "time_s", "quantity", "position", "x_m", "y_m", "value"];
+    let columns = [
+        "job", "time_s", "quantity", "position", "x_m", "y_m", "vehicle", "axle", "value",
+    ];
     results.scan(TableName::Histories, &columns, |part| {
         let Some(quantities) = part.word_cells("quantity") else {
             return;
