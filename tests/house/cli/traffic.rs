@@ -78,7 +78,14 @@ fn a_vehicle_file_is_the_vehicle_in_the_study() {
     // a figure for each wheel and motion, on the page by the numbers of vehicle and axle
     let told = stage.pontoon(&["report", "r", "--out", "report.html", "--figures", "f"]);
     assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
-    for name in ["wheel-1-1-1", "wheel-1-1-2", "wheel-1-2-1", "wheel-1-2-2", "bounce-1", "pitch-1"] {
+    for name in [
+        "wheel-1-1-1",
+        "wheel-1-1-2",
+        "wheel-1-2-1",
+        "wheel-1-2-2",
+        "bounce-1",
+        "pitch-1",
+    ] {
         let drawn = std::fs::read_dir(stage.path("f")).unwrap().any(|file| {
             let file = file.unwrap().file_name().into_string().unwrap();
             file.starts_with(name) && file.ends_with(".svg")
