@@ -52,8 +52,8 @@ TRAFFIC = {
 
 
 def drawn_traffic(what, count, seed):
-    """Cases of traffic over gaps 0 to 40 mm, 2 to 20 m/s, trucks of 50 to 500 kN; lanes, roads, spacings from 15 to 60 m, and
-    times of meeting."""
+    """Cases of traffic over gaps 0 to 40 mm, 2 to 20 m/s, trucks of 50 to 500 kN; lanes, roads, spacings from 15 to
+    60 m, and times of meeting."""
     draw = random.Random(f"{what} {seed}")
     cases = []
     for _ in range(count):
@@ -260,7 +260,11 @@ def main():
             table.row(f"{what}: energy balance of the operator", "1e-9", f"{residual:.1e}", residual <= 1e-9)
         table.forces("time step 10 against 2.5 ms", off_fine, moved)
         table.forces("time step 5 against 2.5 ms", off_half, moved)
-        chaotic = [j for j in suspects if off_auto[j] > 2 and max(moved[j]["compression"], moved[j]["tension"]) > 0.5 * off_auto[j]]
+        chaotic = [
+            j
+            for j in suspects
+            if off_auto[j] > 2 and max(moved[j]["compression"], moved[j]["tension"]) > 0.5 * off_auto[j]
+        ]
         median, most = worst(x for j, x in enumerate(off_auto) if j not in chaotic)
         apart = f"; apart: {', '.join(f'job {j} {off_auto[j]:.1f} %' for j in chaotic)}" if chaotic else ""
         steps = auto["jobs"].group_by("time_step_s").len().sort("time_step_s", descending=True)
@@ -274,7 +278,8 @@ def main():
     for job, by in moved.items():
         print(
             f"job {job}: 0.01 % of the load or a tenth of the step moves the reference solver's own "
-            f"deflection by {by['deflection']:.2f}, compression by {by['compression']:.2f}, tension by {by['tension']:.2f} %"
+            f"deflection by {by['deflection']:.2f}, compression by {by['compression']:.2f}, "
+            f"tension by {by['tension']:.2f} %"
         )
     print(f"\n{len(listed)} joints beyond {JOINT_PERCENT:g} %")
     print("\n".join(listed))
