@@ -375,7 +375,7 @@ pub enum Profile {
     Bump(Unevenness),
     /// `h s`, then h.
     Step(Unevenness),
-    /// A cubic between places that are [`PLACES_M`] apart.
+    /// A cubic between places that are a centimetre apart.
     Places {
         /// Number of the first place: it is at so many distances.
         first: i64,
