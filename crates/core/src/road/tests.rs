@@ -1,3 +1,7 @@
+//! Profiles of roads against another program's numbers and by hand.
+//!
+//! Knows seeds, waves and stated forms. Does not know vehicles.
+
 use super::{IsoClass, Profile, RoadDesign, SplitMix64, Unevenness, Ways};
 
 fn class_c(seed: u64) -> Profile {
