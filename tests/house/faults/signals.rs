@@ -16,7 +16,10 @@ fn send(child: &Child, signal: &str) {
 /// Waits until a run has recorded a job.
 fn under_way(stage: &Stage, out: &str) {
     let began = Instant::now();
-    while !stage.path(&format!("{out}/journal")).exists() || status(stage, &[out])["done"].as_u64() == Some(0) {
+    // the folder of a journal is there before its file
+    let has_journal =
+        || std::fs::read_dir(stage.path(&format!("{out}/journal"))).is_ok_and(|mut files| files.next().is_some());
+    while !has_journal() || status(stage, &[out])["done"].as_u64() == Some(0) {
         assert!(began.elapsed() < Duration::from_secs(60));
         std::thread::sleep(Duration::from_millis(5));
     }
