@@ -370,6 +370,12 @@ impl BridgeDesign {
         of_module.iter().map(|&of| designs[of].freeboard_m).collect()
     }
 
+    /// Draft of each module `[m]`; none where its kind has none.
+    pub fn drafts_m(&self) -> Vec<Option<f64>> {
+        let Variants { designs, of_module, .. } = self.variants();
+        of_module.iter().map(|&of| designs[of].draft_m).collect()
+    }
+
     /// How much the river has risen `[m]`; 0 where the file does not say.
     pub fn risen_m(&self) -> f64 {
         self.water_level_m.unwrap_or(0.0)
