@@ -32,7 +32,8 @@ fn smallest_contact_force_converges_with_the_step() {
             solver
                 .solve_single(&vehicle, &crossing(load_n))
                 .expect("solved")
-                .min_contact_force_n
+                .least_contact
+                .force_n
         };
         let fine = by_operator(0.001, PAPER_LOAD_N);
         let off = |found: f64| (found / fine - 1.0).abs();
@@ -51,7 +52,7 @@ fn smallest_contact_force_converges_with_the_step() {
         let reference = reference
             .solve_single(&vehicle, &crossing(PAPER_LOAD_N))
             .expect("solved");
-        let apart = (reference.min_contact_force_n - by_operator(0.005, PAPER_LOAD_N)).abs() / PAPER_LOAD_N;
+        let apart = (reference.least_contact.force_n - by_operator(0.005, PAPER_LOAD_N)).abs() / PAPER_LOAD_N;
         assert!(
             apart < 5e-3,
             "patch {patch_m} m, {speed_m_s} m/s: solvers {apart:.1e} apart"

@@ -39,7 +39,7 @@ impl From<CrossingResponse> for Answers {
     fn from(r: CrossingResponse) -> Self {
         let each = r.joints.iter().flat_map(|j| &j.connectors);
         Self {
-            edge_and_roll: [r.peak_edge_deflection_m, r.peak_roll_rad],
+            edge_and_roll: [r.peak_edge.value, r.peak_roll.value],
             forces: each.flat_map(|c| [c.1.compression.value, c.1.tension.value]).collect(),
         }
     }

@@ -14,6 +14,7 @@ mod operator;
 mod operator_accuracy;
 mod operator_lanes;
 mod pins;
+mod placed;
 mod probe;
 mod ramps;
 mod shapes;

@@ -244,7 +244,7 @@ fn a_crossing_looked_at_is_the_one_that_is_solved() {
         held("deck under a point", 1e-12, off_deck, off_deck_twin);
         // steps were not halved, so that the smallest force is one of those seen
         assert_eq!(solved.statistics.bisections, 0);
-        let told = solved.min_contact_force_n;
+        let told = solved.least_contact.force_n;
         assert!(
             (smallest - told).abs() <= 1e-9 * told.abs(),
             "{inertia:?}: {smallest} {told}"

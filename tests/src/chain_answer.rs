@@ -167,7 +167,7 @@ fn of_crossing(scenario: &ChainScenario, time_step_s: f64, response: &CrossingRe
     }
     let sprung = !response.recorded.wheels.is_empty();
     if scenario.vehicle.inertia != Inertia::None || sprung {
-        largest.insert("min_contact_force_n".into(), json!(response.min_contact_force_n));
+        largest.insert("min_contact_force_n".into(), json!(response.least_contact.force_n));
     }
     let mut found = json!({ "kind": "crossing", "time_step_s": time_step_s, "positions": positions, "joints": joints,
                             "pins": pins, "banks": banks, "largest": largest });

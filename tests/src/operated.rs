@@ -83,6 +83,8 @@ pub struct Apart {
     pub edge: f64,
     /// Roll, over the largest deflection per breadth of 8.082 m where that is more.
     pub roll: f64,
+    /// Trim of a module.
+    pub trim: f64,
     /// Smallest contact force, over the load.
     pub contact: f64,
     /// Histories of deflections and of forces.
@@ -93,14 +95,18 @@ impl Apart {
     /// Of two answers to crossings under `load_n`.
     pub fn of(found: &CrossingResponse, expected: &CrossingResponse, load_n: f64) -> Self {
         let scale_m = largest(deflections(expected));
-        let roll = (found.peak_roll_rad - expected.peak_roll_rad).abs();
+        let [roll, trim] = [
+            [found.peak_roll.value, expected.peak_roll.value],
+            [found.peak_trim.value, expected.peak_trim.value],
+        ]
+        .map(|[found, expected]| (found - expected).abs());
         Self {
             deflection: over_largest(&deflections(found), &deflections(expected)),
             force: over_largest(&forces(found), &forces(expected)),
-            edge: (found.peak_edge_deflection_m - expected.peak_edge_deflection_m).abs()
-                / expected.peak_edge_deflection_m,
-            roll: roll / expected.peak_roll_rad.max(scale_m / 8.082),
-            contact: (found.min_contact_force_n - expected.min_contact_force_n).abs() / load_n,
+            edge: (found.peak_edge.value - expected.peak_edge.value).abs() / expected.peak_edge.value,
+            roll: roll / expected.peak_roll.value.max(scale_m / 8.082),
+            trim: trim / expected.peak_trim.value,
+            contact: (found.least_contact.force_n - expected.least_contact.force_n).abs() / load_n,
             history: largest([Quantity::Deflection, Quantity::Force].map(|quantity| {
                 let [found, expected] = [found, expected].map(|r| curve(r, quantity));
                 over_largest(&found, &expected)
@@ -115,6 +121,7 @@ impl Apart {
             self.force,
             self.edge,
             self.roll,
+            self.trim,
             self.contact,
             self.history,
         ])

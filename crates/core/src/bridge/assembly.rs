@@ -40,16 +40,17 @@ pub struct Bridge {
     pub(crate) positions: Vec<SparseRow>,
     /// Place along the bridge and z at the bottom's centre line, node after node.
     pub(crate) centre_line: Vec<(f64, SparseRow)>,
-    /// z of the deck's two edges.
-    pub(crate) edges: Vec<SparseRow>,
+    /// z of the deck's two edges, each with the position of its module's nearer end.
+    pub(crate) edges: Vec<(usize, SparseRow)>,
     /// z of the deck's corners.
     pub(crate) deck_corners: Vec<SparseRow>,
     /// z of the corners of the bottoms' wet parts.
     pub(crate) bottom_corners: Vec<SparseRow>,
     /// Motion along, across and up of each module's eight corners, see [`crate::analysis::modes::shapes`].
     pub(crate) corners: Vec<[SparseRow; 3]>,
-    /// Roll of the module ends `[rad per unit dof]`.
-    pub(crate) rolls: Vec<SparseRow>,
+    /// Roll of the module ends, each with its position, and trim of the modules `[rad per unit dof]`.
+    pub(crate) rolls: Vec<(usize, SparseRow)>,
+    pub(crate) trims: Vec<SparseRow>,
     /// z across the deck at each line along, for telling shapes apart (the bottom's plates carry the water, and shapes of
     /// their own would pass for the bridge's): place x, then (y, row) for each line across.
     pub(crate) sections: Vec<(f64, Vec<(f64, SparseRow)>)>,
@@ -150,6 +151,7 @@ impl Bridge {
             bottom_corners: places.wet_corners(),
             corners: places.corners(),
             rolls: places.rolls(),
+            trims: places.trims(),
             sections: places.sections(),
             hinge_lines: places.hinge_lines(),
             water: std::array::from_fn(|which| row.water_resultant(which)),
@@ -330,6 +332,13 @@ impl Places<'_> {
         self.modules.left_m(j) + self.modules.grid(j).x[ix]
     }
 
+    /// Gives the position of that end of its module to which a station is nearer; in the middle the left one's.
+    fn nearer_position(&self, j: usize, ix: usize) -> usize {
+        let x = &self.modules.grid(j).x;
+        let is_right = x[ix] - 0.5 * x[x.len() - 1] > SAME_PLACE_M;
+        j + 1 + usize::from(is_right)
+    }
+
     /// Makes the connectors, joint after joint.
     fn connectors(&self) -> Vec<LinkRow> {
         let mut connectors = Vec::new();
@@ -426,11 +435,14 @@ impl Places<'_> {
     }
 
     /// Makes the rows of [`Bridge::edges`], station after station, the edge at the lowest y first.
-    fn edges(&self) -> Vec<SparseRow> {
+    fn edges(&self) -> Vec<(usize, SparseRow)> {
         let last = self.modules.lines_y().len() - 1;
         self.stations()
             .flat_map(|station| [(station, 0), (station, last)])
-            .map(|((j, ix), iy)| self.of(j, self.modules.grid(j).deck(ix, iy), Z))
+            .map(|((j, ix), iy)| {
+                let z = self.of(j, self.modules.grid(j).deck(ix, iy), Z);
+                (self.nearer_position(j, ix), z)
+            })
             .collect()
     }
 
@@ -483,16 +495,30 @@ impl Places<'_> {
     }
 
     /// Makes the rows of [`Bridge::rolls`]: z of the deck's two edges over the breadth.
-    fn rolls(&self) -> Vec<SparseRow> {
+    fn rolls(&self) -> Vec<(usize, SparseRow)> {
         self.ends()
             .map(|(j, ix)| {
                 let grid = self.modules.grid(j);
                 let right = self.of(j, grid.deck(ix, 0), Z);
                 let left = self.of(j, grid.deck(ix, grid.y.len() - 1), Z);
                 let per = 1.0 / self.design.module.breadth_m;
-                SparseRow::combine(&[(-per, &right), (per, &left)])
+                let row = SparseRow::combine(&[(-per, &right), (per, &left)]);
+                (self.nearer_position(j, ix), row)
             })
             .collect()
+    }
+
+    /// Makes the rows of [`Bridge::trims`]: the mean z of the deck's corners at the right end less that at the left one, over the
+    /// length.
+    fn trims(&self) -> Vec<SparseRow> {
+        let corners = self.deck_corners();
+        let modules = (0..).zip(corners.chunks_exact(4));
+        let trim = |(j, corners): (usize, &[SparseRow])| {
+            let half = 0.5 / self.modules.design(j).module.length_m;
+            let signs = [-half, -half, half, half];
+            SparseRow::combine(&signs.into_iter().zip(corners).collect::<Vec<_>>())
+        };
+        modules.map(trim).collect()
     }
 
     /// Makes the rows of [`Bridge::sections`], each with its place along and across `[m]`.

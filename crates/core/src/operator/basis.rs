@@ -92,8 +92,11 @@ pub(super) struct Observed {
 pub(super) struct OperatedModule {
     /// Rows of its edges among those inside all modules.
     pub inside: Range<usize>,
-    /// Place of each of its stations but those at its ends, 0 to 1.
+    /// Place of each of its stations but those at its ends, 0 to 1, and the position of its nearer end.
     pub places: Vec<f64>,
+    pub nearer: Vec<usize>,
+    /// Length `[m]`.
+    pub length_m: f64,
     /// How much its draft and its freeboard are above the least of a module `[m]`; without bound where it has none.
     pub draft_beyond_m: f64,
     pub freeboard_beyond_m: f64,
@@ -533,14 +536,19 @@ fn operated_modules(bridge: &Bridge) -> Vec<OperatedModule> {
     let (draft_m, freeboard_m) = (bridge.least_draft_m(), bridge.least_freeboard_m());
     let beyond =
         |own: Option<f64>, least: Option<f64>| own.zip(least).map_or(f64::INFINITY, |(own, least)| own - least);
-    let mut end = 0;
+    let (mut end, mut station) = (0, 0);
     let module = |of: &ModulePlace| {
         let between = &of.lines_x[1..of.lines_x.len() - 1];
         let first = end;
         end += 2 * between.len();
+        let own = &bridge.edges[2 * station..][..2 * of.lines_x.len()];
+        station += of.lines_x.len();
+        let nearer = own.chunks_exact(2).map(|edges| edges[0].0);
         OperatedModule {
             inside: first..end,
             places: between.iter().map(|x| x / of.length_m).collect(),
+            nearer: nearer.skip(1).take(between.len()).collect(),
+            length_m: of.length_m,
             draft_beyond_m: beyond(of.draft_m, draft_m),
             freeboard_beyond_m: beyond(of.freeboard_m, freeboard_m),
         }
@@ -556,7 +564,7 @@ fn inside(bridge: &Bridge, modules: &[OperatedModule]) -> Vec<SparseRow> {
         let last = module.places.len() + 1;
         for (ix, place) in (1..).zip(&module.places) {
             for side in 0..2 {
-                let edge = |ix: usize| &bridge.edges[2 * (first + ix) + side];
+                let edge = |ix: usize| &bridge.edges[2 * (first + ix) + side].1;
                 let straight = [(place - 1.0, edge(0)), (-place, edge(last)), (1.0, edge(ix))];
                 rows.push(SparseRow::combine(&straight));
             }

@@ -15,6 +15,7 @@ use super::local_residual::LocalResidual;
 use super::modes::Modes;
 use super::panel::InstructionPath;
 use super::pins::Pins;
+use super::placed::Placed;
 use super::residual::Residual;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
@@ -50,6 +51,7 @@ pub(crate) struct Saved {
     /// Motion of each vehicle on springs.
     rides: Vec<Ride>,
     statistics: Statistics,
+    placed: Placed,
     /// Length of the last step, where dashpots ask for it `[s]`.
     before_s: f64,
 }
@@ -92,7 +94,6 @@ impl Crossings {
     /// Begins a crossing at rest, the front of the vehicle where it is one step before the first one.
     pub(crate) fn begin(&mut self, operator: &BridgeOperator, lane: usize, crossing: CrossingInput, time_s: f64) {
         self.rest(lane);
-        self.envelope.begin(lane);
         self.take_connectors(lane, &crossing);
         let of = &mut self.lanes[lane];
         of.contact.forget();
@@ -150,6 +151,7 @@ impl Crossings {
     /// Zeros in a lane.
     fn rest(&mut self, lane: usize) {
         self.carried().for_each(|array| array.clear(lane));
+        self.envelope.placed[lane] = Placed::default();
         let left = self.loads.left().into_iter().chain(self.connectors.left());
         left.chain(self.pins.left()).for_each(|array| array.clear(lane));
     }
@@ -181,6 +183,7 @@ impl Crossings {
             rider_forces: (of.rider_forces.clone(), of.first_spring),
             rides: of.rides.iter().map(|of| of.ride.clone()).collect(),
             statistics: of.statistics,
+            placed: self.envelope.placed[lane],
             before_s: of.dashpots.as_ref().map_or(f64::INFINITY, |of| of.before_s),
         }
     }
@@ -189,6 +192,7 @@ impl Crossings {
     pub(crate) fn restore(&mut self, lane: usize, saved: &Saved) {
         let places = self.carried().flat_map(|array| array.lane_mut(lane));
         places.zip(&saved.numbers).for_each(|(x, saved)| *x = *saved);
+        self.envelope.placed[lane] = saved.placed;
         let of = &mut self.lanes[lane];
         of.contact.forget();
         of.contact.states.clone_from(&saved.states);
@@ -325,8 +329,9 @@ impl Crossings {
             let parts = (modes, connectors, &mut self.loads);
             let of = &mut self.lanes[lane];
             if of.solve(lane, (operator, constants, newton_limit), parts, clock) {
-                if of.crossing.is_some() {
-                    self.envelope.record_axles(lane, &of.axles, &of.beyond_weight);
+                if let Some(crossing) = &of.crossing {
+                    let placed = &mut self.envelope.placed[lane];
+                    placed.note_axles(of.time_s, &crossing.wheels, &of.axles, &of.beyond_weight);
                 }
             } else {
                 let saved = self.save(lane);

@@ -1,4 +1,4 @@
-//! What is read of every lane after a step: peaks with their times, roll, edges, axle forces.
+//! What is read of every lane after a step: peaks with their times; roll, trim and edges with their places.
 //!
 //! Knows the observed rows. Does not know how the motion came about.
 
@@ -9,6 +9,7 @@ use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::modes::Modes;
 use super::panel::{lanes, lanes_mut};
+use super::placed::Placed;
 use super::residual::Residual;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
@@ -37,8 +38,10 @@ pub(super) struct Envelope {
     corner: LaneArray,
     bottom: LaneArray,
     roll: LaneArray,
-    /// Smallest force of an axle.
-    axle: LaneArray,
+    /// Largest trim of a module.
+    trim: LaneArray,
+    /// When and where edges, roll and trim were largest and an axle's force was smallest, in each lane.
+    pub(super) placed: Vec<Placed>,
     /// Largest deflection of each module's corners now.
     of_module: LaneArray,
     /// `[q; s]`, observed rows, edges inside one module, now.
@@ -51,6 +54,10 @@ pub(super) struct Envelope {
     from_rest: Vec<bool>,
     /// Of each module how much its freeboard and its draft are above the least `[m]`.
     beyond_m: Vec<[f64; 2]>,
+    /// Half of one over the length of each module `[1/m]`.
+    half_per_m: Vec<f64>,
+    /// Corners of one lane.
+    of_lane: Vec<f64>,
 }
 
 impl Envelope {
@@ -71,7 +78,8 @@ impl Envelope {
             corner: of(1),
             bottom: of(1),
             roll: of(1),
-            axle: of(1),
+            trim: of(1),
+            placed: vec![Placed::default(); lanes],
             of_module: of(sizes.modules),
             motion: of(sizes.modes + sizes.connectors),
             observed: of(sizes.observed),
@@ -80,6 +88,8 @@ impl Envelope {
             risen: of(rows.corners + rows.bottom_corners),
             from_rest: vec![false; lanes],
             beyond_m: modules.iter().map(beyond_m).collect(),
+            half_per_m: modules.iter().map(|module| 0.5 / module.length_m).collect(),
+            of_lane: vec![0.0; rows.corners],
         }
     }
 
@@ -92,12 +102,8 @@ impl Envelope {
             &mut self.corner,
             &mut self.bottom,
             &mut self.roll,
-            &mut self.axle,
+            &mut self.trim,
         ]
-    }
-
-    pub(super) fn begin(&mut self, lane: usize) {
-        *self.axle.at_mut(0, lane) = f64::INFINITY;
     }
 
     /// Takes how a lane's bridge floats at rest.
@@ -138,17 +144,6 @@ impl Envelope {
         self.observed.at(self.observed.rows() - self.rows.springs + index, lane)
     }
 
-    /// Smallest force of an axle while it is whole on the bridge.
-    #[inline(always)]
-    pub(super) fn record_axles(&mut self, lane: usize, axles: &[(f64, bool)], inertia: &[f64]) {
-        let least = self.axle.at_mut(0, lane);
-        for (&(weight, whole), inertia) in axles.iter().zip(inertia) {
-            if whole {
-                *least = least.min(weight + inertia);
-            }
-        }
-    }
-
     /// Reads the rows after a step.
     #[inline(always)]
     pub(super) fn update<S: Simd>(
@@ -168,11 +163,13 @@ impl Envelope {
             *z = o.add(*z, *r);
         }
         self.update_peaks(o, connectors);
+        let before = [&self.edge, &self.roll, &self.trim].map(|of| of.vectors::<S>()[0]);
         if self.from_rest.contains(&true) {
             self.update_corners::<S, true>(o);
         } else {
             self.update_corners::<S, false>(o);
         }
+        self.note_corners(o, before);
         self.update_edges(o, operator, constants, energy, lanes);
     }
 
@@ -226,12 +223,14 @@ impl Envelope {
         let observed = self.observed.vectors::<S>();
         let per = o.splat(1.0 / self.breadth_m);
         let mut roll = self.roll.vectors::<S>()[0];
+        let mut trim = self.trim.vectors::<S>()[0];
         let mut corner = self.corner.vectors::<S>()[0];
         let of_corners = observed[positions..][..corners].chunks_exact(4);
         let modules = self.of_module.vectors_mut::<S>().iter_mut().zip(&self.beyond_m);
+        let of_corners = of_corners.zip(&self.half_per_m);
         let edge = &mut self.edge.vectors_mut::<S>()[0];
         let risen = self.risen.vectors::<S>();
-        for (j, ((module, [freeboard, _]), ends)) in modules.zip(of_corners).enumerate() {
+        for (j, ((module, [freeboard, _]), (ends, half))) in modules.zip(of_corners).enumerate() {
             let mut down = o.neg(ends[0]);
             for end in ends.chunks_exact(2) {
                 roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
@@ -239,6 +238,8 @@ impl Envelope {
                     down = o.max(down, o.neg(z));
                 }
             }
+            let rise = o.sub(o.add(ends[2], ends[3]), o.add(ends[0], ends[1]));
+            trim = o.max(trim, o.abs(o.mul(rise, o.splat(*half))));
             *module = down;
             *edge = o.max(*edge, down);
             let under = if FROM_REST {
@@ -253,6 +254,7 @@ impl Envelope {
             corner = o.max(corner, o.sub(under, o.splat(*freeboard)));
         }
         self.roll.vectors_mut::<S>()[0] = roll;
+        self.trim.vectors_mut::<S>()[0] = trim;
         self.corner.vectors_mut::<S>()[0] = corner;
         let bottom = &mut self.bottom.vectors_mut::<S>()[0];
         let of_bottom = observed[positions + corners..][..bottom_corners].chunks_exact(4);
@@ -265,6 +267,44 @@ impl Envelope {
                     z
                 };
                 *bottom = o.max(*bottom, o.sub(z, draft));
+            }
+        }
+    }
+
+    /// Notes when and where corners, roll and trim are larger than before the step, in the lanes where they are.
+    #[inline(always)]
+    fn note_corners<S: Simd>(&mut self, o: Ops<S>, before: [S::f64s; 3]) {
+        let now = [&self.edge, &self.roll, &self.trim].map(|of| of.vectors::<S>()[0]);
+        let larger = |i: usize| o.0.first_true_m64s(o.0.greater_than_f64s(now[i], before[i])) < S::F64_LANES;
+        if larger(0) || larger(1) || larger(2) {
+            self.note_lanes();
+        }
+    }
+
+    /// As [`Self::note_corners`].
+    #[inline(never)]
+    fn note_lanes(&mut self) {
+        let (positions, corners) = (self.rows.positions, self.rows.corners);
+        for (lane, placed) in self.placed.iter_mut().enumerate() {
+            let time_s = self.now.at(0, lane);
+            let is_larger = [
+                self.edge.at(0, lane) > placed.edge.value,
+                self.roll.at(0, lane) > placed.roll.value,
+                self.trim.at(0, lane) > placed.trim.value,
+            ];
+            if !is_larger.contains(&true) {
+                continue;
+            }
+            let own = self.observed.lane(lane).skip(positions).take(corners);
+            self.of_lane.iter_mut().zip(own).for_each(|(to, z)| *to = z);
+            if is_larger[0] {
+                placed.note_edge(time_s, &self.of_lane);
+            }
+            if is_larger[1] {
+                placed.note_roll(time_s, &self.of_lane, 1.0 / self.breadth_m);
+            }
+            if is_larger[2] {
+                placed.note_trim(time_s, &self.of_lane, &self.half_per_m);
             }
         }
     }
@@ -338,6 +378,7 @@ impl Envelope {
             }
             let edge = self.edge.at_mut(0, lane);
             *edge = edge.max(-z);
+            self.placed[lane].edge.take(-z, of.time_s, of_module.nearer[i / 2]);
         }
     }
 
@@ -356,11 +397,9 @@ impl Envelope {
             forces: (self.rows.positions..self.value.rows() / 2)
                 .map(|i| forces(2 * i))
                 .collect(),
-            edge_m: self.edge.at(0, lane),
             corner_m: self.corner.at(0, lane),
             bottom_m: self.bottom.at(0, lane),
-            roll_rad: self.roll.at(0, lane),
-            min_contact_force_n: self.axle.at(0, lane),
+            placed: self.placed[lane],
             energy,
         }
     }
@@ -399,16 +438,12 @@ pub(crate) struct LanePeaks {
     pub positions: Vec<[Peak; 2]>,
     /// Of each joint the sum, then each connector `[N]`.
     pub forces: Vec<ForcePeaks>,
-    /// Largest downward deflection of the deck's edges `[m]`.
-    pub edge_m: f64,
     /// Largest downward deflection of the deck's corners alone, less what a module's freeboard is above the least `[m]`.
     pub corner_m: f64,
     /// Largest height of a bottom corner, less what a module's draft is above the least `[m]`; 0 where none is followed.
     pub bottom_m: f64,
-    /// Largest roll of a module end `[rad]`.
-    pub roll_rad: f64,
-    /// Smallest force of an axle `[N]`.
-    pub min_contact_force_n: f64,
+    /// Edges, roll, trim and contact force with time and place.
+    pub placed: Placed,
     /// The energy balance.
     pub energy: EnergySummary,
 }

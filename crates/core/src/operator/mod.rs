@@ -31,6 +31,7 @@ mod panel;
 mod persist;
 mod pin_rows;
 mod pins;
+mod placed;
 mod residual;
 mod residual_rows;
 mod rider_block;

@@ -6,6 +6,7 @@
 use super::basis::BridgeOperator;
 use super::step_constants::StepConstants;
 use crate::bridge::Track;
+use crate::response::AxlePlace;
 use crate::traffic::Traffic;
 use crate::vehicle::{Inertia, Vehicle};
 use nalgebra::DMatrix;
@@ -77,6 +78,16 @@ pub(crate) struct WheelLines {
 }
 
 impl WheelLines {
+    /// The vehicle and its own axle of an axle numbered through all vehicles.
+    pub(super) fn axle_place(&self, axle: usize) -> AxlePlace {
+        let vehicle = self.vehicles.partition_point(|of| of.first_axle <= axle);
+        let first = self.vehicles[..vehicle].last().map_or(0, |of| of.first_axle);
+        AxlePlace {
+            vehicle,
+            axle: axle - first + 1,
+        }
+    }
+
     /// The vehicles on the deck of an operator.
     pub(crate) fn new(operator: &BridgeOperator, traffic: &Traffic) -> Self {
         let track = &operator.track;

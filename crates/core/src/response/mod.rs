@@ -13,8 +13,8 @@ mod subject;
 pub use dead::{DeadState, ModuleAtRest};
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
 pub use peaks::{
-    BankPeaks, ForcePeaks, JointForces, JointPeaks, Peak, PinExtremes, PinPeaks, PlacePeaks, PositionPeaks,
-    SectionPeaks, resultant_n,
+    AxlePlace, BankPeaks, ForcePeaks, JointForces, JointPeaks, LeastContact, Peak, PinExtremes, PinPeaks, PlacePeaks,
+    PlacedPeak, PositionPeaks, SectionPeaks, resultant_n,
 };
 pub(crate) use recorder::Recorder;
 pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
@@ -48,12 +48,16 @@ pub struct CrossingResponse {
     pub joints: Vec<JointPeaks>,
     /// Peaks of the pins of each joint, then of their sum, at the instants of the balance; empty where they were not asked for.
     pub pins: Vec<PinPeaks>,
-    /// Largest downward deflection of the deck's two edges `[m]`.
-    pub peak_edge_deflection_m: f64,
-    /// Largest roll of a module end, either sense `[rad]`.
-    pub peak_roll_rad: f64,
-    /// Smallest contact force of an axle while all its points are on the bridge `[N]`; below zero a rigid one would have lifted off.
-    pub min_contact_force_n: f64,
+    /// Largest downward deflection of the deck's two edges `[m]`, at a position: inside a module that of the nearer end, in its
+    /// middle that of the left one.
+    pub peak_edge: PlacedPeak,
+    /// Largest roll of a module end, either sense `[rad]`, at the end's position.
+    pub peak_roll: PlacedPeak,
+    /// Largest trim of a module, either sense `[rad]`, and which module: `(z_right - z_left) / length`, z being the mean height of
+    /// the deck's two corners at an end, in the motion from rest.
+    pub peak_trim: PlacedPeak,
+    /// Smallest contact force of an axle while all its points are on the bridge.
+    pub least_contact: LeastContact,
     /// Whether a corner of a module's bottom rose above the water; unknown without a draft.
     pub bottom_emerged: Option<bool>,
     /// Whether a corner of a module's deck went below the water; unknown without a freeboard.

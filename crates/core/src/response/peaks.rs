@@ -21,6 +21,71 @@ impl Peak {
     }
 }
 
+/// A largest value, when it occurred and where. Starts from zero, as [`Peak`] does. Verified by `tests/solvers/placed.rs`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PlacedPeak {
+    /// The largest value so far, at least 0.
+    pub value: f64,
+    /// When it first occurred `[s]`.
+    pub time_s: f64,
+    /// Number of the place where it did, from 1; 0 while the value is 0.
+    pub at: usize,
+}
+
+impl PlacedPeak {
+    /// Takes `value` at `time_s` at the place `at` where it is larger than all before: of equals the first.
+    #[inline]
+    pub fn take(&mut self, value: f64, time_s: f64, at: usize) {
+        if value > self.value {
+            *self = Self { value, time_s, at };
+        }
+    }
+}
+
+/// An axle of a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AxlePlace {
+    /// The vehicle, from 1 in the order of the traffic.
+    pub vehicle: usize,
+    /// Its axle, from 1.
+    pub axle: usize,
+}
+
+/// The smallest contact force of an axle, when it occurred and of which axle. Verified by `tests/solvers/placed.rs`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeastContact {
+    /// The smallest force so far, infinite while no axle's has settled `[N]`; below zero a rigid axle would have lifted off.
+    pub force_n: f64,
+    /// When it first occurred `[s]`.
+    pub time_s: f64,
+    /// The axle; none while no axle's force has settled.
+    pub axle: Option<AxlePlace>,
+}
+
+impl Default for LeastContact {
+    fn default() -> Self {
+        Self {
+            force_n: f64::INFINITY,
+            time_s: 0.0,
+            axle: None,
+        }
+    }
+}
+
+impl LeastContact {
+    /// Takes the force of an axle at `time_s` where it is smaller than all before: of equals the first.
+    #[inline]
+    pub fn take(&mut self, force_n: f64, time_s: f64, axle: impl FnOnce() -> AxlePlace) {
+        if force_n < self.force_n {
+            *self = Self {
+                force_n,
+                time_s,
+                axle: Some(axle()),
+            };
+        }
+    }
+}
+
 /// Peaks of a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionPeaks {
@@ -141,4 +206,49 @@ pub struct PinPeaks {
 /// The length of a force `[N]`.
 pub fn resultant_n([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{AxlePlace, LeastContact, PlacedPeak};
+
+    /// Nothing below zero counts, and of equals the first.
+    #[test]
+    fn first_of_equals_is_kept() {
+        let mut peak = PlacedPeak::default();
+        peak.take(-1.0, 0.1, 7);
+        assert_eq!(peak, PlacedPeak::default());
+        for (value, time_s, at) in [
+            (1.0, 0.2, 3),
+            (2.0, 0.3, 4),
+            (2.0, 0.3, 5),
+            (2.0, 0.4, 1),
+            (1.5, 0.5, 2),
+        ] {
+            peak.take(value, time_s, at);
+        }
+        let expected = PlacedPeak {
+            value: 2.0,
+            time_s: 0.3,
+            at: 4,
+        };
+        assert_eq!(peak, expected);
+    }
+
+    /// Below zero counts as well, and of equals the first.
+    #[test]
+    fn least_force_is_kept() {
+        let mut least = LeastContact::default();
+        let place = |axle: usize| AxlePlace { vehicle: 1, axle };
+        for (force_n, time_s, axle) in [
+            (5.0, 0.1, 1),
+            (-1.0, 0.2, 2),
+            (-1.0, 0.2, 3),
+            (-1.0, 0.3, 1),
+            (0.0, 0.4, 2),
+        ] {
+            least.take(force_n, time_s, || place(axle));
+        }
+        assert_eq!((least.force_n, least.time_s, least.axle), (-1.0, 0.2, Some(place(2))));
+    }
 }

@@ -8,8 +8,8 @@ use crate::bridge::{Bridge, joint_parts};
 use crate::contact::rest_force_n;
 use crate::fem::SparseRow;
 use crate::response::{
-    CrossingResponse, DeadState, EnergyBalance, ForcePeaks, JointPeaks, JointReading, Peak, PinExtremes, PinPeaks,
-    PositionPeaks, Reading, Recorder, RideReading, Statistics,
+    AxlePlace, CrossingResponse, DeadState, EnergyBalance, ForcePeaks, JointPeaks, JointReading, LeastContact, Peak,
+    PinExtremes, PinPeaks, PlacedPeak, PositionPeaks, Reading, Recorder, RideReading, Statistics,
 };
 use crate::traffic::Traffic;
 use std::sync::Arc;
@@ -22,9 +22,10 @@ pub(super) struct Observer<'a> {
     positions: Vec<PositionPeaks>,
     joints: Vec<JointPeaks>,
     pins: PinWatch,
-    edge: f64,
-    roll: f64,
-    min_contact_force_n: f64,
+    edge: PlacedPeak,
+    roll: PlacedPeak,
+    trim: PlacedPeak,
+    least_contact: LeastContact,
     bottom_emerged: Option<bool>,
     deck_submerged: Option<bool>,
     statistics: Statistics,
@@ -60,9 +61,10 @@ impl<'a> Observer<'a> {
             positions,
             joints,
             pins: PinWatch::new(bridge, record.needs_pins()),
-            edge: 0.0,
-            roll: 0.0,
-            min_contact_force_n: f64::INFINITY,
+            edge: PlacedPeak::default(),
+            roll: PlacedPeak::default(),
+            trim: PlacedPeak::default(),
+            least_contact: LeastContact::default(),
             bottom_emerged: bridge.least_draft_m().map(|_| false),
             deck_submerged: bridge.least_freeboard_m().map(|_| false),
             statistics: Statistics::default(),
@@ -117,11 +119,14 @@ impl<'a> Observer<'a> {
                 peaks.take(force, t);
             }
         }
-        for row in &self.bridge.edges {
-            self.edge = self.edge.max(-row.dot(u));
+        for (position, row) in &self.bridge.edges {
+            self.edge.take(-row.dot(u), t, *position);
         }
-        for row in &self.bridge.rolls {
-            self.roll = self.roll.max(row.dot(u).abs());
+        for (position, row) in &self.bridge.rolls {
+            self.roll.take(row.dot(u).abs(), t, *position);
+        }
+        for (module, row) in (1..).zip(&self.bridge.trims) {
+            self.trim.take(row.dot(u).abs(), t, module);
         }
         let ever = |before: Option<bool>, now: Option<bool>| before.zip(now).map(|(before, now)| before || now);
         let dead = self.dead.as_deref();
@@ -133,7 +138,11 @@ impl<'a> Observer<'a> {
                     let riders = now.load.riders.iter().zip(&now.rider_forces);
                     let of_axle = riders.filter(|(r, _)| r.vehicle == vehicle && r.axle == axle);
                     let force: f64 = of_axle.map(|(_, q)| q).sum();
-                    self.min_contact_force_n = self.min_contact_force_n.min(weight + force);
+                    let place = || AxlePlace {
+                        vehicle: vehicle + 1,
+                        axle: axle + 1,
+                    };
+                    self.least_contact.take(weight + force, t, place);
                 }
             }
         }
@@ -155,9 +164,10 @@ impl<'a> Observer<'a> {
             positions: self.positions,
             joints: self.joints,
             pins: self.pins.peaks,
-            peak_edge_deflection_m: self.edge,
-            peak_roll_rad: self.roll,
-            min_contact_force_n: self.min_contact_force_n,
+            peak_edge: self.edge,
+            peak_roll: self.roll,
+            peak_trim: self.trim,
+            least_contact: self.least_contact,
             bottom_emerged: self.bottom_emerged,
             deck_submerged: self.deck_submerged,
             statistics: self.statistics,

@@ -356,9 +356,10 @@ impl<C: StepClock> Crew<'_, C> {
             } else {
                 Vec::new()
             },
-            peak_edge_deflection_m: peaks.edge_m,
-            peak_roll_rad: peaks.roll_rad,
-            min_contact_force_n: peaks.min_contact_force_n,
+            peak_edge: peaks.placed.edge,
+            peak_roll: peaks.placed.roll,
+            peak_trim: peaks.placed.trim,
+            least_contact: peaks.placed.least_contact,
             bottom_emerged: self.solver.least_draft_m.map(|draft| peaks.bottom_m > draft),
             deck_submerged: self.solver.least_freeboard_m.map(|board| peaks.corner_m > board),
             statistics: *self.lanes.statistics(lane),

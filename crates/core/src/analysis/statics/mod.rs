@@ -126,8 +126,9 @@ impl StaticSolver {
                     .collect(),
             })
             .collect();
-        let largest = |rows: &[SparseRow], value: &dyn Fn(f64) -> f64| {
-            rows.iter().map(|row| value(row.dot(&u))).fold(0.0_f64, f64::max)
+        let largest = |rows: &[(usize, SparseRow)], value: &dyn Fn(f64) -> f64| {
+            let values = rows.iter().map(|(_, row)| value(row.dot(&u)));
+            values.fold(0.0_f64, f64::max)
         };
         let pins_n = self.pins_n(&load, &u, case.dead.as_deref());
         let at_rest = Rest {
