@@ -108,6 +108,13 @@ pub(crate) enum Command {
         after_help = "Examples:\n  pontoon run studies/fu2005\n  pontoon run studies/smoke --out /tmp/smoke --threads 2 --format json"
     )]
     Run(RunArguments),
+    /// Says which vehicle may cross how: one crossing a cell, with its utilisation and the limit that governs.
+    ///
+    /// The study has limits and an axis of vehicles. Where its designs have no axis crossing_type, each has all three: normal, a
+    /// column 30.5 m from tail to head, at 2, 4 and 6 m/s unless it has speeds; caution, 45.7 m at 3.6 m/s on the centre line; risk,
+    /// one vehicle at 1.3 m/s. Nothing is searched. Exit status 1 where a crossing failed.
+    #[command(after_help = "Example:\n  pontoon rate studies/rating")]
+    Rate(RateArguments),
     /// Says what would run: jobs, distinct bridges, steps, expected time; of a folder of results what is done, missing,
     /// failed. Writes nothing.
     #[command(after_help = "Example:\n  pontoon plan studies/fu2005")]
@@ -179,6 +186,23 @@ pub(crate) enum Command {
     /// Writes manual pages, one a command.
     #[command(after_help = "Example:\n  pontoon man --to ~/.local/share/man/man1      then: man pontoon-run")]
     Man(ManArguments),
+}
+
+/// What `rate` takes.
+#[derive(Debug, Args)]
+pub(crate) struct RateArguments {
+    /// The study: a study.json or the folder that holds it.
+    #[arg(value_name = "STUDY")]
+    pub study: PathBuf,
+    /// Folder of the results; `results/<study name>_classes` where absent.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads; as many as the machine has where absent. The table does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Moves results that the folder holds to a folder `aside` in it, and begins anew.
+    #[arg(long)]
+    pub fresh: bool,
 }
 
 /// What `run` takes.

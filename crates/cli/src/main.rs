@@ -65,6 +65,7 @@ fn main() -> ExitCode {
     }
     let ended = match arguments.command {
         Command::Run(run) => commands::run::run(&run, common),
+        Command::Rate(rate) => commands::rate::rate(&rate, common),
         Command::Status(status) => commands::status::status(&status, common),
         Command::Explain(explain) => commands::explain::explain(&explain, common),
         Command::Merge(merge) => commands::merge::merge(&merge, common),

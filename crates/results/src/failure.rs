@@ -41,13 +41,17 @@ pub enum FailureKind {
     ProcessDied,
     /// The run was stopped before the job's bridge was prepared.
     Stopped,
+    /// Limits do not hold at the end of a bracket where they are to.
+    BracketFails,
+    /// Limits hold over the whole bracket.
+    BracketPasses,
     /// The program is at fault.
     ProgramError,
 }
 
 impl FailureKind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::ContactNotSettled,
         Self::StaticContactNotSettled,
         Self::NoDeadState,
@@ -59,6 +63,8 @@ impl FailureKind {
         Self::ModeMissing,
         Self::ProcessDied,
         Self::Stopped,
+        Self::BracketFails,
+        Self::BracketPasses,
         Self::ProgramError,
     ];
 
@@ -87,6 +93,8 @@ impl FailureKind {
             Self::ModeMissing => "mode_missing",
             Self::ProcessDied => "process_died",
             Self::Stopped => "stopped",
+            Self::BracketFails => "bracket_fails",
+            Self::BracketPasses => "bracket_passes",
             Self::ProgramError => "program_error",
         }
     }

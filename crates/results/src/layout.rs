@@ -54,6 +54,8 @@ pub(super) struct Layout {
     verify: bool,
     /// Whether any job has a vehicle on springs.
     springs: bool,
+    /// Whether limits are stated.
+    limits: bool,
     /// What is kept of jobs.
     record: Arc<RecordSpec>,
 }
@@ -77,7 +79,8 @@ impl Layout {
             TableName::Dead => loaded && jobs.iter().any(|job| job.bridge.design.has_dead_load()),
             TableName::Freeboards => record.freeboards && loaded,
             TableName::Wheels | TableName::Bodies => springs,
-            TableName::AtPeaks => !record.at_peak_of.is_empty() && kind == Kind::Crossing,
+            TableName::Limits => study.limits.is_some(),
+            TableName::AtPeaks => !record.at_peak_of.is_empty() && kind.has_crossings(),
             TableName::Joints => study.wear.is_some() && loaded,
         };
         let crossings = || jobs.iter().filter_map(Job::as_crossing);
@@ -91,6 +94,7 @@ impl Layout {
             tables: TableName::ALL.into_iter().filter(left).collect(),
             auto: crossings().any(|crossing| crossing.analysis.time_step.tolerance().is_some()),
             springs,
+            limits: study.limits.is_some(),
             verify: crossings().any(|crossing| crossing.analysis.verify().is_some()),
             record: Arc::clone(record),
         }
@@ -131,6 +135,7 @@ impl Layout {
                     push(&mut columns, column, rows(records, |record| &record.freeboards), of)
                 }
                 ColumnSource::Wheel(of) => push(&mut columns, column, rows(records, |record| &record.wheels), of),
+                ColumnSource::Limit(of) => push(&mut columns, column, rows(records, |record| &record.limits), of),
                 ColumnSource::Body(of) => push(&mut columns, column, rows(records, |record| &record.bodies), of),
                 ColumnSource::Joint(of) => {
                     let rows = jobs.iter().flat_map(worn_joints);
@@ -157,7 +162,9 @@ impl Layout {
             When::Always => true,
             When::Loaded => self.kind != Kind::Modes,
             When::Static => self.kind == Kind::Static,
-            When::Crossing => self.kind == Kind::Crossing,
+            When::Crossing => self.kind.has_crossings(),
+            When::Rating => self.kind == Kind::Rating,
+            When::Limits => self.limits,
             When::Modes => self.kind == Kind::Modes,
             When::AutoTimeStep => self.auto,
             When::Verify => self.verify,

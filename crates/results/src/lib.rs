@@ -2,7 +2,7 @@
 //!
 //! | module | charter |
 //! |---|---|
-//! | `record` | all rows of one job |
+//! | `record`, `limit_rows` | all rows of one job |
 //! | `failure` | why a job failed |
 //! | `preparation`, `verification`, `outcome` | what a run leaves behind beside its records |
 //! | `quantities` | the words of recorded numbers |
@@ -27,6 +27,7 @@ mod files;
 mod frame;
 pub mod labels;
 mod layout;
+mod limit_rows;
 mod manifest;
 mod memory;
 mod moment;
@@ -51,6 +52,7 @@ pub use documents::{RunDocuments, keep_documents};
 pub use extreme::Extreme;
 pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE, replaceable};
+pub use limit_rows::{LimitRow, governing};
 pub use manifest::{DocumentPlace, Manifest, SessionNote, check_own};
 pub use memory::too_large;
 pub use moment::Moment;

@@ -5,6 +5,7 @@
 
 use super::extreme::Extreme;
 use super::failure::Failure;
+use super::limit_rows::{LimitRow, governing, limit_rows_of_none};
 use super::quantities::SECTION_QUANTITIES;
 use super::rest_rows::{DeadRow, FreeboardRow, freeboard_rows_of_none};
 use super::vehicle_rows::{BodyRow, WheelRow, vehicle_rows_of_none};
@@ -49,11 +50,37 @@ pub struct JobRecord {
     pub wheels: Vec<WheelRow>,
     /// Its rows of the table of bodies.
     pub bodies: Vec<BodyRow>,
+    /// Its rows of the table of limits.
+    pub limits: Vec<LimitRow>,
 }
 
 /// A job's row of the table of jobs, names as there.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// Largest value of the axis searched that is below the first that fails, or the smallest above it.
+    pub rated_value: Option<f64>,
+    /// The first value that fails.
+    pub first_failure: Option<f64>,
+    /// The farthest value of the ladder that passes.
+    pub largest_pass: Option<f64>,
+    /// Whether nothing beyond the first failure passes.
+    pub monotone: Option<bool>,
+    /// Crossings that the rating took.
+    pub crossings: Option<usize>,
+    /// How far a ten-thousandth of the load moves the utilisation of the reported pair, as a share of it.
+    pub spread: Option<f64>,
+    /// Whether that is beyond two hundredths.
+    pub chaotic: Option<bool>,
+    /// Largest utilisation of any limit; of a rating that of the rated value.
+    pub utilisation: Option<f64>,
+    /// The limit of which most is used up; of a rating at the first failure.
+    pub governing_limit: Option<String>,
+    /// Position, joint, module or axle of its demand.
+    pub governing_place: Option<usize>,
+    /// When `[s]`.
+    pub governing_time_s: Option<f64>,
+    /// Largest trim of a module `[rad]`.
+    pub peak_trim_rad: Option<f64>,
     /// Largest deflection of any position `[m]`.
     pub peak_deflection_m: Option<f64>,
     /// Its position.
@@ -408,6 +435,7 @@ impl JobRecord {
             freeboards: freeboard_rows_of_none(job),
             wheels,
             bodies,
+            limits: limit_rows_of_none(job),
         }
     }
 }
@@ -433,6 +461,20 @@ impl Summary {
         };
         (self.peak_angle_joint, self.peak_angle_rad) = largest(&mut of("angle_rad"));
         (self.peak_bending_joint, self.peak_bending_nm) = largest(&mut of("bending_nm"));
+    }
+
+    /// Fills in what governs, where limits are stated.
+    pub fn take_limits(&mut self, limits: &[LimitRow]) {
+        if let Some(row) = governing(limits) {
+            self.utilisation = row.utilisation;
+            self.take_governing(row);
+        }
+    }
+
+    /// Fills in which limit governs, and where and when.
+    pub fn take_governing(&mut self, row: &LimitRow) {
+        self.governing_limit = Some(row.limit.clone());
+        (self.governing_place, self.governing_time_s) = (row.place, row.demand.time_s);
     }
 
     /// Fills in the smallest freeboard, where these are recorded (the first of equals).
@@ -480,86 +522,4 @@ impl Summary {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::FailureKind;
-
-    fn row(joint: usize, y_m: Option<f64>, force_n: f64) -> ConnectorRow {
-        ConnectorRow::force(joint, y_m, force_n)
-    }
-
-    #[test]
-    fn peaks_of_the_bridge_are_those_of_sums_and_the_first_of_equals() {
-        let connectors = [
-            row(2, None, -5.0),
-            row(2, Some(1.0), -9.0),
-            row(3, None, -5.0),
-            row(4, None, 0.0),
-        ];
-        let mut summary = Summary::default();
-        summary.take_peaks(&[], &connectors);
-        assert_eq!(
-            (summary.peak_compression_n, summary.peak_compression_joint),
-            (Some(5.0), Some(2))
-        );
-        assert_eq!((summary.peak_tension_n, summary.peak_tension_joint), (Some(0.0), None));
-    }
-
-    #[test]
-    fn a_peak_of_zero_has_no_time() {
-        let none = Extreme {
-            value: Some(0.0),
-            time_s: None,
-        };
-        assert_eq!(Extreme::at(0.0, 0.0), none);
-        assert_eq!(Extreme::at(0.1, 2.0).time_s, Some(2.0));
-    }
-
-    #[test]
-    fn a_record_is_read_back_without_loss() {
-        let extreme = Extreme {
-            value: Some(0.1 + 0.2),
-            time_s: Some(1.0 / 3.0),
-        };
-        let record = JobRecord {
-            job: 0,
-            failure: Some(Failure::new(FailureKind::NotFinite, "why").with("time_s", 0.1)),
-            retried: None,
-            summary: Summary {
-                peak_deflection_m: Some(1e-300),
-                ..Summary::default()
-            },
-            positions: vec![PositionRow {
-                position: 1,
-                x_m: 0.0,
-                deflection: extreme,
-                uplift: extreme,
-                static_deflection_m: None,
-                static_peak_deflection_m: Some(0.1),
-            }],
-            connectors: vec![row(2, None, -5.0)],
-            histories: HistoryRows {
-                time_s: vec![0.1],
-                balance_time_s: vec![0.05],
-                series: vec![HistorySeries {
-                    of: NumberPlace {
-                        quantity: "pin_x_n".to_owned(),
-                        position: Some(7),
-                        vehicle: None,
-                        axle: None,
-                        x_m: None,
-                        y_m: Some(0.5),
-                    },
-                    of_balance: true,
-                    values: vec![0.7],
-                }],
-            },
-            ..JobRecord::default()
-        };
-        let bytes = postcard::to_allocvec(&record).unwrap();
-        assert_eq!(postcard::from_bytes::<JobRecord>(&bytes).unwrap(), record);
-        // whatever its number was
-        let numbered = JobRecord { job: 3, ..record };
-        assert_eq!(postcard::to_allocvec(&numbered).unwrap(), bytes);
-    }
-}
+mod tests;

@@ -19,13 +19,13 @@ use crate::record::JobRecord;
 use CellKind::{Counts, Flags, Numbers, Texts, Words};
 use column::{
     at_peak, at_rest, centimetres, kilonewtons, measure, of_bank, of_body, of_connector, of_freeboard, of_job,
-    of_joint, of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, of_wheel, peak_card,
+    of_joint, of_limit, of_mode, of_pin, of_place, of_position, of_record, of_sample, of_section, of_wheel, peak_card,
     plain_card,
 };
 use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::BODY_QUANTITIES;
-use pontoon_plan::study_file::PeakColumn;
+use pontoon_plan::study_file::{Limit, PeakColumn};
 use serde_json::{Value, json};
 use std::borrow::Cow;
 
@@ -54,6 +54,19 @@ pub const COLUMNS: &[Column] = &[
     of_record("status", Words(&["ok", "failed"]), ("status", "what became of the job"), status).role(ColumnRole::State),
     of_record("reason", Texts, ("reason", "why the job failed, or a remark"), reason).role(ColumnRole::State),
     of_record("failure", Words(&FailureKind::WORDS), ("failure", "the kind of the failure"), |r| r.failure.as_ref().map(|failure| failure.kind.word()).into()).role(ColumnRole::State),
+    of_job("rated_value", Numbers, ("rated value", "the last value of the axis that is searched, in its unit, before the first at which a crossing exceeds a limit"), |r| r.summary.rated_value.into()).when(When::Rating).role(ColumnRole::Measure).in_summary()
+        .card(plain_card("largest rated value")),
+    of_job("first_failure", Numbers, ("first failure", "the first value at which a crossing exceeds a limit"), |r| r.summary.first_failure.into()).when(When::Rating).role(ColumnRole::Listed).in_summary(),
+    of_job("largest_pass", Numbers, ("largest pass", "the farthest value tried at which a crossing keeps all limits; beyond the first failure where the response is not monotone"), |r| r.summary.largest_pass.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("monotone", Flags, ("monotone", "whether no value tried beyond the first failure passes"), |r| r.summary.monotone.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("crossings", Counts, ("crossings", "crossings that the rating took"), |r| r.summary.crossings.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("spread", Numbers, ("spread", "by how much a ten-thousandth more or less load moves the utilisation of the rated value or of the first failure, as a share of it, the larger of both"), |r| r.summary.spread.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("chaotic", Flags, ("chaotic", "whether the spread is above 0.02"), |r| r.summary.chaotic.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("utilisation", Numbers, ("utilisation", "largest demand over what is allowed, of all limits; of a rating that of the rated value"), |r| r.summary.utilisation.into()).when(When::Limits).role(ColumnRole::Measure).drawn().in_summary()
+        .card(peak_card("largest utilisation", ("place", "governing_place"), Some("governing_time_s"))),
+    of_job("governing_limit", Words(&Limit::WORDS), ("governing limit", "the limit of which most is used up; of a rating the one that the first failure exceeds"), |r| r.summary.governing_limit.as_deref().into()).when(When::Limits).role(ColumnRole::Listed),
+    of_job("governing_place", Counts, ("governing place", "where: the position of an edge, an uplift or a roll, the module of a trim, the joint of a force or angle, the axle of a contact force"), |r| r.summary.governing_place.into()).when(When::Limits).role(ColumnRole::Listed),
+    of_job("governing_time_s", Numbers, ("governing time", "when"), |r| r.summary.governing_time_s.into()).unit("s").when(When::Limits).role(ColumnRole::Listed),
     measure("peak_deflection_m", "peak deflection", "largest deflection of any position", |r| r.summary.peak_deflection_m.into()).metres().drawn().in_summary()
         .card(peak_card("largest deflection", ("position", "peak_deflection_position"), Some("peak_deflection_time_s")))
         .curve(centimetres("Peak deflection")),
@@ -82,6 +95,7 @@ pub const COLUMNS: &[Column] = &[
     of_job("peak_bending_joint", Counts, ("peak bending joint", "its joint"), |r| r.summary.peak_bending_joint.into()).when(When::Sections),
     measure("peak_edge_deflection_m", "peak edge deflection", "largest deflection of the deck's edges", |r| r.summary.peak_edge_deflection_m.into()).metres().drawn(),
     measure("peak_roll_rad", "peak roll", "largest roll of a module end", |r| r.summary.peak_roll_rad.into()).unit("rad"),
+    of_job("peak_trim_rad", Numbers, ("peak trim", "largest trim of a module, either sense"), |r| r.summary.peak_trim_rad.into()).unit("rad").when(When::Crossing),
     measure("static_peak_deflection_m", "static peak deflection", "largest static deflection of any position while the same weight moves slowly over the bridge, without inertia, over the job's connection and gaps", |r| r.summary.static_peak_deflection_m.into()).metres().drawn(),
     measure("dynamic_amplification", "dynamic amplification", "peak deflection over static peak deflection", |r| r.summary.dynamic_amplification.into()).drawn()
         .card(plain_card("largest dynamic amplification")),
@@ -225,6 +239,14 @@ pub const COLUMNS: &[Column] = &[
     of_wheel("least_wheel_n", Numbers, ("smallest wheel force", "smallest force of the wheel on the deck, all its points on the bridge; 0 where it has left the deck"), |r| r.row.least.value.into()).newtons(),
     of_wheel("least_wheel_time_s", Numbers, ("smallest wheel force time", "its time"), |r| r.row.least.time_s.into()).unit("s"),
     of_wheel("contact_lost_s", Numbers, ("contact lost", "for how long it had left the deck, all its points on the bridge"), |r| r.row.lost_s.into()).unit("s"),
+
+    of_limit("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
+    of_limit("limit", Words(&Limit::WORDS), ("limit", "which limit, with its unit"), |r| r.row.limit.as_str().into()).role(ColumnRole::Key),
+    of_limit("demand", Numbers, ("demand", "what the crossing asks, in the unit of the limit; of a rating at the first failure"), |r| r.row.demand.value.into()),
+    of_limit("allowed", Numbers, ("allowed", "what is allowed"), |r| r.row.allowed.into()),
+    of_limit("utilisation", Numbers, ("utilisation", "demand over what is allowed; of a limit from below what is allowed over the demand, 1000 at most"), |r| r.row.utilisation.into()),
+    of_limit("place", Counts, ("place", "position, module, joint or axle of the demand"), |r| r.row.place.into()),
+    of_limit("time_s", Numbers, ("time", "when"), |r| r.row.demand.time_s.into()).unit("s"),
 
     of_body("job", Counts, ("job", "number of the job"), |r| r.job.into()).role(ColumnRole::Key),
     of_body("vehicle", Counts, ("vehicle", "number of the vehicle, from 1 in the order of the traffic"), |r| r.row.vehicle.into()).role(ColumnRole::Key),

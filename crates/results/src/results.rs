@@ -94,6 +94,7 @@ impl Results {
             Some("static") => Kind::Static,
             Some("modes") => Kind::Modes,
             Some("crossing") => Kind::Crossing,
+            Some("rating") => Kind::Rating,
             _ => return Err(damaged(&file, "no kind of its study")),
         };
         let (mut tables, mut on_disk) = (BTreeMap::new(), BTreeMap::new());

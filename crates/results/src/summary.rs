@@ -26,8 +26,8 @@ pub struct SummaryTable<'a> {
 /// What the rows hold beside the axes, in the order of jobs.
 #[derive(Debug, Clone)]
 enum Outcomes {
-    /// The peaks of each job, one job after the other; not a number where there is none.
-    Peaks(Vec<f64>),
+    /// Columns, and their numbers of each job, one job after the other; not a number where there is none.
+    Peaks(Vec<&'static Column>, Vec<f64>),
     /// Of each mode its job, number, frequency `[Hz]` and shape.
     Modes(Vec<(usize, usize, f64, String)>),
 }
@@ -53,8 +53,10 @@ impl<'a> SummaryLines<'a> {
             jobs,
             outcomes: match study.analysis.kind() {
                 Kind::Modes => Outcomes::Modes(Vec::new()),
-                Kind::Crossing | Kind::Static => {
-                    Outcomes::Peaks(Vec::with_capacity(jobs.len() * Column::of_summary().count()))
+                kind => {
+                    let columns: Vec<_> = Column::of_summary(kind, study.limits.is_some()).collect();
+                    let room = jobs.len() * columns.len();
+                    Outcomes::Peaks(columns, Vec::with_capacity(room))
                 }
             },
             taken: 0,
@@ -64,13 +66,13 @@ impl<'a> SummaryLines<'a> {
     /// Takes what it needs of the records of the next jobs.
     pub(super) fn append(&mut self, records: &[JobRecord]) {
         match &mut self.outcomes {
-            Outcomes::Peaks(peaks) => {
+            Outcomes::Peaks(columns, peaks) => {
                 let of = |record, column: &Column| match column.source {
                     ColumnSource::Job(of) => of(record).number().unwrap_or(f64::NAN),
                     _ => f64::NAN,
                 };
                 for record in records {
-                    peaks.extend(Column::of_summary().map(|column| of(record, column)));
+                    peaks.extend(columns.iter().map(|column| of(record, column)));
                 }
             }
             Outcomes::Modes(modes) => {
@@ -87,10 +89,10 @@ impl<'a> SummaryLines<'a> {
     /// they are. A job that failed has empty peaks.
     pub(super) fn summary(self) -> SummaryTable<'a> {
         let (axes, order, more): (_, _, Vec<&str>) = match &self.outcomes {
-            Outcomes::Peaks(peaks) => {
+            Outcomes::Peaks(columns, peaks) => {
                 let (against, others): (Vec<String>, Vec<String>) =
                     self.axes.into_iter().partition(|name| name == AGAINST);
-                let columns: Vec<&str> = Column::of_summary().map(|column| column.name).collect();
+                let columns: Vec<&str> = columns.iter().map(|column| column.name).collect();
                 let order = against_speed(&self.jobs[..peaks.len() / columns.len()], &others, &against);
                 ([others, against].concat(), order, columns)
             }
@@ -158,8 +160,8 @@ impl SummaryTable<'_> {
 
     fn row(&self, place: usize) -> Vec<Cell<'_>> {
         let (job, outcomes): (usize, Vec<Cell<'_>>) = match &self.outcomes {
-            Outcomes::Peaks(peaks) => {
-                let count = Column::of_summary().count();
+            Outcomes::Peaks(columns, peaks) => {
+                let count = columns.len();
                 let own = &peaks[place * count..(place + 1) * count];
                 let cell = |x: &f64| Some(*x).filter(|x| !x.is_nan()).into();
                 (place, own.iter().map(cell).collect())

@@ -47,11 +47,13 @@ pub enum TableName {
     Wheels,
     /// One row a motion of the body of a vehicle on springs of a job.
     Bodies,
+    /// One row a limit of a crossing.
+    Limits,
 }
 
 impl TableName {
     /// All tables.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Jobs,
         Self::Positions,
         Self::Connectors,
@@ -67,6 +69,7 @@ impl TableName {
         Self::Freeboards,
         Self::Wheels,
         Self::Bodies,
+        Self::Limits,
     ];
 
     /// Its name as files and references have it.
@@ -87,6 +90,7 @@ impl TableName {
             Self::Freeboards => "freeboards",
             Self::Wheels => "wheels",
             Self::Bodies => "bodies",
+            Self::Limits => "limits",
         }
     }
 

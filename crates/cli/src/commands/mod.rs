@@ -9,6 +9,7 @@ pub(crate) mod man;
 pub(crate) mod merge;
 pub(crate) mod modes;
 pub(crate) mod plan;
+pub(crate) mod rate;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod schema;

@@ -1,6 +1,6 @@
 //! `pontoon run`: a study to its tables.
 
-use crate::args::{Common, Format, RunArguments};
+use crate::args::{Common, Format, RateArguments, RunArguments};
 use crate::exit_status::ExitStatus;
 use crate::progress::ProgressDisplay;
 use crate::signals::Signals;
@@ -47,6 +47,33 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus
     let swept = sweep(&study, &jobs, &setting, &signals.stop, &watching);
     watching.finish();
     answer(&study, &swept?, &setting.out, reference.as_ref(), common)
+}
+
+/// Runs what is missing of a study for its table of classes; where its results are, and whether no job failed.
+pub(super) fn sweep_of(
+    study: &Study,
+    jobs: &[Job],
+    arguments: &RateArguments,
+    common: Common,
+) -> Result<(PathBuf, bool)> {
+    let signals = Signals::listen()?;
+    let setting = SweepSetting {
+        out: arguments
+            .out
+            .clone()
+            .unwrap_or_else(|| PathBuf::from("results").join(&study.name)),
+        threads: arguments.threads.map_or(0, usize::from),
+        cache: Cache::of_user(),
+        fresh: arguments.fresh,
+        commit: crate::commit::COMMIT.map(str::to_owned),
+        ..SweepSetting::default()
+    };
+    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &signals, None);
+    let swept = sweep(study, jobs, &setting, &signals.stop, &watching);
+    watching.finish();
+    let swept = swept?;
+    failures(&swept.outcome.failures);
+    Ok((setting.out.clone(), swept.outcome.failures.count == 0))
 }
 
 fn setting(arguments: &RunArguments, study: &Study) -> SweepSetting {

@@ -3,7 +3,7 @@
 //! Knows rows as they come, a million of them at no more than a few bytes each. Does not know how any of it is written.
 
 use pontoon_plan::input::Cell;
-use pontoon_results::{Column, Seen};
+use pontoon_results::{Column, Seen, TableName};
 use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -205,7 +205,10 @@ impl<'a> Survey<'a> {
 /// Places of the columns of peaks.
 pub(super) fn peaks_among(columns: &[String]) -> Vec<usize> {
     let place = |peak: &Column| columns.iter().position(|column| column == peak.name);
-    Column::of_summary().filter_map(place).collect()
+    Column::of_table(TableName::Jobs)
+        .filter(|column| column.in_summary)
+        .filter_map(place)
+        .collect()
 }
 
 /// How many combinations of some axes there are.

@@ -100,7 +100,8 @@ fn against(table: TableName) -> &'static [Against] {
         | TableName::Dead
         | TableName::Freeboards
         | TableName::Wheels
-        | TableName::Bodies => &[],
+        | TableName::Bodies
+        | TableName::Limits => &[],
     }
 }
 

@@ -79,6 +79,8 @@ pub enum JobAxis {
     WearSeed,
     /// Its vehicle, by name or file.
     Vehicle,
+    /// Type of the crossing.
+    CrossingType,
 }
 
 const fn job(axis: JobAxis, crossings: bool, statics: bool) -> Goes {
@@ -108,6 +110,12 @@ const fn numbers(name: &'static str, unit: &'static str, label: &'static str, go
         goes,
     }
 }
+
+/// Types of crossings, by name.
+pub const CROSSING_TYPES: [&str; 3] = ["normal", "caution", "risk"];
+
+/// Speeds of a normal crossing in a table of classes that states none `[m/s]`.
+pub const NORMAL_SPEEDS_M_S: [f64; 3] = [2.0, 4.0, 6.0];
 
 /// The axes that have a name of their own, in the order of their columns.
 pub const NAMED_AXES: &[NamedAxis] = &[
@@ -153,6 +161,13 @@ pub const NAMED_AXES: &[NamedAxis] = &[
         label: "vehicle",
         values: AxisValues::Names,
         goes: job(JobAxis::Vehicle, true, true),
+    },
+    NamedAxis {
+        name: "crossing_type",
+        unit: "",
+        label: "crossing type",
+        values: AxisValues::Words(&CROSSING_TYPES),
+        goes: job(JobAxis::CrossingType, true, false),
     },
 ];
 
@@ -272,7 +287,7 @@ pub struct Axis {
 
 impl Axis {
     /// The axis of a name that stands at `key`; `known` are the names to suggest for a name that is not known.
-    pub(super) fn read(file: &Path, key: &str, name: &str, known: &[String]) -> Result<Self, Refusal> {
+    pub(crate) fn read(file: &Path, key: &str, name: &str, known: &[String]) -> Result<Self, Refusal> {
         if name == "analysis.kind" {
             let found = FoundValue::from("the kind of the study as an axis");
             return Err(Refusal::new(file, key, found, "one kind a study").because(RefusalKind::Misplaced));
@@ -295,7 +310,7 @@ impl Axis {
     }
 
     /// Whether it sets what an axis of another name would set.
-    pub(super) fn sets_what(&self, name: &str) -> bool {
+    pub(crate) fn sets_what(&self, name: &str) -> bool {
         place(&self.name) == place(name)
     }
 }

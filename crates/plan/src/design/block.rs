@@ -31,6 +31,8 @@ pub struct Block {
     tests: Vec<Test>,
     /// Number of its points that meet the conditions.
     count: usize,
+    /// The axis along which a rating searches, which is none of its own.
+    pub searched: Option<Axis>,
 }
 
 /// One point: a value for each axis of its block.
@@ -41,6 +43,8 @@ pub struct DesignPoint<'a> {
     /// Its number among the points of the block, those included that conditions leave out.
     number: usize,
     values: Vec<Cell<'a>>,
+    /// The value of the axis that is searched.
+    searched: Option<Cell<'a>>,
 }
 
 impl<'a> DesignPoint<'a> {
@@ -54,7 +58,33 @@ impl<'a> DesignPoint<'a> {
 
     /// The axes with the point's values.
     pub fn values(&self) -> impl Iterator<Item = (&'a Axis, &Cell<'a>)> {
-        self.block.axes.iter().zip(&self.values)
+        let searched = self.block.searched.iter().zip(&self.searched);
+        self.block.axes.iter().zip(&self.values).chain(searched)
+    }
+
+    /// Where an axis stands in the study file.
+    pub fn path_of(&self, name: &str) -> String {
+        match &self.block.searched {
+            Some(axis) if axis.name == name => "find.between".to_owned(),
+            _ => format!("{}.{name}", self.key()),
+        }
+    }
+
+    /// The point at a value of the axis that is searched.
+    #[must_use]
+    pub fn at(&self, value: f64) -> Self {
+        Self {
+            searched: Some(value.into()),
+            ..self.clone()
+        }
+    }
+
+    /// Its number among the points of its block, and its values, to make it again.
+    pub fn owned(&self) -> (usize, Vec<Cell<'static>>) {
+        (
+            self.number,
+            self.values.iter().map(|value| value.clone().owned()).collect(),
+        )
     }
 
     /// The value of an axis that sets a number or word of the job.
@@ -107,7 +137,18 @@ impl Block {
             source,
             tests: Vec::new(),
             count,
+            searched: None,
         })
+    }
+
+    /// A point made again from its number and values.
+    pub fn point<'a>(&'a self, number: usize, values: &'a [Cell<'a>]) -> DesignPoint<'a> {
+        DesignPoint {
+            block: self,
+            number,
+            values: values.to_vec(),
+            searched: None,
+        }
     }
 
     /// Number of points.
@@ -128,6 +169,7 @@ impl Block {
             block: self,
             number,
             values,
+            searched: None,
         })
     }
 }

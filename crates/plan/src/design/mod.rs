@@ -15,7 +15,9 @@ mod sampling;
 mod tests;
 mod values;
 
-pub use axes::{Axis, AxisValues, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
+pub use axes::{
+    Axis, AxisValues, CROSSING_TYPES, Goes, JobAxis, NAMED_AXES, NORMAL_SPEEDS_M_S, NamedAxis, Root, Varies,
+};
 pub use block::{Block, DesignPoint};
 pub use cases::Cases;
 pub use condition::{Condition, Conditions, Relation};

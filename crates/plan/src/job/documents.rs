@@ -2,6 +2,7 @@
 //!
 //! Knows how an axis changes a document and shares what is equal. Does not know what a job asks of them.
 
+use super::crossing_type::CrossingType;
 use crate::design::{DesignPoint, JobAxis, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
 use crate::study_file::{Analysis, Study, WearSpec, at_home, filled_vehicle};
@@ -260,17 +261,21 @@ impl Documents {
         study: &Study,
         point: &DesignPoint<'_>,
         (bridge, vehicle): (&BridgeEntry, &VehicleEntry),
-        [load_n, speed_m_s]: [Option<f64>; 2],
+        ([load_n, speed_m_s], crossing_type): ([Option<f64>; 2], Option<CrossingType>),
     ) -> Result<Option<Arc<TrafficEntry>>, Refusal> {
         let changes = Changes::of(study, point, Root::Traffic);
-        if study.traffic == TrafficDesign::default() && changes.list.is_empty() {
+        if study.traffic == TrafficDesign::default() && changes.list.is_empty() && crossing_type.is_none() {
             return Ok(None);
         }
         let deck = Deck {
             length_m: bridge.design.length_m(),
             breadth_m: bridge.design.module.breadth_m,
         };
-        let changed = changes.applied(&study.traffic)?;
+        let mut changed = changes.applied(&study.traffic)?;
+        if let Some(of) = crossing_type {
+            let design = changed.get_or_insert_with(|| study.traffic.clone());
+            design.column = Some(of.column(&vehicle.vehicle, deck.length_m));
+        }
         let design = changed.as_ref().unwrap_or(&study.traffic);
         let of_study = StudyVehicle {
             design: &vehicle.design,
@@ -393,7 +398,7 @@ impl<'a> Changes<'a> {
         for (name, path, value) in &self.list {
             path.set(&mut document, value.value()).map_err(|obstacle| {
                 let allowed = format!("the path of a value in {}", self.root.described());
-                let path = format!("{}.{name}", self.point.key());
+                let path = self.point.path_of(name);
                 Refusal::new(self.file, path, obstacle.to_string(), allowed).because(RefusalKind::Misplaced)
             })?;
         }
@@ -418,7 +423,7 @@ impl<'a> Changes<'a> {
         let refused = DocumentPath::parse(&refusal.path);
         let at_axis = |(name, of, _): &(&str, &DocumentPath, &Cell<'_>)| {
             let rest = of.beyond(refused.as_ref()?)?;
-            Some(join(&format!("{block}.{name}"), &rest))
+            Some(join(&self.point.path_of(name), &rest))
         };
         if let Some(path) = self.list.iter().find_map(at_axis) {
             return Refusal { path, ..refusal };

@@ -2,17 +2,19 @@
 //!
 //! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a fingerprint a job.
 
+use super::candidates::RatingPoint;
+use super::crossing_type::CrossingType;
 use super::documents::{BridgeEntry, Documents, TrafficEntry, VehicleEntry, WearEntry};
 use super::seen::SeenJobs;
 use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
-use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, Study};
+use crate::study_file::{Allowed, Analysis, CrossingAnalysis, Find, ModelSpec, Study};
 use pontoon_core::analysis::crossing::CrossingSolver;
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{InvalidInput, bound};
 use pontoon_core::traffic::Driven;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
@@ -23,6 +25,8 @@ pub struct Jobs<'a> {
     seen: SeenJobs,
     /// Bridges whose size was checked, with their model.
     sized: HashSet<(usize, ModelSpec)>,
+    /// Limits by the bridge that has them.
+    limits: HashMap<usize, Arc<[Allowed]>>,
 }
 
 impl<'a> Jobs<'a> {
@@ -35,6 +39,19 @@ impl<'a> Jobs<'a> {
             documents: Documents::default(),
             seen: SeenJobs::with_room_for(study.points()),
             sized: HashSet::new(),
+            limits: HashMap::new(),
+        }
+    }
+
+    /// Of a study, to make jobs of points that are given.
+    pub(super) fn of_no_point(study: &'a Study) -> Self {
+        Self {
+            study,
+            points: Box::new(std::iter::empty()),
+            documents: Documents::default(),
+            seen: SeenJobs::with_room_for(0),
+            sized: HashSet::new(),
+            limits: HashMap::new(),
         }
     }
 }
@@ -45,7 +62,11 @@ impl Iterator for Jobs<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             let point = self.points.next()?;
-            match self.job(&point) {
+            let job = match &self.study.find {
+                None => self.job(&point),
+                Some(find) => self.rating(&point, find),
+            };
+            match job {
                 Ok(job) if self.seen.insert(&job.identity()) => return Some(Ok(job)),
                 Ok(_) => {}
                 Err(refusal) => return Some(Err(refusal)),
@@ -55,7 +76,41 @@ impl Iterator for Jobs<'_> {
 }
 
 impl Jobs<'_> {
-    fn job(&mut self, point: &DesignPoint<'_>) -> Result<Job, Refusal> {
+    /// The rating of a point: its crossing at the end where the limits are to hold, and that at the other end has to be one.
+    fn rating(&mut self, point: &DesignPoint<'_>, find: &Find) -> Result<Job, Refusal> {
+        let [holds, beyond] = find.ends();
+        self.job(&point.at(beyond))?;
+        let job = self.job(&point.at(holds))?;
+        let mut blocks = self.study.blocks.iter();
+        let (number, values) = point.owned();
+        let of = RatingPoint {
+            block: blocks.position(|block| std::ptr::eq(block, point.block)).unwrap_or(0),
+            number,
+            values,
+            search: find.key().into(),
+        };
+        Ok(Job {
+            rating: Some(Arc::new(of)),
+            ..job
+        })
+    }
+
+    /// The limits of a bridge.
+    fn limits(&mut self, bridge: &BridgeEntry) -> Result<Arc<[Allowed]>, Refusal> {
+        let Some(spec) = &self.study.limits else {
+            return Ok(Arc::from([]));
+        };
+        if let Some(known) = self.limits.get(&bridge.id) {
+            return Ok(Arc::clone(known));
+        }
+        let limits = spec.of(&bridge.design);
+        let limits: Arc<[Allowed]> = limits.map_err(|e| Refusal::of(&self.study.file, "limits", e))?.into();
+        self.limits.insert(bridge.id, Arc::clone(&limits));
+        Ok(limits)
+    }
+
+    /// The job of a point.
+    pub(super) fn job(&mut self, point: &DesignPoint<'_>) -> Result<Job, Refusal> {
         let bridge = self.documents.bridge(self.study, point)?;
         let vehicle = self.documents.vehicle(self.study, point, &bridge)?;
         let analysis = self.documents.analysis(self.study, point)?;
@@ -69,12 +124,15 @@ impl Jobs<'_> {
             let size = bridge.design.check_size(model.into());
             size.map_err(|refused| short.of_bridge(refused))?;
         }
-        let mut traffic = None;
+        let (mut traffic, mut crossing_type) = (None, None);
         let (task, connection, load_n) = match &analysis.analysis {
             Analysis::Crossing(crossing) => {
                 let connection = short.connection(&bridge)?;
-                let said = short.said()?;
-                traffic = self.documents.traffic(self.study, point, (&bridge, &vehicle), said)?;
+                crossing_type = short.crossing_type()?;
+                let mut said = short.said()?;
+                said[1] = crossing_type.and_then(CrossingType::speed_m_s).or(said[1]);
+                let asked = (said, crossing_type);
+                traffic = self.documents.traffic(self.study, point, (&bridge, &vehicle), asked)?;
                 let (load_n, speed_m_s) = match &traffic {
                     Some(entry) => {
                         let most = |of: fn(&Driven) -> f64| entry.traffic.vehicles.iter().map(of).fold(0.0, f64::max);
@@ -99,6 +157,7 @@ impl Jobs<'_> {
                 (Task::Modes, Connection::Linear, 0.0)
             }
         };
+        let limits = self.limits(&bridge)?;
         let worn = self.documents.wear(self.study, point)?;
         let worn = short.worn(worn, connection, &bridge)?;
         let job = Job {
@@ -109,12 +168,15 @@ impl Jobs<'_> {
                 .and_then(|cell| cell.word())
                 .map(Arc::from),
             vehicle,
+            crossing_type,
             traffic,
             analysis,
             connection,
             load_n,
             worn,
             record: Arc::clone(&self.study.record),
+            limits,
+            rating: None,
             task,
         };
         if let Some(crossing) = job.as_crossing().filter(|_| !job.record.histories.vehicles.is_empty()) {
@@ -146,15 +208,15 @@ impl Short<'_> {
     }
 
     fn path(&self, axis: JobAxis) -> String {
-        format!("{}.{}", self.point.key(), name(axis))
+        self.point.path_of(name(axis))
     }
 
     /// Where a path was set: at its axis, or in the study itself.
     fn path_or(&self, path: &str) -> String {
         let varies = Varies::of(path);
-        let mut axes = self.point.block.axes.iter();
+        let mut axes = self.point.block.axes.iter().chain(&self.point.block.searched);
         match axes.find(|axis| Some(&axis.varies) == varies.as_ref()) {
-            Some(axis) => format!("{}.{}", self.point.key(), axis.name),
+            Some(axis) => self.point.path_of(&axis.name),
             None => path.to_owned(),
         }
     }
@@ -208,6 +270,33 @@ impl Short<'_> {
             (None, Some(own)) => Ok(own),
             _ => self.positive(JobAxis::Load, self.required(JobAxis::Load)?),
         }
+    }
+
+    /// The type of the crossing, where an axis has it.
+    fn crossing_type(&self) -> Result<Option<CrossingType>, Refusal> {
+        let Some(cell) = self.value(JobAxis::CrossingType) else {
+            return Ok(None);
+        };
+        let path = || self.path(JobAxis::CrossingType);
+        let Some(word) = cell.word() else {
+            let refused = Refusal::new(&self.study.file, path(), &cell.value(), CrossingType::WORDS.join(", "));
+            return Err(refused.because(RefusalKind::WrongType));
+        };
+        let known = CrossingType::WORDS.map(str::to_owned);
+        let unknown = || Refusal::unknown(&self.study.file, path(), word, &known);
+        let found = CrossingType::of(word).ok_or_else(unknown)?;
+        let traffic = &self.study.traffic;
+        for (key, is_given) in [
+            ("traffic", traffic.traffic.is_some()),
+            ("column", traffic.column.is_some()),
+        ] {
+            if is_given {
+                let found = FoundValue::value(word).which(format!("which makes a column of its own, beside a {key}"));
+                let refused = Refusal::new(&self.study.file, path(), found, format!("no {key} beside it"));
+                return Err(refused.because(RefusalKind::Conflict));
+            }
+        }
+        Ok(Some(found))
     }
 
     /// Weight and speed as far as axes say them.

@@ -88,6 +88,15 @@ pub(super) fn key_of(job: &Job) -> JobKey {
         hasher.update(b"water level");
         hasher.update(&level_m.to_bits().to_le_bytes());
     }
+    // a crossing without limits is known as it was before there were any
+    for of in &*job.limits {
+        hasher.update(of.limit.word().as_bytes());
+        hasher.update(&of.allowed.to_bits().to_le_bytes());
+        hasher.update(&of.beside.to_bits().to_le_bytes());
+    }
+    if let Some(rating) = &job.rating {
+        hasher.update(rating.search.as_bytes());
+    }
     let mut number = |x: f64| {
         hasher.update(&(x + 0.0).to_bits().to_le_bytes());
     };

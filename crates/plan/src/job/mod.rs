@@ -5,6 +5,8 @@
 //! | `documents` | a point's bridge, vehicle and analysis, equal ones shared |
 //! | `doubts` | numbers that look as if they were in another unit |
 //! | `jobs` | the jobs of a study, one after the other |
+//! | `crossing_type` | which spacing, speed and lane vehicles keep |
+//! | `candidates` | the crossings that a rating tries |
 //! | `seen` | which jobs were there before |
 //! | `key` | what a job is known by from run to run |
 //! | `springs` | what of a crossing rides on springs |
@@ -13,6 +15,8 @@
 //!
 //! Knows every check that a single job needs. Does not run anything and writes nothing.
 
+mod candidates;
+mod crossing_type;
 mod documents;
 mod doubts;
 mod jobs;
@@ -22,6 +26,8 @@ mod seen;
 mod shard;
 mod springs;
 
+pub use candidates::{Candidates, RatingPoint};
+pub use crossing_type::CrossingType;
 pub use documents::{AnalysisEntry, BridgeEntry, TrafficEntry, VehicleEntry, WearEntry};
 pub use doubts::Doubts;
 pub use jobs::Jobs;
@@ -32,7 +38,9 @@ pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word, has_springs, on_
 
 use crate::design::{JobAxis, Root, Varies};
 use crate::input::Cell;
-use crate::study_file::{Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, RecordSpec, Solver, VerifySpec};
+use crate::study_file::{
+    Allowed, Analysis, CrossingAnalysis, ModelSpec, ModesAnalysis, RecordSpec, Solver, VerifySpec,
+};
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver};
 use pontoon_core::analysis::modes::Rayleigh;
 use pontoon_core::bridge::JointGaps;
@@ -54,6 +62,8 @@ pub struct Job {
     pub vehicle: Arc<VehicleEntry>,
     /// The name or file of that vehicle, where an axis has it.
     pub vehicle_name: Option<Arc<str>>,
+    /// The type of the crossing, where an axis has it.
+    pub crossing_type: Option<CrossingType>,
     /// Its traffic and road; none where that vehicle crosses a level road alone.
     pub traffic: Option<Arc<TrafficEntry>>,
     /// Its analysis.
@@ -66,6 +76,10 @@ pub struct Job {
     pub worn: Option<Worn>,
     /// What is kept of it beyond its peaks.
     pub record: Arc<RecordSpec>,
+    /// How far its bridge may go; nothing where no limits are stated.
+    pub limits: Arc<[Allowed]>,
+    /// Of a rating where its crossings come from: the job itself is the crossing at the end where the limits are to hold.
+    pub rating: Option<Arc<RatingPoint>>,
     /// What is asked.
     pub task: Task,
 }
@@ -388,6 +402,7 @@ impl Job {
             }
             (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),
             (JobAxis::Vehicle, _) => self.vehicle_name.as_deref().map_or(Cell::Nothing, Cell::from),
+            (JobAxis::CrossingType, _) => self.crossing_type.map(CrossingType::word).into(),
             (JobAxis::LoadPosition, Task::Static(load)) => load.position.into(),
             (JobAxis::LoadPlace, Task::Static(load)) => load.x_m.into(),
             (JobAxis::WearSeed, _) => self.worn.as_ref().map(|worn| worn.seed as usize).into(),

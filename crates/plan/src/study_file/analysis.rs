@@ -8,7 +8,7 @@ use pontoon_core::input::{InvalidInput, Problem, not_negative, positive, within}
 /// What is asked of the bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Analysis {
-    /// A vehicle crosses at constant speed.
+    /// Vehicles cross, once or for a rating.
     Crossing(CrossingAnalysis),
     /// A vehicle stands still.
     Static(StaticAnalysis),
@@ -19,6 +19,8 @@ pub enum Analysis {
 /// How a crossing is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossingAnalysis {
+    /// Whether it is searched for a rating.
+    pub is_rating: bool,
     /// Model of the modules.
     pub model: ModelSpec,
     /// Length of the time steps.
@@ -135,8 +137,8 @@ impl Analysis {
                 let supports = written.supports.unwrap_or(false);
                 Ok(Self::Modes(ModesAnalysis { model, count, supports }))
             }
-            Kind::Crossing => {
-                has_none_of_modes(written, "no key of modes in a study of crossings")?;
+            Kind::Crossing | Kind::Rating => {
+                has_none_of_modes(written, "no key of modes in a study of crossings or ratings")?;
                 crossing(written).map(Self::Crossing)
             }
         }
@@ -197,6 +199,7 @@ impl Analysis {
     /// What kind it is of.
     pub fn kind(&self) -> Kind {
         match self {
+            Self::Crossing(crossing) if crossing.is_rating => Kind::Rating,
             Self::Crossing(_) => Kind::Crossing,
             Self::Static(_) => Kind::Static,
             Self::Modes(_) => Kind::Modes,
@@ -256,6 +259,13 @@ fn has_none_of_modes(written: &AnalysisSpec, allowed: &str) -> Result<(), Invali
 fn crossing(written: &AnalysisSpec) -> Result<CrossingAnalysis, InvalidInput> {
     let time_step = time_step(written)?;
     let solver = solver(written, time_step)?;
+    let is_rating = written.kind == Kind::Rating;
+    let verified = [("verify", is_rating && written.verify.is_some())];
+    none_of(
+        &verified,
+        "a verification",
+        "none in a study of ratings: the reference solver rates too",
+    )?;
     let tail_s = not_negative("tail_s", written.tail_s.unwrap_or(6.0))?;
     let spectral_radius = within("spectral_radius", written.spectral_radius.unwrap_or(0.9), 0.0, 1.0)?;
     let newton_limit = whole("newton_limit", written.newton_limit.unwrap_or(30), 1, 1000)?;
@@ -273,6 +283,7 @@ fn crossing(written: &AnalysisSpec) -> Result<CrossingAnalysis, InvalidInput> {
         }
     }
     Ok(CrossingAnalysis {
+        is_rating,
         model: written.model,
         time_step,
         tail_s,

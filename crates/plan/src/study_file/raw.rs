@@ -3,6 +3,8 @@
 //! Knows what a person may write. Does not know ranges or which keys go together: `analysis` and `study` make of this what a
 //! run is asked.
 
+use super::find::FindSpec;
+use super::limits::LimitsSpec;
 use super::record::RecordSpec;
 use super::wear::WearSpec;
 use crate::design::Design;
@@ -51,6 +53,12 @@ pub struct StudySpec {
     /// How the gaps of joints scatter, drawn from the axis `wear_seed`.
     #[serde(default)]
     pub wear: Option<WearSpec>,
+    /// How far the bridge may go in a crossing: each crossing then tells how much of that it uses up.
+    #[serde(default)]
+    pub limits: Option<LimitsSpec>,
+    /// What a rating searches. A key of ratings.
+    #[serde(default)]
+    pub find: Option<FindSpec>,
     /// The designs, united in order; equal jobs run once.
     #[schemars(length(min = 1))]
     pub design: Vec<Design>,
@@ -80,6 +88,15 @@ pub enum Kind {
     Static,
     /// The bridge oscillates by itself, linearly connected: natural frequencies and the names of their shapes.
     Modes,
+    /// The largest or smallest value of an axis at which a crossing keeps all limits.
+    Rating,
+}
+
+impl Kind {
+    /// Whether vehicles cross.
+    pub fn has_crossings(self) -> bool {
+        matches!(self, Self::Crossing | Self::Rating)
+    }
 }
 
 /// Which solver integrates a crossing.

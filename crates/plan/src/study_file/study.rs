@@ -3,16 +3,19 @@
 //! Knows files. Does not know jobs: what holds for a single point is checked where jobs are made.
 
 use super::analysis::Analysis;
+use super::find::Find;
+use super::limits::LimitsSpec;
+use super::rated::rated;
 use super::raw::{AnalysisSpec, Kind, StudySpec};
 use super::record::RecordSpec;
 use super::vehicle_files::{VehicleFile, at_home, with_vehicle_files};
 use super::wear::WearSpec;
-use crate::design::{Block, Goes, JobAxis, NAMED_AXES, Varies};
+use crate::design::{Axis, Block, Goes, JobAxis, NAMED_AXES, Varies};
 use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::traffic::TrafficDesign;
 use pontoon_core::vehicle::VehicleDesign;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -72,6 +75,10 @@ pub struct Study {
     pub(crate) analysis_written: AnalysisSpec,
     /// How the gaps of joints scatter before axes, where they do.
     pub wear: Option<WearSpec>,
+    /// How far the bridge may go, where limits are stated.
+    pub limits: Option<LimitsSpec>,
+    /// What a rating searches; none of a study of another kind.
+    pub find: Option<Find>,
     /// What to keep of each job beyond its peaks.
     pub record: Arc<RecordSpec>,
     /// Seeds of its designs, in the order of the file.
@@ -88,12 +95,25 @@ impl Study {
     /// # Errors
     /// [`Refusal`] of what is wrong with the files apart from single points.
     pub fn open(path: &Path) -> Result<Self, Refusal> {
+        Self::opened(path, |_, document| Ok(document))
+    }
+
+    /// Opens a study as a table of classes asks it: with all types of crossings where its designs have none, and the speeds of
+    /// normal ones; nothing is searched.
+    ///
+    /// # Errors
+    /// [`Refusal`] as [`Self::open`], of no limits, and of a design that is no grid.
+    pub fn open_rated(path: &Path) -> Result<Self, Refusal> {
+        Self::opened(path, |file, document| rated(file, &document))
+    }
+
+    fn opened(path: &Path, amend: impl FnOnce(&Path, Document) -> Result<Document, Refusal>) -> Result<Self, Refusal> {
         let file = if path.is_dir() {
             path.join("study.json")
         } else {
             path.to_owned()
         };
-        let (document, vehicle_files) = with_vehicle_files(&file, Document::read(&file)?)?;
+        let (document, vehicle_files) = with_vehicle_files(&file, amend(&file, Document::read(&file)?)?)?;
         let spec: StudySpec = typed(&file, "", &document)?;
         let bridge_path = file.parent().unwrap_or(Path::new("")).join(&spec.bridge);
         if !bridge_path.is_file() {
@@ -151,30 +171,59 @@ impl Study {
             }
         }
         let traffic = spec.traffic();
-        if analysis.kind() != Kind::Crossing {
+        if !analysis.kind().has_crossings() {
             let given = [
                 ("traffic", traffic.traffic.is_some()),
                 ("column", traffic.column.is_some()),
                 ("roughness", traffic.roughness.is_some()),
+                ("limits", spec.limits.is_some()),
             ];
             if let Some((key, _)) = given.iter().find(|(_, is)| *is) {
-                let refused = Refusal::new(&file, *key, format!("a {key}"), "none but in a study of crossings");
+                let refused = Refusal::new(
+                    &file,
+                    *key,
+                    format!("a {key}"),
+                    "none but in a study of crossings or ratings",
+                );
                 return Err(refused.because(RefusalKind::Misplaced));
             }
         }
+        if let Some(limits) = &spec.limits {
+            limits.of(&bridge.design).map_err(|e| Refusal::of(&file, "limits", e))?;
+        }
         let mut known: Vec<String> = NAMED_AXES.iter().map(|axis| axis.name.to_owned()).collect();
+        let mut documents = Map::new();
         for (root, value) in [
             ("bridge", to_value(&bridge.design)),
             ("vehicle", to_value(&vehicle)),
             ("analysis", to_value(&analysis.written())),
             ("wear", to_value(&spec.wear)),
         ] {
-            leaves(root, &value, &mut known);
+            documents.insert(root.to_owned(), value);
         }
         if let Value::Object(keys) = to_value(&traffic) {
-            keys.iter().for_each(|(key, value)| leaves(key, value, &mut known));
+            documents.extend(keys);
         }
-        let blocks = Block::read(&file, &spec.design, &known)?;
+        documents.iter().for_each(|(key, value)| leaves(key, value, &mut known));
+        let mut blocks = Block::read(&file, &spec.design, &known)?;
+        let varied: Vec<&Axis> = blocks.iter().flat_map(|block| &block.axes).collect();
+        let find = match (&spec.find, analysis.kind()) {
+            (Some(find), Kind::Rating) => Some(find.read(&file, &known, &Value::Object(documents), &varied)?),
+            (None, Kind::Rating) => return Err(Refusal::missing(&file, "find")),
+            (Some(_), _) => {
+                let refused = Refusal::new(&file, "find", "a search", "none but in a study of kind rating");
+                return Err(refused.because(RefusalKind::Misplaced));
+            }
+            (None, _) => None,
+        };
+        if let Some(find) = &find {
+            if spec.limits.is_none() {
+                return Err(Refusal::missing(&file, "limits"));
+            }
+            blocks
+                .iter_mut()
+                .for_each(|block| block.searched = Some(find.axis.clone()));
+        }
         let drawn = spec
             .design
             .iter()
@@ -192,16 +241,18 @@ impl Study {
             analysis_written: spec.analysis,
             analysis,
             wear: spec.wear,
+            limits: spec.limits,
+            find,
             record: Arc::new(spec.record),
             bridge,
             blocks,
         })
     }
 
-    /// Whether an axis names vehicles.
-    fn varies_vehicle(&self) -> bool {
+    /// Whether an axis sets a number or word of the job.
+    fn varies(&self, of: JobAxis) -> bool {
         let mut axes = self.blocks.iter().flat_map(|block| &block.axes);
-        axes.any(|axis| axis.varies == Varies::Job(JobAxis::Vehicle))
+        axes.any(|axis| axis.varies == Varies::Job(of))
     }
 
     /// Number of points of all designs, equal ones counted as often as they occur.
@@ -223,14 +274,18 @@ impl Study {
             ) => self.wear.is_some(),
             (
                 Goes::Job {
-                    axis: JobAxis::Vehicle, ..
+                    axis: axis @ (JobAxis::Vehicle | JobAxis::CrossingType),
+                    ..
                 },
                 _,
-            ) => self.varies_vehicle(),
-            (Goes::Job { crossings, .. }, Kind::Crossing) => crossings,
+            ) => self.varies(axis),
+            (Goes::Job { crossings, .. }, Kind::Crossing | Kind::Rating) => crossings,
             (Goes::Job { statics, .. }, Kind::Static) => statics,
             _ => false,
         });
+        // what is searched has a column of its own
+        let searched = self.find.as_ref().map(|find| &find.axis);
+        let own = own.filter(|axis| searched.is_none_or(|searched| !searched.sets_what(axis.name)));
         let mut names: Vec<String> = own.map(|axis| axis.name.to_owned()).collect();
         for axis in self.blocks.iter().flat_map(|block| &block.axes) {
             if matches!(axis.varies, Varies::Path(..)) && !names.contains(&axis.name) {

@@ -4,6 +4,7 @@
 
 use super::COLUMNS;
 use crate::arrays::CellKind;
+use crate::limit_rows::LimitRow;
 use crate::record::{
     AtPeakRow, BankRow, ConnectorRow, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow,
 };
@@ -11,6 +12,7 @@ use crate::rest_rows::{DeadRow, FreeboardRow};
 use crate::table::TableName;
 use crate::vehicle_rows::{BodyRow, WheelRow};
 use pontoon_plan::input::Cell;
+use pontoon_plan::study_file::Kind;
 use serde::Serialize;
 
 /// A column of a table.
@@ -85,6 +87,8 @@ pub(crate) enum ColumnSource {
     Wheel(fn(&RowOf<'_, WheelRow>) -> Cell<'static>),
     /// A motion of a body.
     Body(for<'a> fn(&RowOf<'a, BodyRow>) -> Cell<'a>),
+    /// A limit.
+    Limit(for<'a> fn(&RowOf<'a, LimitRow>) -> Cell<'a>),
     /// A worn joint.
     Joint(fn(&JointRow) -> Cell<'static>),
 }
@@ -152,6 +156,10 @@ pub enum When {
     PinHistories,
     /// Where any job has a vehicle on springs.
     Springs,
+    /// Where limits are stated.
+    Limits,
+    /// In studies of ratings.
+    Rating,
     /// Where histories of vehicles are recorded.
     VehicleHistories,
 }
@@ -353,6 +361,7 @@ entries! {
     at_rest: Dead, Dead(for<'a> fn(&RowOf<'a, DeadRow>) -> Cell<'a>);
     of_freeboard: Freeboards, Freeboard(fn(&RowOf<'_, FreeboardRow>) -> Cell<'static>);
     of_wheel: Wheels, Wheel(fn(&RowOf<'_, WheelRow>) -> Cell<'static>);
+    of_limit: Limits, Limit(for<'a> fn(&RowOf<'a, LimitRow>) -> Cell<'a>);
     of_body: Bodies, Body(for<'a> fn(&RowOf<'a, BodyRow>) -> Cell<'a>);
 }
 
@@ -423,8 +432,15 @@ impl Column {
         Self::of_table(TableName::Jobs).filter(|column| column.role == ColumnRole::Measure)
     }
 
-    /// The peaks that a summary of crossings or static cases has.
-    pub fn of_summary() -> impl Iterator<Item = &'static Self> {
-        Self::of_table(TableName::Jobs).filter(|column| column.in_summary)
+    /// The numbers that a summary of crossings, ratings or static cases has: what limits ask of first.
+    pub fn of_summary(kind: Kind, has_limits: bool) -> impl Iterator<Item = &'static Self> {
+        let shown = move |column: &&Self| match column.when {
+            When::Limits => has_limits,
+            When::Rating => kind == Kind::Rating,
+            _ => true,
+        };
+        Self::of_table(TableName::Jobs)
+            .filter(|column| column.in_summary)
+            .filter(shown)
     }
 }

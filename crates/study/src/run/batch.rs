@@ -4,9 +4,10 @@
 //! not know how a study is cut into batches nor what becomes of the records.
 
 use super::crossing::JobResult;
+use super::demands::record_for;
 use super::failure::JobFailure;
 use super::shared_models::SharedModels;
-use super::{crossing, guard, modes, statics, verify};
+use super::{crossing, guard, modes, rating, statics, verify};
 use pontoon_core::response::Record;
 use pontoon_journal::LONGEST;
 use pontoon_plan::job::{CrossingJob, Job, Task};
@@ -74,7 +75,7 @@ fn lane_batches(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
     let mut lane_batches = Vec::new();
     let mut operated: BTreeMap<_, Vec<usize>> = BTreeMap::new();
     for (place, (_, job)) in jobs.iter().enumerate() {
-        let crossing = job.as_crossing();
+        let crossing = job.as_crossing().filter(|_| job.rating.is_none());
         match crossing.as_ref().and_then(SharedModels::lane_batch_key) {
             Some(key) => operated.entry(key).or_default().push(place),
             None => lane_batches.push(vec![place]),
@@ -95,7 +96,7 @@ fn records(jobs: &[(&Study, &Job)], places: &[usize], models: &SharedModels) -> 
     let of: Vec<(&Study, &Job)> = places.iter().map(|&place| jobs[place]).collect();
     let lane_batch: Vec<(CrossingJob<'_>, Record)> = of
         .iter()
-        .filter(|(_, job)| job.by_operator())
+        .filter(|(_, job)| job.by_operator() && job.rating.is_none())
         .filter_map(|(study, job)| Some((job.as_crossing()?, histories(study, job))))
         .collect();
     let solved: Vec<JobResult> = if lane_batch.len() == of.len() {
@@ -126,6 +127,9 @@ fn by_operator(lane_batch: &[(CrossingJob<'_>, Record)], models: &SharedModels) 
 
 /// A job that shares nothing of its solution with others.
 fn alone(study: &Study, job: &Job, models: &SharedModels) -> JobResult {
+    if job.rating.is_some() {
+        return rating::solve(study, job, models);
+    }
     match (job.task, job.as_crossing(), job.as_modes()) {
         (Task::Crossing { .. }, Some(crossing), _) => crossing::solve(&crossing, histories(study, job), models),
         (Task::Static(load), ..) => statics::solve(job, load, models),
@@ -137,7 +141,7 @@ fn alone(study: &Study, job: &Job, models: &SharedModels) -> JobResult {
 /// The record of a job: solved once more where that may help, judged, without rows that no table will hold.
 fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) -> JobRecord {
     let solved = match (solved, job.as_crossing()) {
-        (Err(failed), Some(crossing)) if failed.half_step_may_help => {
+        (Err(failed), Some(crossing)) if failed.half_step_may_help && job.rating.is_none() => {
             guard::guarded(|| crossing::again_at_half_step(&crossing, histories(study, job), models, &failed))
         }
         (solved, _) => solved,
@@ -162,7 +166,11 @@ fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) 
 
 fn histories(study: &Study, job: &Job) -> Record {
     match job.as_crossing() {
-        Some(crossing) => study.record.of_crossing(&job.bridge.design, &crossing.traffic()),
+        Some(crossing) => {
+            let mut record = study.record.of_crossing(&job.bridge.design, &crossing.traffic());
+            record_for(&job.limits, &mut record);
+            record
+        }
         None => study.record.of_bridge(&job.bridge.design),
     }
 }

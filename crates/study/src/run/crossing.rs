@@ -4,6 +4,7 @@
 //! columns, or how a crossing is stepped.
 
 use super::dead_rows::{dead_rows, freeboard_rows, lowest};
+use super::demands::Demands;
 use super::failure::{JobFailure, too_many_steps};
 use super::joint_rows::Rounding;
 use super::quantity_words::quantity_word;
@@ -24,15 +25,14 @@ use pontoon_results::{
     AtPeakRow, BankRow, BodyRow, ConnectorRow, Extreme, Failure, FailureKind, HistoryRows, HistorySeries, JobRecord,
     NumberPlace, PinRow, PlaceRow, PositionRow, SectionRow, Summary, WheelRow,
 };
+use std::sync::Arc;
 
 /// A job's record or why it failed.
 pub(super) type JobResult = Result<JobRecord, JobFailure>;
 
 /// Solves a crossing by the reference solver.
 pub(super) fn solve(crossing: &CrossingJob<'_>, record: Record, models: &SharedModels) -> JobResult {
-    let solver = models.crossing(crossing)?;
-    let input = crossing.input(record, models.dead(crossing.job)?);
-    let response = solver.solve(&crossing.traffic(), &input)?;
+    let (response, _) = integrated(crossing, record, models)?;
     recorded(crossing, response, models)
 }
 
@@ -67,6 +67,21 @@ pub(super) fn again_at_half_step(
 
 /// Solves crossings that share a solver by the operator.
 pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models: &SharedModels) -> Vec<JobResult> {
+    let answers = operated(lane_batch, models).into_iter();
+    let record = |((crossing, _), answer): (&(CrossingJob<'_>, Record), Result<SteppedResponse, JobFailure>)| {
+        let (response, time_step_s) = answer?;
+        let mut record = recorded(crossing, response, models)?;
+        record.summary.time_step_s = time_step_s;
+        Ok(record)
+    };
+    lane_batch.iter().zip(answers).map(record).collect()
+}
+
+/// The responses of crossings that share a solver, by the operator.
+pub(super) fn operated(
+    lane_batch: &[(CrossingJob<'_>, Record)],
+    models: &SharedModels,
+) -> Vec<Result<SteppedResponse, JobFailure>> {
     let Some((first, _)) = lane_batch.first() else {
         return Vec::new();
     };
@@ -103,20 +118,28 @@ pub(super) fn solve_lane_batch(lane_batch: &[(CrossingJob<'_>, Record)], models:
         }
     };
     let mut answers = answers.into_iter();
-    let record = |((crossing, _), input): (&(CrossingJob<'_>, Record), &Result<Crossing, JobFailure>)| {
-        input.as_ref().map_err(Clone::clone)?;
-        let (response, time_step_s) = answers
+    let answer = |input: Result<Crossing, JobFailure>| {
+        input?;
+        answers
             .next()
-            .unwrap_or_else(|| Err(JobFailure::of_program("no answer")))?;
-        let mut record = recorded(crossing, response, models)?;
-        record.summary.time_step_s = time_step_s;
-        Ok(record)
+            .unwrap_or_else(|| Err(JobFailure::of_program("no answer")))
     };
-    lane_batch.iter().zip(&inputs).map(record).collect()
+    inputs.into_iter().map(answer).collect()
+}
+
+/// The response of a crossing by the reference solver.
+pub(super) fn integrated(
+    crossing: &CrossingJob<'_>,
+    record: Record,
+    models: &SharedModels,
+) -> Result<SteppedResponse, JobFailure> {
+    let solver = models.crossing(crossing)?;
+    let input = crossing.input(record, models.dead(crossing.job)?);
+    Ok((solver.solve(&crossing.traffic(), &input)?, None))
 }
 
 /// A response and the time step that the program has found for it.
-type SteppedResponse = (CrossingResponse, Option<f64>);
+pub(super) type SteppedResponse = (CrossingResponse, Option<f64>);
 
 /// Solves crossings at half the time step again and again, each until its peak force has settled: the last halving changed
 /// it by no more than half the tolerance and the one before by no more than the tolerance. One small change alone may be
@@ -196,8 +219,18 @@ fn peak_force_n(response: &CrossingResponse) -> f64 {
 }
 
 fn recorded(crossing: &CrossingJob<'_>, response: CrossingResponse, models: &SharedModels) -> JobResult {
+    let static_peaks_m = models.creeping_peaks_m(crossing.job)?;
+    recorded_beside(crossing, response, static_peaks_m, models)
+}
+
+/// The record of a crossing beside what the same load does creeping.
+pub(super) fn recorded_beside(
+    crossing: &CrossingJob<'_>,
+    response: CrossingResponse,
+    static_peaks_m: Option<Arc<Vec<f64>>>,
+    models: &SharedModels,
+) -> JobResult {
     let job = crossing.job;
-    let static_peaks_m = models.creeping_peaks_m(job)?;
     let mut record = rows(
         (job, &crossing.traffic()),
         response,
@@ -254,10 +287,25 @@ fn rows(
         .collect();
     let connectors: Vec<ConnectorRow> = response.joints.iter().flat_map(joint_rows).collect();
     let rounding = Rounding::of_peaks(&response.pins);
-    let pins = response.pins.iter().filter(|_| job.record.pins);
-    let pins: Vec<PinRow> = pins.map(|pin| rounding.pin_row(pin)).collect();
+    let mut pins: Vec<PinRow> = response.pins.iter().map(|pin| rounding.pin_row(pin)).collect();
     let sections = response.recorded.sections.iter();
-    let sections: Vec<SectionRow> = sections.map(|section| rounding.section_row(section)).collect();
+    let mut sections: Vec<SectionRow> = sections.map(|section| rounding.section_row(section)).collect();
+    let demands = Demands {
+        positions: &positions,
+        connectors: &connectors,
+        pins: &pins,
+        sections: &sections,
+        response: &response,
+        dead,
+    };
+    let limits = demands.limit_rows(&job.limits);
+    // what limits alone have asked for
+    if !job.record.pins {
+        pins.clear();
+    }
+    if !job.record.sections {
+        sections.clear();
+    }
     let named = Named {
         design: &job.bridge.design,
         traffic,
@@ -265,13 +313,14 @@ fn rows(
     };
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
     let mut summary = Summary {
-        peak_edge_deflection_m: Some(response.peak_edge_deflection_m),
-        peak_roll_rad: Some(response.peak_roll_rad),
+        peak_edge_deflection_m: Some(response.peak_edge.value),
+        peak_roll_rad: Some(response.peak_roll.value),
+        peak_trim_rad: Some(response.peak_trim.value),
         static_peak_deflection_m: static_peak_m,
         bottom_emerged: response.bottom_emerged,
         deck_submerged: response.deck_submerged,
         contact_lost_s: response.recorded.contact_lost_s,
-        min_contact_force_n: Some(response.min_contact_force_n).filter(|force| force.is_finite()),
+        min_contact_force_n: Some(response.least_contact.force_n).filter(|force| force.is_finite()),
         steps: Some(response.statistics.steps),
         newton_iterations: Some(response.statistics.newton_iterations),
         contact_switches: Some(response.statistics.contact_switches),
@@ -281,6 +330,7 @@ fn rows(
     };
     summary.take_peaks(&positions, &connectors);
     summary.take_joint_peaks(&pins, &sections);
+    summary.take_limits(&limits);
     let freeboards = freeboard_rows(job, dead, &lowest(&response.recorded.corners));
     summary.take_freeboards(&freeboards);
     summary.dynamic_amplification = summary
@@ -306,6 +356,7 @@ fn rows(
         modes: Vec::new(),
         pins,
         sections,
+        limits,
     }
 }
 

@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `shared_models`, `cache` | what jobs share, prepared once; operators on disk |
 //! | `cut`, `batch`, `pool` | which jobs are solved together, and on which threads |
-//! | `crossing`, `statics`, `modes`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
+//! | `crossing`, `statics`, `modes`, `rating`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
+//! | `demands` | what a crossing asks of limits |
 //! | `verify`, `self_test` | the reference solver as judge; a crossing whose answer is known |
 //! | `failure`, `guard` | an error of the mechanics as the failure that a record keeps; panics made failures |
 //! | `resume_index` | records in the journal, and back |
@@ -20,6 +21,7 @@ mod cancel;
 mod crossing;
 mod cut;
 mod dead_rows;
+mod demands;
 mod error;
 mod failure;
 mod guard;
@@ -31,6 +33,7 @@ mod pool;
 mod probe;
 mod progress;
 mod quantity_words;
+mod rating;
 mod resume_index;
 mod retry;
 pub mod self_test;

@@ -378,7 +378,19 @@ impl SharedModels {
 
     /// Whether a load can creep over the bridge of a job: something linear holds it.
     fn has_static_peak(&self, job: &Job) -> bool {
-        job.is_single() && is_held(job) && !self.statics(job).is_ok_and(|solver| solver.is_loose())
+        job.rating.is_none()
+            && job.is_single()
+            && is_held(job)
+            && !self.statics(job).is_ok_and(|solver| solver.is_loose())
+    }
+
+    /// Whether all is there that a crossing is solved with.
+    pub(super) fn holds(&self, crossing: &CrossingJob<'_>) -> bool {
+        let solver = match Self::lane_batch_key(crossing) {
+            Some(key) => self.operated.contains_key(&key),
+            None => self.crossings.contains_key(&crossing_key(crossing)),
+        };
+        solver && (!crossing.job.bridge.design.has_dead_load() || self.dead.contains_key(&dead_key(crossing.job)))
     }
 
     /// The modules, for a later run.

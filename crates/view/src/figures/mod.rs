@@ -85,7 +85,7 @@ impl Figures {
         let mut figures = match results.kind() {
             Kind::Static => profiles::deflected(&mut context),
             Kind::Modes => modes::frequencies(&mut context, reference),
-            Kind::Crossing => {
+            Kind::Crossing | Kind::Rating => {
                 let [of_bridge, of_vehicles] = histories::histories(&mut context);
                 let mut figures = of_bridge;
                 figures.extend(speeds::speeds(&mut context));
