@@ -54,7 +54,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Version of the journal's form.
-pub const FORM: u32 = 6;
+pub const FORM: u32 = 7;
 
 /// Name of the journal's folder in a folder of results.
 pub const FOLDER: &str = "journal";

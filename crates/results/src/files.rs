@@ -14,6 +14,9 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 /// Name of the summary's file.
 pub(crate) const SUMMARY: &str = "summary.csv";
 
+/// Name of the file that says how often limits are exceeded.
+pub(crate) const SUMMARY_OF_LIMITS: &str = "summary_limits.csv";
+
 /// Name of a report's page beside the tables that it shows.
 pub const PAGE: &str = "report.html";
 
@@ -25,7 +28,9 @@ impl OwnFiles {
     /// The ones that a folder holds, the manifest first: without it the others are no results.
     pub fn in_folder(folder: &Path) -> Vec<PathBuf> {
         let tables = TableName::ALL.map(TableName::file);
-        let names = [MANIFEST, SUMMARY].into_iter().chain(tables.iter().map(String::as_str));
+        let names = [MANIFEST, SUMMARY, SUMMARY_OF_LIMITS]
+            .into_iter()
+            .chain(tables.iter().map(String::as_str));
         names
             .map(|name| folder.join(name))
             .filter(|path| path.exists())

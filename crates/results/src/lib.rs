@@ -13,6 +13,7 @@
 //! | `arrays` | the few types of columns, filled one after the other |
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
+//! | `exceedance` | which share of jobs exceeds each limit |
 //! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
 //! | `table`, `results`, `documents`, `results_error` | tables to read; the documents that they are of; why they cannot be read |
 //!
@@ -21,6 +22,7 @@
 
 mod arrays;
 mod documents;
+mod exceedance;
 mod extreme;
 mod failure;
 mod files;
@@ -49,6 +51,7 @@ mod writer;
 
 pub use arrays::CellKind;
 pub use documents::{RunDocuments, keep_documents};
+pub use exceedance::Exceedance;
 pub use extreme::Extreme;
 pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE, replaceable};

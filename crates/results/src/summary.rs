@@ -3,6 +3,7 @@
 //! Knows the order of rows and how a cell is written. Keeps of a job what its row holds beside the axes, which the job has.
 //! Does not know terminals.
 
+use super::exceedance::{Exceedance, ExceedanceCounts};
 use crate::JobRecord;
 use crate::registry::{Column, ColumnSource};
 use pontoon_plan::input::Cell;
@@ -21,6 +22,7 @@ pub struct SummaryTable<'a> {
     outcomes: Outcomes,
     /// Places in `outcomes`, in the order of rows.
     order: Vec<usize>,
+    exceedances: Vec<Exceedance>,
 }
 
 /// What the rows hold beside the axes, in the order of jobs.
@@ -42,6 +44,7 @@ pub(super) struct SummaryLines<'a> {
     axes: Vec<String>,
     jobs: &'a [Job],
     outcomes: Outcomes,
+    exceedances: ExceedanceCounts,
     taken: usize,
 }
 
@@ -59,6 +62,7 @@ impl<'a> SummaryLines<'a> {
                     Outcomes::Peaks(columns, Vec::with_capacity(room))
                 }
             },
+            exceedances: ExceedanceCounts::new(&study.document.value()),
             taken: 0,
         }
     }
@@ -81,6 +85,9 @@ impl<'a> SummaryLines<'a> {
                     modes.extend(of_job.map(|m| (job, m.number, m.frequency_hz, m.shape.clone())));
                 }
             }
+        }
+        for row in records.iter().flat_map(|record| &record.limits) {
+            self.exceedances.take(&row.limit, row.utilisation);
         }
         self.taken += records.len();
     }
@@ -105,6 +112,7 @@ impl<'a> SummaryLines<'a> {
             jobs: self.jobs,
             outcomes: self.outcomes,
             order,
+            exceedances: self.exceedances.exceedances(),
         }
     }
 }
@@ -141,6 +149,11 @@ impl SummaryTable<'_> {
     /// Names of the columns.
     pub fn columns(&self) -> &[String] {
         &self.columns
+    }
+
+    /// How often each limit is exceeded; nothing where no limits were stated or no point was drawn at random.
+    pub fn exceedances(&self) -> &[Exceedance] {
+        &self.exceedances
     }
 
     /// Number of rows.

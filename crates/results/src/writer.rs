@@ -3,7 +3,8 @@
 //! Knows in which order files come into place. Keeps no record: what is kept of a job is its line of the summary.
 
 use super::documents::keep_documents;
-use super::files::{MANIFEST, SUMMARY};
+use super::exceedance::Exceedance;
+use super::files::{MANIFEST, SUMMARY, SUMMARY_OF_LIMITS};
 use super::layout::Layout;
 use super::manifest::{self, Manifest};
 use super::parquet::{TableFile, TableProvenance, metadata};
@@ -101,7 +102,7 @@ impl<'a> TableWriter<'a> {
     pub fn finish(self, mut manifest: Manifest) -> Result<SummaryTable<'a>, FolderError> {
         let summary = self.lines.summary();
         if self.whole {
-            self.folder.write(SUMMARY, |file| summary.write_csv(file))?;
+            summaries(&self.folder, &summary)?;
             return Ok(summary);
         }
         let mut ended = Vec::new();
@@ -119,9 +120,18 @@ impl<'a> TableWriter<'a> {
         }
         self.folder.sync()?;
         ended.into_iter().try_for_each(|partial| partial.place())?;
-        self.folder.write(SUMMARY, |file| summary.write_csv(file))?;
+        summaries(&self.folder, &summary)?;
         self.folder
             .write(MANIFEST, |file| file.write_all(manifest.text().as_bytes()))?;
         Ok(summary)
+    }
+}
+
+/// Writes the files that people read, and removes one of limits that no longer holds.
+fn summaries(folder: &Folder, summary: &SummaryTable<'_>) -> Result<(), FolderError> {
+    folder.write(SUMMARY, |file| summary.write_csv(file))?;
+    match summary.exceedances() {
+        [] => folder.remove(SUMMARY_OF_LIMITS),
+        some => folder.write(SUMMARY_OF_LIMITS, |file| Exceedance::write_csv(some, file)),
     }
 }

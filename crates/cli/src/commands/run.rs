@@ -13,7 +13,7 @@ use pontoon_judge::reference::Reference;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
-use pontoon_results::{Failures, Outcome, Results, SummaryTable, labels};
+use pontoon_results::{Exceedance, Failures, Outcome, Results, SummaryTable, labels};
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{ApartTask, SweepSetting, Swept, run_apart, sweep};
 use serde::ser::{Serialize, Serializer};
@@ -202,7 +202,29 @@ fn text(swept: &Swept<'_>, out: &Path) -> String {
         );
     };
     let table = summary::text(summary_table.columns(), || summary_table.rows(), text_style);
-    format!("{table}\n{counts}results in {}\n", out.display())
+    let exceeded = exceeded(summary_table.exceedances());
+    format!("{table}\n{exceeded}{counts}results in {}\n", out.display())
+}
+
+/// Which share of jobs exceeds each limit, a line each.
+fn exceeded(exceedance: &[Exceedance]) -> String {
+    let line = |of: &Exceedance| {
+        let [low, high] = of.interval.map(|share| 100.0 * share);
+        let failed = if of.failed == 0 {
+            String::new()
+        } else {
+            format!("; {} failed", of.failed)
+        };
+        format!(
+            "{} exceeded by {} of {} jobs, {:.2} % (95 % interval {low:.2} to {high:.2} %){failed}\n",
+            of.limit,
+            of.exceeded,
+            of.jobs,
+            100.0 * of.share
+        )
+    };
+    let lines: String = exceedance.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("{lines}\n") }
 }
 
 /// What a run says in JSON; the rows of its summary are made as they are written.
@@ -219,6 +241,8 @@ struct Object<'a> {
     jobs_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     summary: Option<NamedRows<'a>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    exceedance: &'a [Exceedance],
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Value>,
 }
@@ -262,6 +286,7 @@ fn write_object(
         offline_s: outcome.offline_s,
         jobs_s: outcome.jobs_s,
         summary: swept.summary.as_ref().map(NamedRows),
+        exceedance: swept.summary.as_ref().map_or(&[], SummaryTable::exceedances),
         comparison: compared.map(comparison::object),
     };
     serde_json::to_writer_pretty(&mut to, &object)?;

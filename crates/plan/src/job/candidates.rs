@@ -19,6 +19,8 @@ pub struct RatingPoint {
     pub(super) values: Vec<Cell<'static>>,
     /// Everything that the values tried depend on beside the point.
     pub(super) search: Arc<str>,
+    /// Crossings that it takes at least.
+    pub(super) crossings: usize,
 }
 
 /// Makes the crossings of a study's ratings.
@@ -56,6 +58,21 @@ impl<'a> Candidates<'a> {
 }
 
 impl Job {
+    /// The crossing that the job's row tells of: the job itself, of a rating the crossing at the value rated; none where there is
+    /// no such value.
+    pub fn told_crossing(&self, study: &Study, rated_value: Option<f64>) -> Option<Self> {
+        if self.rating.is_none() {
+            return Some(self.clone());
+        }
+        let job = Candidates::new(study).at(self, rated_value?).ok()??;
+        Some(Self { rating: None, ..job })
+    }
+
+    /// Crossings that it takes at least.
+    pub fn crossings(&self) -> usize {
+        self.rating.as_ref().map_or(1, |rating| rating.crossings)
+    }
+
     /// The crossing with all weights so many times as large.
     #[must_use]
     pub fn with_load(&self, factor: f64) -> Self {

@@ -88,6 +88,7 @@ impl Jobs<'_> {
             number,
             values,
             search: find.key().into(),
+            crossings: find.ladder().len(),
         };
         Ok(Job {
             rating: Some(Arc::new(of)),

@@ -83,9 +83,9 @@ impl Work {
     }
 }
 
-/// Steps of a crossing times the modules that each of them moves.
+/// Steps of a job's crossings times the modules that each of them moves.
 pub fn module_steps(job: &Job) -> f64 {
-    job.steps() as f64 * job.bridge.design.modules as f64
+    (job.steps() * job.crossings()) as f64 * job.bridge.design.modules as f64
 }
 
 /// Cost of a step of one module by the reference solver `[s]`, optimised, on one core.
@@ -131,7 +131,7 @@ impl Plan {
             plan.work.take(&job);
             doubts.take(&job);
             plan.jobs += 1;
-            plan.steps += job.steps() as u64;
+            plan.steps += (job.steps() * job.crossings()) as u64;
             let model = job.model();
             if bridges.insert((job.bridge.id, model)) && model == ModelSpec::SuperElement {
                 modules.extend(job.bridge.module_keys.iter().cloned());

@@ -42,7 +42,7 @@ pub fn measure(study: &Study, jobs: &[Job], cache: Option<&Cache>, deadline: Ins
     let mut tried: Vec<&Job> = jobs.iter().filter(alike).collect();
     tried.sort_by_key(|job| job.steps());
     tried.truncate(if first.by_operator() { TRIED } else { 1 });
-    let work = |job: &Job| job.steps() as f64 * (job.bridge.design.modules as f64).powi(2);
+    let work = |job: &Job| (job.steps() * job.crossings()) as f64 * (job.bridge.design.modules as f64).powi(2);
     if tried.iter().map(|job| work(job)).sum::<f64>() > MOST_WORK {
         tried.truncate(1);
     }

@@ -150,6 +150,10 @@ impl Subject {
         let (study, bridge) = (results.documents.study()?, results.documents.bridge()?);
         let study = Study::of_documents(source, study.clone(), bridge.clone())?;
         let (job, row) = job_of(source, &results, &study, request.job)?;
+        let Some(job) = job.told_crossing(&study, results.jobs().number("rated_value", row)) else {
+            let refused = Refusal::new(source, "--job", job.number, "a rating that has a rated value");
+            return Err(refused.into());
+        };
         let modes = modes_of(&job, request);
         let crossing = job.as_crossing().map(|crossing| CrossingWanted {
             every: request.every,

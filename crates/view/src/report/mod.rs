@@ -43,6 +43,7 @@ pub use rows::{ColumnData, JobRows, PageEnvelope, PageProfile, RowColumn, WordLi
 pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};
 
+use crate::class_table::ClassTable;
 use crate::figures::{Chart, ReferenceMark};
 use pontoon_core::bridge::{BankSpec, BridgeDesign, Direction, Toward};
 use pontoon_core::connector::ConnectorLaw;
@@ -51,7 +52,7 @@ use pontoon_judge::compare::Comparison;
 use pontoon_plan::input::Cell;
 use pontoon_plan::job::Job;
 use pontoon_plan::study_file::{Kind, Study};
-use pontoon_results::{Results, ResultsError, Seen, Table, TableName};
+use pontoon_results::{Exceedance, Results, ResultsError, Seen, Table, TableName};
 use pontoon_study::run::Cache;
 use serde::Serialize;
 use std::collections::HashSet;
@@ -316,6 +317,12 @@ pub struct Report {
     pub against: AgainstTable,
     /// The largest of each measure.
     pub cards: Vec<PageCard>,
+    /// Which vehicle may cross how, where the study asks that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub classes: Option<ClassTable>,
+    /// Which share of jobs exceeds each limit, where points were drawn at random.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub exceedance: Vec<Exceedance>,
     /// Why jobs failed.
     pub failures: Vec<FailureNote>,
     /// Points of an experiment, and what checks expect.
@@ -402,6 +409,11 @@ impl Report {
             jobs: JobCounts::new(&results, missing),
             cells: PageCells::new(&results, &axes, &measures),
             against: AgainstTable::new(&results, &axes, &measures),
+            classes: ClassTable::of(&results),
+            exceedance: match results.documents.study() {
+                Ok(study) => Exceedance::of(&results, &study.value())?,
+                Err(_) => Vec::new(),
+            },
             cards: headline::cards(&results, &measures, &row_label),
             failures,
             marks: marks.into_iter().map(PageMark::from).collect(),

@@ -113,7 +113,12 @@ pub(super) fn plays(
             able.len()
         ));
     }
-    let list: Vec<&Job> = chosen.iter().map(|&at| fit[at].1).collect();
+    let told = chosen.iter().filter_map(|&at| {
+        let (row, job) = fit[at];
+        job.told_crossing(study, jobs.number("rated_value", row))
+    });
+    let told: Vec<Job> = told.collect();
+    let list: Vec<&Job> = told.iter().collect();
     let mut furthest = 0.0_f64;
     replay(study, &list, cache, |job, record| {
         let row = fit
