@@ -22,6 +22,7 @@ mod joints;
 mod kinds;
 mod old_results;
 mod operator;
+mod rating;
 mod recorded;
 mod refusals;
 mod report;

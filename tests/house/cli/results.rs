@@ -19,7 +19,7 @@ fn small() -> Stage {
 
 const JOBS: &str = "job status reason failure connection gap_tension_m gap_compression_m speed_m_s load_n peak_deflection_m \
     peak_deflection_position peak_deflection_time_s peak_uplift_m peak_uplift_position peak_uplift_time_s \
-    peak_compression_n peak_compression_joint peak_tension_n peak_tension_joint peak_edge_deflection_m peak_roll_rad \
+    peak_compression_n peak_compression_joint peak_tension_n peak_tension_joint peak_edge_deflection_m peak_roll_rad peak_trim_rad \
     static_peak_deflection_m dynamic_amplification influential_length_m bottom_emerged deck_submerged \
     min_contact_force_n step_warning steps newton_iterations contact_switches energy_residual numerical_dissipation";
 

@@ -10,6 +10,7 @@ mod disk;
 mod kill;
 mod million;
 mod places;
+mod ratings;
 mod resume;
 mod shards;
 mod signals;

@@ -165,18 +165,18 @@ fn rebound(stage: &Stage, out: &str, old: &str, new: &str) {
 fn a_journal_of_another_form_or_program_is_refused_by_name() {
     let stage = sweep(2, 0.05);
     finish(&stage, "r");
-    rebound(&stage, "r", "\"form\":6", "\"form\":1");
+    rebound(&stage, "r", "\"form\":7", "\"form\":1");
     let output = run(&stage, "r", &[]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    for words in ["a journal of form 1", "this one reads form 6", "--fresh"] {
+    for words in ["a journal of form 1", "this one reads form 7", "--fresh"] {
         assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
     }
-    rebound(&stage, "r", "\"form\":1", "\"form\":6");
+    rebound(&stage, "r", "\"form\":1", "\"form\":7");
     finish(&stage, "r");
     rebound(&stage, "r", "\"numerics\":\"", "\"numerics\":\"0.0.9 ");
     is_refused(&run(&stage, "r", &[]), &["the program's numerics: 0.0.9 ", "--fresh"]);
     // of a form that this program cannot read, too
-    rebound(&stage, "r", "\"form\":6", "\"form\":1");
+    rebound(&stage, "r", "\"form\":7", "\"form\":1");
     let output = run(&stage, "r", &["--fresh"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }

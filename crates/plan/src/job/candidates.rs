@@ -3,25 +3,9 @@
 //! Knows how to make a job again from its point. Does not know which values are tried or what passes.
 
 use super::Job;
-use super::documents::TrafficEntry;
 use super::jobs::Jobs;
-use crate::input::{Cell, Refusal};
+use crate::input::Refusal;
 use crate::study_file::Study;
-use std::sync::Arc;
-
-/// The point of a design that a rating is of.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RatingPoint {
-    /// The number of its block.
-    pub(super) block: usize,
-    /// Its number in the block, and its values.
-    pub(super) number: usize,
-    pub(super) values: Vec<Cell<'static>>,
-    /// Everything that the values tried depend on beside the point.
-    pub(super) search: Arc<str>,
-    /// Crossings that it takes at least.
-    pub(super) crossings: usize,
-}
 
 /// Makes the crossings of a study's ratings.
 pub struct Candidates<'a> {
@@ -55,39 +39,17 @@ impl<'a> Candidates<'a> {
             ..job
         }))
     }
-}
 
-impl Job {
-    /// The crossing that the job's row tells of: the job itself, of a rating the crossing at the value rated; none where there is
+    /// The crossing that a job's row tells of: the job itself, of a rating the crossing at the value rated; none where there is
     /// no such value.
-    pub fn told_crossing(&self, study: &Study, rated_value: Option<f64>) -> Option<Self> {
-        if self.rating.is_none() {
-            return Some(self.clone());
+    pub fn told_crossing(study: &'a Study, job: &Job, rated_value: Option<f64>) -> Option<Job> {
+        if job.rating.is_none() {
+            return Some(job.clone());
         }
-        let job = Candidates::new(study).at(self, rated_value?).ok()??;
-        Some(Self { rating: None, ..job })
-    }
-
-    /// Crossings that it takes at least.
-    pub fn crossings(&self) -> usize {
-        self.rating.as_ref().map_or(1, |rating| rating.crossings)
-    }
-
-    /// The crossing with all weights so many times as large.
-    #[must_use]
-    pub fn with_load(&self, factor: f64) -> Self {
-        let mut job = self.clone();
-        job.load_n *= factor;
-        job.traffic = self.traffic.as_ref().map(|entry| {
-            let mut traffic = entry.traffic.clone();
-            traffic.vehicles.iter_mut().for_each(|driven| driven.load_n *= factor);
-            Arc::new(TrafficEntry {
-                traffic,
-                is_single: entry.is_single,
-                document: entry.document.clone(),
-                key: entry.key,
-            })
-        });
-        job
+        let crossing = Self::new(study).at(job, rated_value?).ok()??;
+        Some(Job {
+            rating: None,
+            ..crossing
+        })
     }
 }

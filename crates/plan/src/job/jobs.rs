@@ -2,9 +2,9 @@
 //!
 //! Knows the checks of a single point and merges equal jobs. A stream: it stores what jobs share and a fingerprint a job.
 
-use super::candidates::RatingPoint;
 use super::crossing_type::CrossingType;
 use super::documents::{BridgeEntry, Documents, TrafficEntry, VehicleEntry, WearEntry};
+use super::rating_point::RatingPoint;
 use super::seen::SeenJobs;
 use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};

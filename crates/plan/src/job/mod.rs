@@ -6,6 +6,7 @@
 //! | `doubts` | numbers that look as if they were in another unit |
 //! | `jobs` | the jobs of a study, one after the other |
 //! | `crossing_type` | which spacing, speed and lane vehicles keep |
+//! | `rating_point` | the point of a design that a rating is of |
 //! | `candidates` | the crossings that a rating tries |
 //! | `seen` | which jobs were there before |
 //! | `key` | what a job is known by from run to run |
@@ -22,17 +23,19 @@ mod doubts;
 mod jobs;
 mod key;
 mod plan;
+mod rating_point;
 mod seen;
 mod shard;
 mod springs;
 
-pub use candidates::{Candidates, RatingPoint};
+pub use candidates::Candidates;
 pub use crossing_type::CrossingType;
 pub use documents::{AnalysisEntry, BridgeEntry, TrafficEntry, VehicleEntry, WearEntry};
 pub use doubts::Doubts;
 pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};
+pub use rating_point::RatingPoint;
 pub use shard::{NoShard, Shard};
 pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word, has_springs, on_springs};
 
@@ -242,6 +245,29 @@ impl<'a> CrossingJob<'a> {
 }
 
 impl Job {
+    /// Crossings that it takes at least.
+    pub fn crossings(&self) -> usize {
+        self.rating.as_ref().map_or(1, |rating| rating.crossings)
+    }
+
+    /// The crossing with all weights so many times as large.
+    #[must_use]
+    pub fn with_load(&self, factor: f64) -> Self {
+        let mut job = self.clone();
+        job.load_n *= factor;
+        job.traffic = self.traffic.as_ref().map(|entry| {
+            let mut traffic = entry.traffic.clone();
+            traffic.vehicles.iter_mut().for_each(|driven| driven.load_n *= factor);
+            Arc::new(TrafficEntry {
+                traffic,
+                is_single: entry.is_single,
+                document: entry.document.clone(),
+                key: entry.key,
+            })
+        });
+        job
+    }
+
     /// The job as a crossing; none where it is another.
     pub fn as_crossing(&self) -> Option<CrossingJob<'_>> {
         match (&self.analysis.analysis, self.task) {

@@ -229,7 +229,10 @@ impl LimitsSpec {
             list.push(Allowed { limit, allowed, beside });
         }
         if list.is_empty() {
-            let allowed = format!("at least one of {}", Limit::WORDS.join(", "));
+            let allowed = format!(
+                "at least one of {}, freeboard_margin_m, draft_margin_m",
+                Limit::WORDS.join(", ")
+            );
             return Err(InvalidInput::new("", "no limit", allowed).because(Problem::Missing));
         }
         Ok(list)

@@ -9,7 +9,7 @@ use pontoon_core::connector::Connection;
 use pontoon_core::input::bound;
 use pontoon_core::vehicle::{Vehicle, VehicleDesign};
 use pontoon_plan::input::{Refusal, RefusalKind};
-use pontoon_plan::job::{CrossingJob, Job, Jobs, Task};
+use pontoon_plan::job::{Candidates, CrossingJob, Job, Jobs, Task};
 use pontoon_plan::study_file::{ModelSpec, Study, read_bridge};
 use pontoon_results::{Results, Table};
 use pontoon_study::run::RETRY_STEP_SHARE;
@@ -150,7 +150,7 @@ impl Subject {
         let (study, bridge) = (results.documents.study()?, results.documents.bridge()?);
         let study = Study::of_documents(source, study.clone(), bridge.clone())?;
         let (job, row) = job_of(source, &results, &study, request.job)?;
-        let Some(job) = job.told_crossing(&study, results.jobs().number("rated_value", row)) else {
+        let Some(job) = Candidates::told_crossing(&study, &job, results.jobs().number("rated_value", row)) else {
             let refused = Refusal::new(source, "--job", job.number, "a rating that has a rated value");
             return Err(refused.into());
         };

@@ -9,7 +9,7 @@ use super::rows::severest;
 use crate::thinning::spread;
 use pontoon_core::traffic::Driven;
 use pontoon_core::vehicle::Vehicle;
-use pontoon_plan::job::{Job, Task};
+use pontoon_plan::job::{Candidates, Job, Task};
 use pontoon_plan::study_file::{ModelSpec, Study};
 use pontoon_results::{HistoryRows, JobRecord, Results, Table};
 use pontoon_study::run::{Cache, replay};
@@ -115,7 +115,7 @@ pub(super) fn plays(
     }
     let told = chosen.iter().filter_map(|&at| {
         let (row, job) = fit[at];
-        job.told_crossing(study, jobs.number("rated_value", row))
+        Candidates::told_crossing(study, job, jobs.number("rated_value", row))
     });
     let told: Vec<Job> = told.collect();
     let list: Vec<&Job> = told.iter().collect();
