@@ -278,11 +278,13 @@ const UNITS: [&str; 17] = [
     "_1_s", "_m_s2",
 ];
 /// Names of pure numbers.
-const PURE: [&str; 8] = [
+const PURE: [&str; 10] = [
     "wear_seed",
     "ratio",
     "share",
     "spectral_radius",
+    "ladder_ratio",
+    "relative_width",
     "section_coefficient",
     "three_dimensional_correction",
     "load_position",

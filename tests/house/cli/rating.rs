@@ -461,7 +461,7 @@ fn what_no_limit_or_search_may_be_is_refused_at_its_key() {
         json!("speed_m_s"),
         &["find.largest", "which the design's axis speed_m_s sets too"],
     );
-    find("largest", json!("lood_n"), &["find.largest", "load_n"]);
+    find("largest", json!("lod_kn"), &["find.largest", "load_n"]);
     find("between", json!([4e5, 5e4]), &["find.between[1]", "above 400000"]);
     find("between", json!([4e5, 4e5]), &["find.between[1]", "above 400000"]);
     find("between", json!([0, 4e5]), &["find.between", "found 0", "above 0"]);
