@@ -59,13 +59,14 @@
     return group(String(Number(value.toPrecision(6))));
   }
 
-  /** A way to write a column of results: all with the same decimals, so that their points stand in a line. */
+  /** A way to write a column of results: all with the same decimals, so that their points stand in a line; counts without any. */
   function column(values, name) {
     let most = 0;
     for (const value of values) if (Math.abs(value) > most) most = Math.abs(value);
     const shown = unit(name, most),
       top = most * shown.factor;
-    const decimals = top > 0 ? Math.min(8, Math.max(0, 3 - Math.floor(Math.log10(top)))) : 0;
+    const counts = !name && values.every(Number.isInteger),
+      decimals = top > 0 && !counts ? Math.min(8, Math.max(0, 3 - Math.floor(Math.log10(top)))) : 0;
     const write = value => {
       if (value === null || Number.isNaN(value)) return '\u2013';
       return top >= 1e7 || top < 1e-4 ? digits(value * shown.factor) : group((value * shown.factor).toFixed(decimals));

@@ -156,7 +156,11 @@
     const width = 260,
       step = width / LEVELS,
       at = v => ((v - scale.low) / (scale.high - scale.low)) * width;
-    const ticks = d3.scaleLinear([scale.low, scale.high], [0, width]).ticks(4);
+    let ticks = d3.scaleLinear([scale.low, scale.high], [0, width]).ticks(4);
+    // long numbers would run into each other: every other one is left out
+    const longest = Math.max(...ticks.map(t => write(t).length));
+    while (ticks.length > 2 && at(ticks[1]) - at(ticks[0]) < 7 * longest + 6)
+      ticks = ticks.filter((_, i) => i % 2 === 0);
     return svg(
       'svg',
       {
