@@ -7,6 +7,9 @@
   const axis = name => (data.axes ?? []).findIndex(a => a.name === name);
   const measure = name => (data.measures ?? []).findIndex(m => m.name === name);
 
+  /** The first of some measures that there is, else `otherwise`. */
+  const first = (names, otherwise = 0) => names.map(measure).find(m => m >= 0) ?? otherwise;
+
   /**
    * The largest (or smallest) value of a measure for each combination of values of the axes `keys`, over the cells that
    * meet `fixed` (axis -> index of a value; what is not in it is free). Row-major over `keys`.
@@ -55,17 +58,20 @@
   /** Axes that take more than one value. */
   const varying = () => (data.axes ?? []).map((_, i) => i).filter(i => data.axes[i].values.length > 1);
 
-  /** Stops to begin with: the value of an axis that nine cells of ten have; a lone job with another load is not drawn among them. */
+  /**
+   * Stops to begin with: the value of an axis that nine cells of ten have; a lone job with another load is not drawn among them.
+   * Of ratings the commonest value of each axis: the largest of several rated values is safe for one of them alone.
+   */
   function usual() {
     const out = new Map();
     for (const a of varying()) {
       const tally = new Uint32Array(data.axes[a].values.length);
       for (const i of array(cells.axis[a])) tally[i]++;
       const most = tally.indexOf(Math.max(...tally));
-      if (tally[most] >= 0.9 * cells.count) out.set(a, most);
+      if (data.study.kind === 'rating' || tally[most] >= 0.9 * cells.count) out.set(a, most);
     }
     return out;
   }
 
-  page.cells = { usual, axis, measure, slice, range, varying };
+  page.cells = { usual, axis, measure, first, slice, range, varying };
 })((globalThis.pontoon ??= {}));

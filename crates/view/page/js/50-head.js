@@ -3,7 +3,7 @@
   'use strict';
   const { data, numbers } = page,
     { el, section, button } = page.dom;
-  const KINDS = { crossing: 'Crossings', static: 'Static cases', modes: 'Natural modes' };
+  const KINDS = { crossing: 'Crossings', static: 'Static cases', modes: 'Natural modes', rating: 'Ratings' };
 
   function tally() {
     const { total, ok, failed, missing } = data.jobs,

@@ -22,16 +22,16 @@
     const line = [prefer(['gap_tension_m', 'load_n', 'gap_compression_m']), ...others].find(
       i => i !== undefined && i !== x && others.includes(i) && !(data.axes[i].bins && data.axes[x].bins),
     );
-    const has = name => cells.measure(name),
-      first = Math.max(0, has('peak_deflection_m')),
-      second = has('peak_compression_n') >= 0 ? has('peak_compression_n') : Math.min(1, data.measures.length - 1);
+    const rated = cells.measure('rated_value') >= 0,
+      first = cells.first([rated ? 'rated_value' : 'peak_deflection_m']),
+      second = cells.first([rated ? 'peak_deflection_m' : 'peak_compression_n'], Math.min(1, data.measures.length - 1));
     const state = { x, line: line ?? -1, fixed: cells.usual(), measures: [first, second] };
     const controls = el('div', { class: 'controls' }),
       stops = el('div', { class: 'controls stops' });
     const charts = state.measures.map((_, side) =>
       page.figure(`speed-${side + 1}`, {
         title: '',
-        label: side ? 'Connector force chart' : 'Deflection chart',
+        label: side ? 'Second chart' : 'First chart',
         draw: width => draw(state, side, width),
         hint: 'Point at the chart, or focus it and use the arrow keys, to read a value; click or Enter picks its job.',
       }),
@@ -106,7 +106,7 @@
     rebuild();
     return section(
       'speed',
-      `Peaks against ${data.axes[x].label}`,
+      `${rated ? 'Rated values' : 'Peaks'} against ${data.axes[x].label}`,
       controls,
       stops,
       el(

@@ -16,7 +16,7 @@
     const state = {
       x: y,
       y: x,
-      measure: Math.max(0, cells.measure('peak_deflection_m')),
+      measure: cells.first(['rated_value', 'peak_deflection_m']),
       statistic: 'max',
       own: false,
       fixed: cells.usual(),

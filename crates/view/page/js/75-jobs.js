@@ -85,7 +85,7 @@
     const view = page.crossing();
     page.onPick((job, by) => {
       table.mark(page.rowOf(job), by !== 'table');
-      if (by === 'chart' || by === 'card')
+      if (by === 'chart' || by === 'card' || by === 'cell')
         node.scrollIntoView({ behavior: page.dom.motionless.matches ? 'auto' : 'smooth', block: 'start' });
       else if (by === 'table' && view && view.node.getBoundingClientRect().top < 0)
         view.node.scrollIntoView({ block: 'start' });
@@ -115,7 +115,11 @@
         'p',
         { class: 'sub' },
         `The table holds ${data.rows.note}.`,
-        { crossing: ' Pick a job to see its crossing.', static: ' Pick a job to see its line above.' }[data.study.kind],
+        {
+          crossing: ' Pick a job to see its crossing.',
+          rating: ' Pick a job to see its crossing at the rated value.',
+          static: ' Pick a job to see its line above.',
+        }[data.study.kind],
       ),
       view?.node,
       table.node,

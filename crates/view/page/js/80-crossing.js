@@ -15,9 +15,17 @@
     return Math.floor(best / width);
   }
 
+  /** The rated value of a row in words, where it has one. */
+  function ratedOf(row) {
+    const column = data.rows.columns.find(c => c.name === 'rated_value'),
+      value = column ? page.cell(column, row) : null;
+    return value === null ? [] : [`${column.label} ${numbers.quantity(value, column.unit)}`];
+  }
+
   function crossing() {
-    const plays = data.plays ?? [];
-    if (data.study.kind !== 'crossing') return null;
+    const plays = data.plays ?? [],
+      rating = data.study.kind === 'rating';
+    if (data.study.kind !== 'crossing' && !rating) return null;
     const title = el('h3', { id: 'crossing-title' }, 'Crossing'),
       axes = el('p', { class: 'sub' }),
       why = el('p', { class: 'empty', role: 'status' });
@@ -135,7 +143,7 @@
       pause();
       play = plays.find(p => p.job === job) ?? null;
       const row = page.rowOf(job);
-      title.textContent = `Crossing of job ${job}`;
+      title.textContent = `Crossing of job ${job}${rating && play ? ' at its rated value' : ''}`;
       choose.value = play ? String(job) : '';
       axes.textContent =
         row < 0
@@ -148,6 +156,7 @@
                   u = page.axes.shown(i);
                 return `${axis.label} ${typeof v === 'number' ? numbers.plain(v * u.factor) + (u.unit && numbers.THIN + u.unit) : v}`;
               })
+              .concat(ratedOf(row))
               .join(', ');
       body.hidden = !play;
       why.hidden = !!play;

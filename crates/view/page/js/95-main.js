@@ -58,8 +58,10 @@
 
   const some = data.jobs.ok > 0 && data.study.kind !== 'modes';
   const sections = [
+    page.classes(),
     page.head.cards(),
     nothing(),
+    page.exceedance(),
     page.head.settings(),
     page.head.failures(),
     some && page.speed(),

@@ -107,7 +107,7 @@ const charted = data =>
   data.study.kind !== 'modes' &&
   data.jobs.ok > 0 &&
   data.axes.some(a => a.kind === 'number' && a.values.some(v => v !== null));
-for (const which of pages(['crossing', 'still', 'oneAxis', 'oneJob', 'big', 'wide', 'half'], charted)) {
+for (const which of pages(['crossing', 'still', 'oneAxis', 'oneJob', 'big', 'wide', 'half', 'rating'], charted)) {
   test(`${which.name}: lines are the aggregates, for every choice`, () =>
     on(which, {}, async page => {
       const { data } = which;

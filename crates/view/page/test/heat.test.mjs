@@ -98,7 +98,7 @@ async function check(page, data) {
 
 const mapped = data =>
   data.study.kind !== 'modes' && data.jobs.ok > 0 && data.axes.filter(a => a.values.length > 1).length > 1;
-for (const which of pages(['crossing', 'big', 'still', 'wide'], mapped)) {
+for (const which of pages(['crossing', 'big', 'still', 'wide', 'rating'], mapped)) {
   test(`${which.name}: cells are the aggregates, over any two axes`, () =>
     on(which, {}, async page => {
       const { data } = which;

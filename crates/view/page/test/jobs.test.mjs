@@ -55,7 +55,7 @@ for (const which of pages(['crossing', 'big', 'still', 'allFailed', 'natural'], 
     }));
 }
 
-for (const which of pages(['crossing', 'big', 'still'], browsed)) {
+for (const which of pages(['crossing', 'big', 'still', 'rating'], browsed)) {
   test(`${which.name}: every column sorts, up and down, nulls last`, () =>
     on(which, {}, async page => {
       await page.selectOption('#jobs .table .controls select', '100');

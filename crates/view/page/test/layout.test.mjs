@@ -75,7 +75,20 @@ const faults = page =>
     return out.slice(0, 12);
   });
 
-for (const which of pages(['crossing', 'big', 'wide', 'still', 'natural', 'allFailed', 'oneJob', 'half', 'markup'])) {
+for (const which of pages([
+  'crossing',
+  'big',
+  'wide',
+  'still',
+  'natural',
+  'allFailed',
+  'oneJob',
+  'half',
+  'markup',
+  'classes',
+  'drawn',
+  'rating',
+])) {
   for (const width of [360, 768, 1280]) {
     test(`${which.name} at ${width} pixels`, () =>
       on(which, { width, scheme: width === 768 ? 'dark' : 'light' }, async page => {
@@ -147,14 +160,15 @@ const contrast = page =>
     }
     return { count, out: [...new Set(out)] };
   });
-for (const scheme of ['light', 'dark']) {
-  test(`${scheme}: text has a contrast of 4.5 or more`, () =>
-    on(sample('crossing'), { scheme }, async page => {
-      const { count, out } = await contrast(page);
-      assert.ok(count > 200);
-      assert.deepEqual(out, []);
-    }));
-}
+for (const name of ['crossing', 'classes', 'drawn'])
+  for (const scheme of ['light', 'dark']) {
+    test(`${name}, ${scheme}: text has a contrast of 4.5 or more`, () =>
+      on(sample(name), { scheme }, async page => {
+        const { count, out } = await contrast(page);
+        assert.ok(count > 200);
+        assert.deepEqual(out, []);
+      }));
+  }
 test("the colour scheme can be chosen against the system's", () =>
   on(sample('crossing'), { scheme: 'light' }, async page => {
     const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor),
@@ -166,7 +180,7 @@ test("the colour scheme can be chosen against the system's", () =>
     assert.equal(await ground(), was);
   }));
 
-for (const which of pages(['crossing', 'natural', 'allFailed', 'big'])) {
+for (const which of pages(['crossing', 'natural', 'allFailed', 'big', 'classes', 'drawn', 'rating'])) {
   test(`${which.name} on paper`, () =>
     on(which, { width: 1280, scheme: 'dark' }, async page => {
       const play = (which.data.plays ?? []).at(-1);

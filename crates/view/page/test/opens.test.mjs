@@ -11,7 +11,21 @@ before(async () => {
 });
 after(() => stop());
 
-const NAMES = ['crossing', 'big', 'wide', 'still', 'natural', 'allFailed', 'oneJob', 'oneAxis', 'markup', 'half'];
+const NAMES = [
+  'crossing',
+  'big',
+  'wide',
+  'still',
+  'natural',
+  'allFailed',
+  'oneJob',
+  'oneAxis',
+  'markup',
+  'half',
+  'classes',
+  'drawn',
+  'rating',
+];
 const ids = page => page.$$eval('main section', all => all.map(s => s.id));
 
 for (const which of pages(NAMES)) {
@@ -94,7 +108,18 @@ test('a request would be seen, and would not get out', () =>
     );
   }));
 
-for (const which of pages(['crossing', 'still', 'natural', 'allFailed', 'oneJob', 'half', 'markup'])) {
+for (const which of pages([
+  'crossing',
+  'still',
+  'natural',
+  'allFailed',
+  'oneJob',
+  'half',
+  'markup',
+  'classes',
+  'drawn',
+  'rating',
+])) {
   for (const scheme of ['light', 'dark']) {
     test(`${which.name}, ${scheme}: axe finds nothing`, () =>
       on(which, { scheme }, async page => {
@@ -174,6 +199,8 @@ test('each kind shows what fits it', async () => {
     'verdicts',
     'provenance',
   ]);
+  assert.deepEqual((await has('classes')).slice(0, 3), ['classes', 'summary', 'settings']);
+  assert.deepEqual((await has('drawn')).slice(0, 3), ['summary', 'exceedance', 'settings']);
   assert.deepEqual(await has('natural'), ['settings', 'frequencies', 'jobs', 'modes', 'provenance']);
   assert.deepEqual(await has('allFailed'), ['nothing', 'settings', 'failures', 'jobs', 'provenance']);
   assert.deepEqual(await has('oneJob'), [

@@ -37,6 +37,8 @@ const AXES = {
   gap_compression_m: { name: 'gap_compression_m', label: 'compression gap', unit: 'm', kind: 'number' },
   speed_m_s: { name: 'speed_m_s', label: 'speed', unit: 'm/s', kind: 'number' },
   load_n: { name: 'load_n', label: 'load', unit: 'N', kind: 'number' },
+  vehicle: { name: 'vehicle', label: 'vehicle', unit: '', kind: 'word' },
+  crossing_type: { name: 'crossing_type', label: 'crossing type', unit: '', kind: 'word' },
 };
 const MEASURES = {
   peak_deflection_m: ['peak deflection', 'm'],
@@ -45,6 +47,8 @@ const MEASURES = {
   peak_tension_n: ['peak tension', 'N'],
   dynamic_amplification: ['dynamic amplification', ''],
   influential_length_m: ['influential length', 'm'],
+  utilisation: ['utilisation', ''],
+  rated_value: ['rated value', ''],
 };
 const measures = names => names.map(name => ({ name, label: MEASURES[name][0], unit: MEASURES[name][1] }));
 
@@ -62,6 +66,8 @@ function answer(job, draw) {
     peak_tension_n: load * 2e5 * hump * (1 + 0.1 * draw()),
     dynamic_amplification: hump * (1 + 0.02 * draw()),
     influential_length_m: 20 + 200 * gap + draw(),
+    utilisation: depth / 0.25,
+    rated_value: (353725.99 * (1 - 5 * gap)) / hump,
   };
 }
 
@@ -192,6 +198,7 @@ function study(kind, name, jobs, axisNames, measureNames, options = {}) {
           kind: 'number',
           data: f32(rows.map(j => j.answers?.[m] ?? null)),
         })),
+        ...(options.more?.(rows) ?? []),
       ],
       job: u32(rows.map(j => j.job)),
       ok: u8(rows.map(j => (j.answers ? 1 : 0))),
@@ -222,7 +229,7 @@ function study(kind, name, jobs, axisNames, measureNames, options = {}) {
             .flatMap(j => history(j, nameAxes(j)))
         : [],
     plays:
-      kind === 'crossing'
+      kind === 'crossing' || kind === 'rating'
         ? rows
             .filter(j => j.answers)
             .slice(0, options.plays ?? 12)
@@ -575,6 +582,98 @@ export const oneAxis = () =>
     PEAKS,
   );
 
+const LIMITS = [
+  ['edge_sinkage_m', 16],
+  ['joint_compression_n', 14],
+  ['trim_rad', 15],
+  ['axle_contact_n', 5],
+];
+
+/** Which vehicle may cross how: one crossing failed, one was not asked for, one is a hair beyond its limit. */
+export function classes() {
+  const vehicles = { mlc40_wheeled: 3.4e5, mlc60_tracked: 5.4e5, mlc80_tracked: 7.1e5 };
+  const types = [
+    ['normal', 2],
+    ['normal', 6],
+    ['caution', 3.6],
+    ['risk', 1.3],
+  ];
+  const jobs = Object.entries(vehicles).flatMap(([vehicle, load_n]) =>
+    product({ vehicle: [`../vehicles/${vehicle}.json`], gap_tension_m: [0, 0.028] }).flatMap(job =>
+      types.map(([crossing_type, speed_m_s]) => ({ ...job, crossing_type, speed_m_s, load_n: load_n / 3 })),
+    ),
+  );
+  jobs.pop();
+  const axes = ['vehicle', 'gap_tension_m', 'crossing_type', 'speed_m_s', 'load_n'];
+  const data = study('crossing', 'rating_classes', jobs, axes, ['utilisation', ...PEAKS], { failed: [6] });
+  const cell = (job, i) => ({
+    job: job.job,
+    utilisation: !job.answers ? null : i === 9 ? 1.0004 : i === 10 ? 1 : job.answers.utilisation,
+    limit: job.answers ? LIMITS[i % 4][0] : null,
+    place: !job.answers || i === 3 ? null : 1 + (i % LIMITS[i % 4][1]),
+  });
+  const cells = jobs.map(cell);
+  data.classes = {
+    names: ['vehicle', 'tension gap'],
+    heads: types.map(([type, speed]) => `${type} ${speed} m/s`),
+    rows: Object.keys(vehicles).flatMap((vehicle, v) =>
+      ['0', '0.028'].map((gap, g) => ({
+        names: [vehicle, gap],
+        cells: types.map((_, t) => cells[8 * v + 4 * g + t] ?? null),
+      })),
+    ),
+  };
+  return data;
+}
+
+/** Points drawn at random: how often limits are exceeded. */
+export function drawn() {
+  const next = random(3);
+  const jobs = Array.from({ length: 40 }, () => ({ speed_m_s: 2 + 6 * next(), load_n: 1e5 + 3.5e5 * next() }));
+  const data = study('crossing', 'drawn', jobs, ['speed_m_s', 'load_n'], ['utilisation', ...PEAKS], { failed: [4, 8] });
+  const exceedance = (limit, exceeded, low, high) => ({
+    limit,
+    exceeded,
+    jobs: 38,
+    failed: 2,
+    share: exceeded / 38,
+    interval: [low, high],
+  });
+  data.exceedance = [
+    exceedance('edge_sinkage_m', 15, 0.2402, 0.5662),
+    exceedance('joint_tension_n', 0, 0, 0.0925),
+    exceedance('axle_contact_n', 1, 0.0007, 0.1381),
+  ];
+  return data;
+}
+
+/** Rated values over speed and gaps; one bracket passes as a whole. */
+export function rating() {
+  const jobs = product({ gap_tension_m: [0, 0.014, 0.028], gap_compression_m: [0, 0.0055], speed_m_s: [2, 5, 10] });
+  jobs.forEach(job => (job.load_n = 230300));
+  const number = (name, label, unit, value) => rows => ({
+    name,
+    label,
+    unit,
+    kind: 'number',
+    data: f32(rows.map((job, i) => (job.answers ? value(job, i) : null))),
+  });
+  const columns = [
+    number('first_failure', 'first failure', '', job => 1.002 * job.answers.rated_value),
+    number('monotone', 'monotone', '', (_, i) => (i % 3 ? 1 : 0)),
+    number('crossings', 'crossings', '', (_, i) => 155 + i),
+    number('governing_place', 'governing place', '', (_, i) => 2 + (i % 13)),
+  ];
+  return study(
+    'rating',
+    'rating',
+    jobs,
+    ['gap_tension_m', 'gap_compression_m', 'speed_m_s'],
+    ['rated_value', 'utilisation', ...PEAKS.slice(0, 4)],
+    { failed: [5], more: rows => columns.map(column => column(rows)) },
+  );
+}
+
 const EVIL = '</script><img src=x onerror="globalThis.hurt=1"><b>&amp;{{script}}$&';
 /** Every string is full of markup. */
 export function markup() {
@@ -611,6 +710,12 @@ export function markup() {
     l.note = spoil(l.note);
   });
   data.verdicts.source = EVIL;
+  data.classes = {
+    names: [EVIL, 'gap'],
+    heads: [EVIL],
+    rows: [{ names: [EVIL, EVIL], cells: [{ job: 3, utilisation: 0.5, limit: EVIL, place: 2 }] }],
+  };
+  data.exceedance = [{ limit: EVIL, exceeded: 1, jobs: 9, failed: 0, share: 1 / 9, interval: [0.0028, 0.4825] }];
   return data;
 }
 
@@ -639,4 +744,19 @@ export function half() {
   return { ...data, verdicts: null, histories: [], modes: [] };
 }
 
-export const samples = { crossing, big, wide, still, natural, allFailed, oneJob, oneAxis, markup, half, unread };
+export const samples = {
+  crossing,
+  big,
+  wide,
+  still,
+  natural,
+  allFailed,
+  oneJob,
+  oneAxis,
+  markup,
+  half,
+  unread,
+  classes,
+  drawn,
+  rating,
+};
