@@ -18,9 +18,10 @@
       numeric.find(i => varying.includes(i)) ??
       Math.max(cells.axis('speed_m_s'), numeric[0]);
     const others = varying.filter(i => i !== x);
-    // Lines of ranges zigzag where a design is drawn at random: one line to begin with.
+    // Where a design is drawn at random lines of ranges zigzag, and lines of values hold a point each: one line to begin with.
+    const filled = i => data.cells.count >= 2 * data.axes[i].values.length;
     const line = [prefer(['gap_tension_m', 'load_n', 'gap_compression_m']), ...others].find(
-      i => i !== undefined && i !== x && others.includes(i) && !(data.axes[i].bins && data.axes[x].bins),
+      i => i !== undefined && i !== x && others.includes(i) && filled(i) && !(data.axes[i].bins && data.axes[x].bins),
     );
     const rated = cells.measure('rated_value') >= 0,
       first = cells.first([rated ? 'rated_value' : 'peak_deflection_m']),

@@ -138,6 +138,12 @@ for (const which of pages(['crossing', 'still', 'oneAxis', 'oneJob', 'big', 'wid
     }));
 }
 
+test('points drawn at random begin as one line, a grid as several', async () => {
+  const lines = async page => (await chart(page, 'speed-1')).series.length;
+  await on(sample('drawn'), {}, async page => assert.equal(await lines(page), 1));
+  await on(sample('crossing'), {}, async page => assert.ok((await lines(page)) > 1));
+});
+
 test('a chart five per cent off would be seen', () =>
   on(sample('crossing'), {}, async page => {
     const data = structuredClone(sample('crossing').data);
