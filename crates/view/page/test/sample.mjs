@@ -599,12 +599,19 @@ export function classes() {
     ['risk', 1.3],
   ];
   const jobs = Object.entries(vehicles).flatMap(([vehicle, load_n]) =>
-    product({ vehicle: [`../vehicles/${vehicle}.json`], gap_tension_m: [0, 0.028] }).flatMap(job =>
-      types.map(([crossing_type, speed_m_s]) => ({ ...job, crossing_type, speed_m_s, load_n: load_n / 3 })),
+    product({ vehicle: [`../../rating/vehicles/${vehicle}.json`], gap_tension_m: [0, 0.028] }).flatMap(job =>
+      types.map(([crossing_type, speed_m_s]) => ({
+        ...job,
+        connection: 'nonlinear',
+        gap_compression_m: 0.0055,
+        crossing_type,
+        speed_m_s,
+        load_n: load_n / 3,
+      })),
     ),
   );
   jobs.pop();
-  const axes = ['vehicle', 'gap_tension_m', 'crossing_type', 'speed_m_s', 'load_n'];
+  const axes = [...CROSSING, 'vehicle', 'crossing_type'];
   const data = study('crossing', 'rating_classes', jobs, axes, ['utilisation', ...PEAKS], { failed: [6] });
   const cell = (job, i) => ({
     job: job.job,
