@@ -193,14 +193,21 @@ pub fn value(name: &str, cell: &Cell<'_>) -> String {
     value_to(name, cell, SHOWN)
 }
 
+/// A number with its unit, lengths below 0.1 m in mm, forces from 1 kN on in kN.
+pub fn value_in(unit: &str, x: f64) -> String {
+    written_in(unit, x, SHOWN)
+}
+
 fn value_to(name: &str, cell: &Cell<'_>, digits: usize) -> String {
-    let Some(x) = cell.number() else {
-        return match cell {
-            Cell::Nothing => "-".to_owned(),
-            other => other.text(),
-        };
-    };
-    let (x, unit) = match unit(name) {
+    match cell.number() {
+        Some(x) => written_in(unit(name), x, digits),
+        None if cell.is_nothing() => "-".to_owned(),
+        None => cell.text(),
+    }
+}
+
+fn written_in(unit: &str, x: f64, digits: usize) -> String {
+    let (x, unit) = match unit {
         "m" if x.abs() < 0.1 => (1e3 * x, "mm"),
         "N" if x.abs() >= 1e3 => (1e-3 * x, "kN"),
         unit => (x, unit),

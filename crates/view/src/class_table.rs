@@ -40,6 +40,20 @@ pub struct ClassCell {
 }
 
 impl ClassCell {
+    /// Its utilisation, a mark where a limit is exceeded, the limit and its place.
+    fn words(&self) -> String {
+        let Some(utilisation) = self.utilisation else {
+            return "failed".to_owned();
+        };
+        // two decimals, and as many more as tell what exceeds its limit from what is at it
+        let with = |decimals: usize| format!("{utilisation:.decimals$}");
+        let fewest = (2..8).find(|decimals| self.passes() || with(*decimals).parse() != Ok(1.0));
+        let mark = if self.passes() { ' ' } else { '!' };
+        let label = self.limit.as_deref().map(labels::label).unwrap_or_default();
+        let place = self.place.map_or(String::new(), |place| format!(" {place}"));
+        format!("{}{mark} {label}{place}", with(fewest.unwrap_or(8)))
+    }
+
     /// Whether all limits hold.
     pub fn passes(&self) -> bool {
         self.utilisation.is_some_and(|utilisation| utilisation <= 1.0)
@@ -52,10 +66,26 @@ const SPEED: &str = "speed_m_s";
 const VEHICLE: &str = "vehicle";
 
 impl ClassTable {
-    /// The table of results; none where they have no types of crossings or no limits.
+    /// What its cells say where they are words.
+    pub const LEGEND: &'static str = "utilisation of the limit that governs, and where; ! where it is exceeded";
+
+    /// Its rows in words.
+    pub fn lines(&self) -> impl Iterator<Item = Vec<String>> {
+        let line = |row: &ClassRow| {
+            let cells = row
+                .cells
+                .iter()
+                .map(|cell| cell.as_ref().map_or(String::new(), ClassCell::words));
+            row.names.iter().cloned().chain(cells).collect()
+        };
+        self.rows.iter().map(line)
+    }
+
+    /// The table of results; none where they have no types of crossings or no limits, or are ratings.
     pub fn of(results: &Results) -> Option<Self> {
         let jobs = results.jobs();
-        if !(jobs.has(TYPE) && jobs.has("utilisation")) {
+        // all values that ratings tell pass
+        if !(jobs.has(TYPE) && jobs.has("utilisation")) || jobs.has("rated_value") {
             return None;
         }
         let varies = |axis: &String| {
@@ -122,10 +152,10 @@ impl ClassTable {
 
 /// A value of an axis as a row is named by it: of a path of a file its stem.
 fn named(axis: &str, cell: &Cell<'_>) -> String {
-    let text = cell.text();
     if axis != VEHICLE {
-        return text;
+        return labels::value(axis, cell);
     }
+    let text = cell.text();
     let stem = text.rsplit('/').next().unwrap_or_default();
     stem.strip_suffix(".json").unwrap_or(stem).to_owned()
 }

@@ -2,6 +2,7 @@
 //!
 //! | module | charter |
 //! |---|---|
+//! | [`asked`] | what a study asks of limits, in words |
 //! | [`class_table`] | which vehicle may cross how |
 //! | `thinning` | a few places that stand for many |
 //! | [`figures`] | what a paper would draw of results, as numbers, with the points of a reference beside them |
@@ -12,6 +13,7 @@
 //!
 //! Knows results, verdicts and how they are shown. Does not know terminals or the words of the command line.
 
+pub mod asked;
 pub mod class_table;
 pub mod drawing;
 pub mod export;

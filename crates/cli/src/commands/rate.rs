@@ -9,7 +9,7 @@ use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
 use pontoon_results::Results;
-use pontoon_view::class_table::{ClassCell, ClassTable};
+use pontoon_view::class_table::ClassTable;
 use serde_json::json;
 
 /// Runs one crossing a cell, and prints the table.
@@ -30,29 +30,7 @@ pub(crate) fn rate(arguments: &RateArguments, common: Common) -> Result<ExitStat
 
 fn written(table: &ClassTable) -> String {
     let names: Vec<String> = table.names.iter().chain(&table.heads).cloned().collect();
-    let rows: Vec<Vec<Cell<'_>>> = table
-        .rows
-        .iter()
-        .map(|row| {
-            let named = row.names.iter().map(|name| name.as_str().into());
-            named
-                .chain(row.cells.iter().map(|cell| Cell::Word(entry(cell.as_ref()).into())))
-                .collect()
-        })
-        .collect();
-    let told = "utilisation of the limit that governs, and where; ! where it is exceeded";
-    format!("{told}\n\n{}", text::table(&names, &rows))
-}
-
-fn entry(cell: Option<&ClassCell>) -> String {
-    let Some(cell) = cell else { return String::new() };
-    let Some(utilisation) = cell.utilisation else {
-        return "failed".to_owned();
-    };
-    let mark = if cell.passes() { ' ' } else { '!' };
-    let place = cell.place.map(|place| format!(" {place}")).unwrap_or_default();
-    format!(
-        "{utilisation:.2}{mark} {}{place}",
-        cell.limit.as_deref().unwrap_or_default()
-    )
+    let cells = |line: Vec<String>| line.into_iter().map(|cell| Cell::Word(cell.into())).collect();
+    let rows: Vec<Vec<Cell<'_>>> = table.lines().map(cells).collect();
+    format!("{}\n\n{}", ClassTable::LEGEND, text::table(&names, &rows))
 }

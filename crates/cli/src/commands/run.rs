@@ -16,6 +16,7 @@ use pontoon_plan::study_file::Study;
 use pontoon_results::{Exceedance, Failures, Outcome, Results, SummaryTable, labels};
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{ApartTask, SweepSetting, Swept, run_apart, sweep};
+use pontoon_view::asked;
 use serde::ser::{Serialize, Serializer};
 use serde_json::Value;
 use std::io::{self, Read, Write};
@@ -138,10 +139,10 @@ pub(super) fn answer(
         }
         (_, Some(compared)) => text::result(&format!(
             "{}\n{}",
-            text(swept, out),
+            text(study, swept, out),
             comparison::text(compared, TextStyle::of_results())
         )),
-        (_, None) => text::result(&text(swept, out)),
+        (_, None) => text::result(&text(study, swept, out)),
     }?;
     if let Some(compared) = &compared {
         comparison::tell_changes(compared);
@@ -173,7 +174,7 @@ fn failures(failures: &Failures) {
     }
 }
 
-fn text(swept: &Swept<'_>, out: &Path) -> String {
+fn text(study: &Study, swept: &Swept<'_>, out: &Path) -> String {
     let outcome = &swept.outcome;
     let text_style = TextStyle::of_results();
     let recorded = match outcome.jobs - outcome.ran {
@@ -203,7 +204,9 @@ fn text(swept: &Swept<'_>, out: &Path) -> String {
     };
     let table = summary::text(summary_table.columns(), || summary_table.rows(), text_style);
     let exceeded = exceeded(summary_table.exceedances());
-    format!("{table}\n{exceeded}{counts}results in {}\n", out.display())
+    let said = |what: &str, words: Option<String>| words.map_or(String::new(), |words| format!("{what}: {words}\n"));
+    let asked = said("limits", asked::limits(study)) + &said("rated value", asked::search(study));
+    format!("{asked}{table}\n{exceeded}{counts}results in {}\n", out.display())
 }
 
 /// Which share of jobs exceeds each limit, a line each.

@@ -36,12 +36,7 @@ pub(super) fn peaks<'a, I: Iterator<Item = SummaryRow<'a>>>(
         let peak = ColumnHead::of(&columns[first]);
         text += &match &survey.along {
             Some(along) => wrapped(
-                &format!(
-                    "{} [{}] against {}",
-                    peak.name,
-                    peak.unit.unwrap_or_default(),
-                    heads[along.axis].united()
-                ),
+                &format!("{} against {}", peak.united(), heads[along.axis].united()),
                 width,
                 2,
             ),
@@ -257,11 +252,8 @@ fn largest(
                 .iter()
                 .filter(|&&i| largest.most > 0.0 && !largest.row[i].is_nothing())
                 .map(|&i| heads[i].told_as(&text_of(survey, i, &largest.row[i])));
-            let value = format!(
-                "{} {}",
-                labels::digits(name, largest.most),
-                head.unit.unwrap_or_default()
-            );
+            let unit = head.unit.map_or(String::new(), |unit| format!(" {unit}"));
+            let value = format!("{}{unit}", labels::digits(name, largest.most));
             (head.name, value, at.collect())
         })
         .collect();

@@ -194,6 +194,11 @@ impl Find {
         (1..parts).map(at).collect()
     }
 
+    /// The bracket, its smaller end first.
+    pub fn between(&self) -> [f64; 2] {
+        self.between
+    }
+
     /// The ends of the bracket, from the one at which the limits are to hold.
     pub fn ends(&self) -> [f64; 2] {
         let [from, to] = self.between;

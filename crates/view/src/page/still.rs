@@ -2,6 +2,7 @@
 //!
 //! Knows that a server may forbid scripts, and that no text of the data is markup. Does not know how the report is drawn.
 
+use crate::class_table::ClassTable;
 use crate::report::Report;
 use pontoon_plan::input::Cell;
 use pontoon_results::labels;
@@ -53,10 +54,21 @@ pub(super) fn write(report: &Report, to: &mut dyn Write) -> io::Result<()> {
     for note in &report.notes {
         writeln!(to, "<p>{}</p>", Text(note))?;
     }
+    classes(report, to)?;
     cards(report, to)?;
     against(report, to)?;
     modes(report, to)?;
     writeln!(to, "</main>")
+}
+
+fn classes(report: &Report, to: &mut dyn Write) -> io::Result<()> {
+    let Some(classes) = &report.classes else {
+        return Ok(());
+    };
+    writeln!(to, "<h2>Classes</h2>")?;
+    writeln!(to, "<p>{}</p>", Text(ClassTable::LEGEND))?;
+    let head: Vec<&str> = classes.names.iter().chain(&classes.heads).map(String::as_str).collect();
+    table(to, &head, classes.lines())
 }
 
 fn cards(report: &Report, to: &mut dyn Write) -> io::Result<()> {
@@ -65,7 +77,7 @@ fn cards(report: &Report, to: &mut dyn Write) -> io::Result<()> {
     }
     writeln!(to, "<h2>Largest values</h2>")?;
     let lines = report.cards.iter().map(|card| {
-        let value = labels::value(card.measure, &Cell::Number(card.value));
+        let value = labels::value_in(card.unit, card.value);
         let job = card.job.map(|job| format!("job {job}")).unwrap_or_default();
         vec![card.label.to_owned(), value, card.place.clone(), job, card.axes.clone()]
     });

@@ -4,6 +4,8 @@
 
 use super::axes::PageAxis;
 use super::packed::Packed;
+use crate::asked;
+use pontoon_plan::study_file::Study;
 use pontoon_results::{Column, Results, Table};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
@@ -26,7 +28,7 @@ pub struct PageMeasure {
 }
 
 /// The measures that a table of jobs has.
-pub(super) fn measures(jobs: &Table) -> Vec<PageMeasure> {
+pub(super) fn measures(jobs: &Table, study: Option<&Study>) -> Vec<PageMeasure> {
     let there = |column: &&Column| {
         let numbers = jobs.numbers(column.name);
         numbers.is_some_and(|list| list.iter().any(Option::is_some))
@@ -34,7 +36,7 @@ pub(super) fn measures(jobs: &Table) -> Vec<PageMeasure> {
     let measure = |column: &Column| PageMeasure {
         name: column.name,
         label: column.label,
-        unit: column.unit,
+        unit: asked::searched_unit(study, column.name).unwrap_or(column.unit),
     };
     Column::measures().filter(there).map(measure).collect()
 }

@@ -3,6 +3,7 @@
 //! Knows which columns tell the place of a peak. Does not know cells.
 
 use super::cells::PageMeasure;
+use pontoon_plan::study_file::{Limit, Study};
 use pontoon_results::{Column, Results, Table, labels};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -44,21 +45,35 @@ pub struct FailureNote {
 }
 
 /// The cards of a table of jobs.
-pub(super) fn cards(results: &Results, measures: &[PageMeasure], row_label: &dyn Fn(usize) -> String) -> Vec<PageCard> {
+pub(super) fn cards(
+    results: &Results,
+    measures: &[PageMeasure],
+    study: Option<&Study>,
+    row_label: &dyn Fn(usize) -> String,
+) -> Vec<PageCard> {
+    let find = study.and_then(|study| study.find.as_ref());
     let card = |column: &'static Column| {
         let of = column.card?;
         let measure = measures.iter().find(|measure| measure.name == column.name)?;
-        let (row, value) = largest(results, column.name)?;
+        // of ratings the one that is safe for all: of largest values the smallest
+        let is_least = column.name == "rated_value" && find.is_some_and(|find| find.is_largest);
+        let (row, value) = most(results, column.name, if is_least { -1.0 } else { 1.0 })?;
         let number = |column: Option<&str>| column.and_then(|column| results.jobs().number(column, row));
         let at = of.place.and_then(|(kind, column)| {
             let place = number(Some(column))?;
-            Some(format!("{kind} {place}"))
+            let limit =
+                Some(results.jobs().cell("governing_limit", row).text()).filter(|_| measure.name == "utilisation");
+            let limit = limit.and_then(|word| Limit::ALL.into_iter().find(|of| of.word() == word));
+            Some(match limit {
+                Some(limit) => format!("{}, {} {place}", labels::label(limit.word()), limit.place()),
+                None => format!("{kind} {place}"),
+            })
         });
         let words = |of_job: String| if value == 0.0 { String::new() } else { of_job };
         let when = number(of.time).map(|time| format!("at {time:.2} s"));
         Some(PageCard {
             measure: measure.name,
-            label: of.label,
+            label: if is_least { "smallest rated value" } else { of.label },
             value,
             unit: measure.unit,
             place: words([at, when].into_iter().flatten().collect::<Vec<_>>().join(" ")),
@@ -69,15 +84,15 @@ pub(super) fn cards(results: &Results, measures: &[PageMeasure], row_label: &dyn
     Column::measures().filter_map(card).collect()
 }
 
-/// The row with the largest number of a column, the first of equals, and that number; failed jobs have none.
-fn largest(results: &Results, column: &str) -> Option<(usize, f64)> {
+/// The row with the largest number of a column times a sign, the first of equals, and that number; failed jobs have none.
+fn most(results: &Results, column: &str, sign: f64) -> Option<(usize, f64)> {
     let numbers = results.jobs().numbers(column)?;
     let mut best: Option<(usize, f64)> = None;
     for (row, number) in numbers.iter().enumerate() {
         let Some(number) = number.filter(|_| !results.is_failed(row)) else {
             continue;
         };
-        if best.is_none_or(|(_, most)| number > most) {
+        if best.is_none_or(|(_, most)| sign * number > sign * most) {
             best = Some((row, number));
         }
     }

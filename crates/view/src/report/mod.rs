@@ -43,6 +43,7 @@ pub use rows::{ColumnData, JobRows, PageEnvelope, PageProfile, RowColumn, WordLi
 pub use shapes::{ModeLine, ModeSet, ModeShape};
 pub use verdicts::{Tone, VerdictLine, Verdicts};
 
+use crate::asked;
 use crate::class_table::ClassTable;
 use crate::figures::{Chart, ReferenceMark};
 use pontoon_core::bridge::{BankSpec, BridgeDesign, Direction, Toward};
@@ -374,9 +375,12 @@ impl Report {
         let names = axes_shown(&results);
         let (axes, of_words) = axes_of(jobs, &names, &mut notes);
         let row_label = |row: usize| headline::axes_in_words(jobs, &of_words, row);
-        let measures = cells::measures(jobs);
+        let measures = cells::measures(jobs, study.as_ref());
         let chosen = rows::chosen(&results, &measures);
-        let (rows, envelope) = JobRows::new(&results, &names, &measures, &chosen, &mut notes)?;
+        let (mut rows, envelope) = JobRows::new(&results, &names, &measures, &chosen, &mut notes)?;
+        for column in &mut rows.columns {
+            column.unit = asked::searched_unit(study.as_ref(), &column.name).unwrap_or(column.unit);
+        }
         let wanted: HashSet<u32> = chosen.0.iter().map(|&row| job(&results, row)).collect();
         let (histories, recorded) = histories::histories(&results, &wanted, &row_label)?;
         if histories.len() < recorded {
@@ -414,7 +418,7 @@ impl Report {
                 Ok(study) => Exceedance::of(&results, &study.value())?,
                 Err(_) => Vec::new(),
             },
-            cards: headline::cards(&results, &measures, &row_label),
+            cards: headline::cards(&results, &measures, study.as_ref(), &row_label),
             failures,
             marks: marks.into_iter().map(PageMark::from).collect(),
             envelope,

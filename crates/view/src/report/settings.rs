@@ -3,6 +3,7 @@
 //! Knows the study's spec. Does not know results.
 
 use super::Item;
+use crate::asked;
 use pontoon_core::vehicle::Inertia;
 use pontoon_plan::design::{Root, Varies};
 use pontoon_plan::study_file::{Analysis, Kind, ModelSpec, Solver, Study, TimeStep};
@@ -27,6 +28,8 @@ pub(super) fn settings(study: &Study) -> Vec<Item> {
         list.push(Item::new("vehicle", apart(Root::Vehicle, vehicle(study))));
     }
     list.push(Item::new("analysis", apart(Root::Analysis, analysis(&study.analysis))));
+    list.extend(asked::limits(study).map(|limits| Item::new("limits", limits)));
+    list.extend(asked::search(study).map(|search| Item::new("rated value", search)));
     list
 }
 
