@@ -26,6 +26,8 @@ WHEN = {
     "pin_histories": "; with histories of pins or vehicles",
     "springs": "; of vehicles on springs",
     "vehicle_histories": "; with histories of vehicles",
+    "limits": "; with limits",
+    "rating": "; of ratings",
 }
 
 
