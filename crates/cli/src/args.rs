@@ -102,17 +102,18 @@ pub(crate) enum Command {
     ///
     /// Every job is checked before anything runs or is written. Jobs run in parallel; a job that fails is a row with its
     /// reason, the others go on. What a job leaves is kept in a journal at once: after a kill, a crash or an interrupt the same
-    /// command runs what is missing. The folder of results then holds jobs.parquet, positions.parquet, connectors.parquet,
-    /// summary.csv, manifest.json and, where asked for, histories.parquet.
+    /// command runs what is missing. The folder of results then holds jobs.parquet, summary.csv, manifest.json and the tables that
+    /// the study keeps, such as positions.parquet, connectors.parquet, limits.parquet and histories.parquet.
     #[command(
         after_help = "Examples:\n  pontoon run studies/fu2005\n  pontoon run studies/smoke --out /tmp/smoke --threads 2 --format json"
     )]
     Run(RunArguments),
     /// Says which vehicle may cross how: one crossing a cell, with its utilisation and the limit that governs.
     ///
-    /// The study has limits and an axis of vehicles. Where its designs have no axis crossing_type, each has all three: normal, a
-    /// column 30.5 m from tail to head, at 2, 4 and 6 m/s unless it has speeds; caution, 45.7 m at 3.6 m/s on the centre line; risk,
-    /// one vehicle at 1.3 m/s. Nothing is searched. Exit status 1 where a crossing failed.
+    /// The study has limits and grids, most often with an axis of vehicles. Where a grid has no axis crossing_type, it gets all three:
+    /// normal, a column 30.5 m from tail to head, at the speeds of the grid, or at 2, 4 and 6 m/s where it has none; caution, 45.7 m from
+    /// tail to head on the centre line at 3.6 m/s; risk, one vehicle on the centre line at 1.3 m/s. Speeds of the grid are those of normal
+    /// crossings alone. Nothing is searched. Results are those of a study named NAME_classes. Exit status 1 where a crossing failed.
     #[command(after_help = "Example:\n  pontoon rate studies/rating")]
     Rate(RateArguments),
     /// Says what would run: jobs, distinct bridges, steps, expected time; of a folder of results what is done, missing,

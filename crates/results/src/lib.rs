@@ -71,7 +71,7 @@ pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, SpeedFigure
 pub use rest_rows::{DeadRow, FreeboardRow};
 pub use results::Results;
 pub use results_error::ResultsError;
-pub use summary::SummaryTable;
+pub use summary::{DoubtfulRatings, SummaryTable};
 pub use table::{ColumnKind, Table, TableName};
 pub use varying::Seen;
 pub use verification::Verification;

@@ -57,8 +57,8 @@ pub const COLUMNS: &[Column] = &[
     of_job("rated_value", Numbers, ("rated value", "the last value of the axis that is searched, in its unit, before the first at which a crossing exceeds a limit"), |r| r.summary.rated_value.into()).when(When::Rating).role(ColumnRole::Measure).in_summary()
         .card(plain_card("largest rated value")),
     of_job("first_failure", Numbers, ("first failure", "the first value at which a crossing exceeds a limit"), |r| r.summary.first_failure.into()).when(When::Rating).role(ColumnRole::Listed).in_summary(),
-    of_job("largest_pass", Numbers, ("largest pass", "the farthest value tried at which a crossing keeps all limits; beyond the first failure where the response is not monotone"), |r| r.summary.largest_pass.into()).when(When::Rating).role(ColumnRole::Listed),
-    of_job("monotone", Flags, ("monotone", "whether no value tried beyond the first failure passes"), |r| r.summary.monotone.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("largest_pass", Numbers, ("largest pass", "the farthest value of the ladder at which a crossing keeps all limits where it lies beyond the first failure, else the rated value"), |r| r.summary.largest_pass.into()).when(When::Rating).role(ColumnRole::Listed),
+    of_job("monotone", Flags, ("monotone", "whether no value of the ladder beyond the first failure passes; null where one of them could not be solved and none passes"), |r| r.summary.monotone.into()).when(When::Rating).role(ColumnRole::Listed),
     of_job("crossings", Counts, ("crossings", "crossings that the rating took"), |r| r.summary.crossings.into()).when(When::Rating).role(ColumnRole::Listed),
     of_job("spread", Numbers, ("spread", "by how much a ten-thousandth more or less load moves the utilisation of the rated value or of the first failure, as a share of it, the larger of both"), |r| r.summary.spread.into()).when(When::Rating).role(ColumnRole::Listed),
     of_job("chaotic", Flags, ("chaotic", "whether the spread is above 0.02"), |r| r.summary.chaotic.into()).when(When::Rating).role(ColumnRole::Listed),

@@ -23,6 +23,16 @@ pub struct SummaryTable<'a> {
     /// Places in `outcomes`, in the order of rows.
     order: Vec<usize>,
     exceedances: Vec<Exceedance>,
+    doubtful: DoubtfulRatings,
+}
+
+/// Ratings that need a second look.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DoubtfulRatings {
+    /// Those of which a value beyond the first failure passes.
+    pub not_monotone: usize,
+    /// Those that a ten-thousandth of the load moves by more than 2 %.
+    pub chaotic: usize,
 }
 
 /// What the rows hold beside the axes, in the order of jobs.
@@ -45,6 +55,7 @@ pub(super) struct SummaryLines<'a> {
     jobs: &'a [Job],
     outcomes: Outcomes,
     exceedances: ExceedanceCounts,
+    doubtful: DoubtfulRatings,
     taken: usize,
 }
 
@@ -63,6 +74,7 @@ impl<'a> SummaryLines<'a> {
                 }
             },
             exceedances: ExceedanceCounts::new(&study.document.value()),
+            doubtful: DoubtfulRatings::default(),
             taken: 0,
         }
     }
@@ -89,6 +101,10 @@ impl<'a> SummaryLines<'a> {
         for row in records.iter().flat_map(|record| &record.limits) {
             self.exceedances.take(&row.limit, row.utilisation);
         }
+        for summary in records.iter().map(|record| &record.summary) {
+            self.doubtful.not_monotone += usize::from(summary.monotone == Some(false));
+            self.doubtful.chaotic += usize::from(summary.chaotic == Some(true));
+        }
         self.taken += records.len();
     }
 
@@ -113,6 +129,7 @@ impl<'a> SummaryLines<'a> {
             outcomes: self.outcomes,
             order,
             exceedances: self.exceedances.exceedances(),
+            doubtful: self.doubtful,
         }
     }
 }
@@ -154,6 +171,11 @@ impl SummaryTable<'_> {
     /// How often each limit is exceeded; nothing where no limits were stated or no point was drawn at random.
     pub fn exceedances(&self) -> &[Exceedance] {
         &self.exceedances
+    }
+
+    /// Ratings that need a second look.
+    pub fn doubtful(&self) -> DoubtfulRatings {
+        self.doubtful
     }
 
     /// Number of rows.

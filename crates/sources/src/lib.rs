@@ -17,8 +17,12 @@ pub const RECORDS: &[&str] = &[
     "core/src",
     "plan/Cargo.toml",
     "plan/src",
+    "results/src/extreme.rs",
     "results/src/failure.rs",
+    "results/src/limit_rows.rs",
     "results/src/record.rs",
+    "results/src/rest_rows.rs",
+    "results/src/vehicle_rows.rs",
     "study/Cargo.toml",
     "study/src",
 ];

@@ -249,12 +249,12 @@ fn a_bracket_without_the_rating_is_a_failed_row() {
         (
             json!({ "edge_sinkage_m": 0.001 }),
             "bracket_fails",
-            "the bracket fails where its limits are to hold: load_n = 50000",
+            "the lower end of the bracket fails: load_n = 50000",
         ),
         (
             json!({ "edge_sinkage_m": 50.0 }),
             "bracket_passes",
-            "the whole bracket passes: load_n = 400000",
+            "the upper end of the bracket passes: load_n = 400000",
         ),
     ] {
         for (connection, inertia) in [("nonlinear", "local"), ("linear", "none")] {

@@ -13,7 +13,7 @@ use pontoon_judge::reference::Reference;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::Study;
-use pontoon_results::{Exceedance, Failures, Outcome, Results, SummaryTable, labels};
+use pontoon_results::{DoubtfulRatings, Exceedance, Failures, Outcome, Results, SummaryTable, labels};
 use pontoon_study::run::Cache;
 use pontoon_study::sweep::{ApartTask, SweepSetting, Swept, run_apart, sweep};
 use pontoon_view::asked;
@@ -203,10 +203,26 @@ fn text(study: &Study, swept: &Swept<'_>, out: &Path) -> String {
         );
     };
     let table = summary::text(summary_table.columns(), || summary_table.rows(), text_style);
-    let exceeded = exceeded(summary_table.exceedances());
+    let exceeded = exceeded(summary_table.exceedances()) + &doubted(summary_table.doubtful());
     let said = |what: &str, words: Option<String>| words.map_or(String::new(), |words| format!("{what}: {words}\n"));
     let asked = said("limits", asked::limits(study)) + &said("rated value", asked::search(study));
     format!("{asked}{table}\n{exceeded}{counts}results in {}\n", out.display())
+}
+
+/// How many ratings need a second look; nothing where none does.
+fn doubted(doubtful: DoubtfulRatings) -> String {
+    let line = |count: usize, what: &str| match count {
+        0 => String::new(),
+        _ => format!("{}: see jobs.parquet, {what}\n", labels::counted(count, "rating")),
+    };
+    let lines = line(
+        doubtful.not_monotone,
+        "column monotone: a value beyond the first failure passes, so that the response is not monotone",
+    ) + &line(
+        doubtful.chaotic,
+        "column chaotic: a ten-thousandth of the load moves the utilisation by more than 2 %",
+    );
+    if lines.is_empty() { lines } else { lines + "\n" }
 }
 
 /// Which share of jobs exceeds each limit, a line each.

@@ -10,7 +10,7 @@ use crate::terminal::{BAD, FAINT, NOTABLE, TextStyle};
 use crate::text::{listed, wrapped};
 use anstyle::Style;
 use pontoon_plan::input::Cell;
-use pontoon_results::labels;
+use pontoon_results::{Column, When, labels};
 use std::collections::HashMap;
 
 /// Lines of rows that are written at most, over all pieces of a table.
@@ -244,6 +244,8 @@ fn largest(
     let parts: Vec<(String, String, Vec<String>)> = survey
         .largest
         .iter()
+        // the largest of several ratings is safe for one of them alone
+        .filter(|largest| Column::named(&columns[largest.column]).is_none_or(|column| column.when != When::Rating))
         .map(|largest| {
             let name = &columns[largest.column];
             let head = short(name);

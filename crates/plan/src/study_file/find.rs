@@ -22,8 +22,8 @@ pub struct FindSpec {
     pub smallest: Option<String>,
     /// From where to where values are tried.
     pub between: [f64; 2],
-    /// Ratio of a value of the ladder to the one before, above 1; 1.02 where absent. Of a bracket that begins at 0 or below the
-    /// ladder has equal steps, this less 1 of the bracket.
+    /// Ratio of a value of the ladder to the one before, above 1; 1.02 where absent. The ladder of a bracket that begins at 0 or
+    /// below has equal steps: the ratio less 1, times the bracket.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 1.0))]
     pub ladder_ratio: Option<f64>,

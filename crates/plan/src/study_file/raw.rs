@@ -56,7 +56,7 @@ pub struct StudySpec {
     /// How far the bridge may go in a crossing: each crossing then tells how much of that it uses up.
     #[serde(default)]
     pub limits: Option<LimitsSpec>,
-    /// What a rating searches. A key of ratings.
+    /// What a rating searches; in studies of kind `rating` alone.
     #[serde(default)]
     pub find: Option<FindSpec>,
     /// The designs, united in order; equal jobs run once.

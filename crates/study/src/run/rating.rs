@@ -93,7 +93,15 @@ impl Rating<'_> {
             return Err(self.unbracketed(FailureKind::BracketFails, &failed).into());
         };
         let mut passed = passed?;
-        let passes_beyond = beyond.flatten().filter(Tried::passes).map(|tried| tried.value).last();
+        // of a crossing that was not solved nobody knows whether it passes
+        let (mut passes_beyond, mut unknown) = (None, false);
+        for rung in beyond {
+            match rung {
+                Ok(tried) if tried.passes() => passes_beyond = Some(tried.value),
+                Ok(_) => {}
+                Err(_) => unknown = true,
+            }
+        }
         loop {
             let values = self.find.sections(passed.value, failed.value);
             if values.is_empty() {
@@ -114,7 +122,7 @@ impl Rating<'_> {
         summary.rated_value = Some(passed.value);
         summary.first_failure = Some(failed.value);
         summary.largest_pass = Some(passes_beyond.unwrap_or(passed.value));
-        summary.monotone = Some(passes_beyond.is_none());
+        summary.monotone = Some(passes_beyond.is_none()).filter(|is| !(*is && unknown));
         summary.spread = Some(spread);
         summary.chaotic = Some(spread > CHAOTIC);
         summary.crossings = Some(self.crossings);
@@ -127,21 +135,21 @@ impl Rating<'_> {
 
     /// The failure of a rating at an end of its bracket.
     fn unbracketed(&self, kind: FailureKind, tried: &Tried) -> Failure {
-        let name = &self.find.axis.name;
         let row = governing(tried.limits());
         let limit = row.map_or("no limit", |row| row.limit.as_str());
-        let text = match kind {
-            FailureKind::BracketFails => format!(
-                "the bracket fails where its limits are to hold: {name} = {} uses up {:.4} of {limit}",
-                tried.value,
-                tried.utilisation()
-            ),
-            _ => format!(
-                "the whole bracket passes: {name} = {} uses up {:.4} of {limit}",
-                tried.value,
-                tried.utilisation()
-            ),
-        };
+        let is_lower = (kind == FailureKind::BracketFails) == self.find.is_largest;
+        let text = format!(
+            "the {} end of the bracket {}: {} = {} uses up {:.4} of {limit}",
+            if is_lower { "lower" } else { "upper" },
+            if kind == FailureKind::BracketFails {
+                "fails"
+            } else {
+                "passes"
+            },
+            self.find.axis.name,
+            tried.value,
+            tried.utilisation()
+        );
         Failure::new(kind, text).with("utilisation", tried.utilisation())
     }
 
