@@ -45,13 +45,15 @@ pub enum FailureKind {
     BracketFails,
     /// Limits hold over the whole bracket.
     BracketPasses,
+    /// Finer solvers find no pair of values of which one passes and the next fails.
+    RatingNotSettled,
     /// The program is at fault.
     ProgramError,
 }
 
 impl FailureKind {
     /// All kinds.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::ContactNotSettled,
         Self::StaticContactNotSettled,
         Self::NoDeadState,
@@ -65,6 +67,7 @@ impl FailureKind {
         Self::Stopped,
         Self::BracketFails,
         Self::BracketPasses,
+        Self::RatingNotSettled,
         Self::ProgramError,
     ];
 
@@ -95,6 +98,7 @@ impl FailureKind {
             Self::Stopped => "stopped",
             Self::BracketFails => "bracket_fails",
             Self::BracketPasses => "bracket_passes",
+            Self::RatingNotSettled => "rating_not_settled",
             Self::ProgramError => "program_error",
         }
     }

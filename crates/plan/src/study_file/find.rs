@@ -194,6 +194,16 @@ impl Find {
         (1..parts).map(at).collect()
     }
 
+    /// The value as far behind one as that is behind another; none outside of the bracket.
+    pub fn next(&self, before: f64, value: f64) -> Option<f64> {
+        let next = if self.is_geometric() {
+            value * (value / before)
+        } else {
+            value + (value - before)
+        };
+        Some(next).filter(|next| (self.between[0]..=self.between[1]).contains(next))
+    }
+
     /// The bracket, its smaller end first.
     pub fn between(&self) -> [f64; 2] {
         self.between

@@ -6,6 +6,7 @@
 //! | `cut`, `batch`, `pool` | which jobs are solved together, and on which threads |
 //! | `crossing`, `statics`, `modes`, `rating`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
 //! | `demands` | what a crossing asks of limits |
+//! | `tried`, `finer` | crossings that a rating tries, and the operator that judges them |
 //! | `verify`, `self_test` | the reference solver as judge; a crossing whose answer is known |
 //! | `failure`, `guard` | an error of the mechanics as the failure that a record keeps; panics made failures |
 //! | `resume_index` | records in the journal, and back |
@@ -24,6 +25,7 @@ mod dead_rows;
 mod demands;
 mod error;
 mod failure;
+mod finer;
 mod guard;
 mod joint_rows;
 mod model_keys;
@@ -39,6 +41,7 @@ mod retry;
 pub mod self_test;
 mod shared_models;
 mod statics;
+mod tried;
 mod verify;
 
 pub use cache::Cache;

@@ -5,12 +5,13 @@
 use super::cache::{Cache, CacheLookup};
 use super::cancel::CancelToken;
 use super::failure::JobFailure;
+use super::finer::finer_analysis;
 use super::guard::guarded;
 use super::model_keys::{
     BridgeKey, CreepingKey, CrossingKey, DampingKey, DeadKey, LaneBatchKey, ModuleKey, OperatorKey, bridge_key,
     creeping_key, crossing_key, damping_key, dead_key, model, module_keys, operator_key, word,
 };
-use super::progress::Progress;
+use super::progress::{Progress, Silent};
 use super::retry::RETRY_STEP_SHARE;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
@@ -20,6 +21,7 @@ use pontoon_core::operator::BridgeOperator;
 use pontoon_core::response::DeadState;
 use pontoon_core::stop::Stop;
 use pontoon_plan::job::{CrossingJob, Job, Task};
+use pontoon_plan::study_file::CrossingAnalysis;
 use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -75,11 +77,29 @@ struct OperatorsMade {
 impl SharedModels {
     /// Prepares everything that `all` jobs need, each thing once, on the current pool; modules that are `known` are taken
     /// from there. What is not begun when a stop is asked for is not prepared.
-    pub(super) fn prepare(
-        all: &[&Job],
+    pub(super) fn prepare<'j>(
+        all: &[&'j Job],
         known: &PreparedModules,
         cache: Option<&Cache>,
         cancel: &CancelToken,
+        progress: &dyn Progress,
+    ) -> Self {
+        let finer = |job: &&'j Job| Some((*job, finer_analysis(job)?));
+        let finer: Vec<(&Job, CrossingAnalysis)> = all.iter().filter_map(finer).collect();
+        Self::prepare_beside(all, &finer, known, (cache, cancel), progress)
+    }
+
+    /// Prepares what some candidates of a rating need, and nothing that judges them.
+    pub(super) fn prepare_candidates(all: &[&Job], known: &PreparedModules) -> Self {
+        Self::prepare_beside(all, &[], known, (None, &CancelToken::default()), &Silent)
+    }
+
+    /// Prepares what all jobs need, and operators of some for other analyses beside.
+    fn prepare_beside(
+        all: &[&Job],
+        beside: &[(&Job, CrossingAnalysis)],
+        known: &PreparedModules,
+        (cache, cancel): (Option<&Cache>, &CancelToken),
         progress: &dyn Progress,
     ) -> Self {
         let mut models = Self {
@@ -96,6 +116,11 @@ impl SharedModels {
             operators_made: OperatorsMade::default(),
         };
         let crossings: Vec<CrossingJob<'_>> = all.iter().filter_map(|job| job.as_crossing()).collect();
+        let judges = beside.iter().filter_map(|(job, analysis)| {
+            let crossing = job.as_crossing()?;
+            Some(CrossingJob { analysis, ..crossing })
+        });
+        let by_operator: Vec<CrossingJob<'_>> = crossings.iter().copied().chain(judges).collect();
         progress.stage("modules: finite elements, condensation");
         models.modules = models.all_modules(all, known, cancel);
         progress.stage("bridges: assembly");
@@ -109,7 +134,7 @@ impl SharedModels {
             let bridges = each(cancel, &loaded, bridge, |job| models.bridge(job, Ends::Supported));
             progress.stage("damping, operators: modes and what they leave out");
             let operator = |job: &CrossingJob<'_>| models.operator(job, &bridges, cache, cancel);
-            let operators = each(cancel, &crossings, operator_key, operator);
+            let operators = each(cancel, &by_operator, operator_key, operator);
             (bridges, operators)
         };
         // damping has a bridge of its own, and the search for its modes runs on one thread
@@ -128,7 +153,7 @@ impl SharedModels {
             |job| Some(crossing_key(job)),
             |job| models.crossing_solver(job),
         );
-        models.operated = each(cancel, &crossings, Self::lane_batch_key, |job| {
+        models.operated = each(cancel, &by_operator, Self::lane_batch_key, |job| {
             models.operator_solver(job)
         });
         models.dead = models.dead_states(cancel, &loaded);
@@ -355,9 +380,12 @@ impl SharedModels {
         shared(&self.dead, &dead_key(job)).map(|state| (*state).clone())
     }
 
-    /// The solver of a crossing.
+    /// The reference solver of a crossing, made anew where it was not prepared.
     pub(super) fn crossing(&self, crossing: &CrossingJob<'_>) -> SharedResult<CrossingSolver> {
-        shared(&self.crossings, &crossing_key(crossing))
+        match self.crossings.get(&crossing_key(crossing)) {
+            Some(prepared) => prepared.clone(),
+            None => self.crossing_solver(crossing).map(Arc::new),
+        }
     }
 
     /// The solver of a static case.
