@@ -51,7 +51,7 @@ impl Tried {
         })
     }
 
-    /// The same crossing by another solver.
+    /// This crossing by another solver.
     pub(super) fn again(&self, by: Solver, models: &SharedModels) -> Result<Self, JobFailure> {
         let analysis = CrossingAnalysis {
             solver: by,
