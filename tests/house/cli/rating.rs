@@ -170,9 +170,10 @@ fn a_search_is_the_ladder_by_hand() {
     let told = stage.table("c/jobs.parquet");
     let names = told.column("governing_limit").unwrap();
     assert_eq!(names.str().unwrap().get(below + 1), Some(governing.as_str()));
-    // what is told of the rating is its crossing at the value rated
-    let peaks = stage.numbers("c/jobs.parquet", "peak_deflection_m");
-    assert_eq!(peaks[below], Some(job(&stage, "r", "peak_deflection_m")));
+    // what is told of the rating is its crossing at the value rated, by the operator that judges
+    let told_m = job(&stage, "r", "peak_deflection_m");
+    let by_study_m = stage.numbers("c/jobs.parquet", "peak_deflection_m")[below].unwrap();
+    assert!((by_study_m / told_m - 1.0).abs() < 1e-3, "{by_study_m} {told_m}");
     // the rows of limits of crossings give the columns: largest of demand over allowable
     let rows = stage.numbers("c/limits.parquet", "utilisation");
     let (demand, allowed) = (
@@ -187,6 +188,22 @@ fn a_search_is_the_ladder_by_hand() {
             assert!((demand[row].unwrap() / allowed[row].unwrap() - rows[row].unwrap()).abs() < 1e-12);
         }
     }
+    stage.study["analysis"]["operator_tolerance"] = json!(1e-4);
+    stage.study["design"][0]["grid"]["load_n"] = json!([rated, failure]);
+    stage.ran("judge");
+    assert_eq!(
+        stage.numbers("judge/jobs.parquet", "peak_deflection_m")[0],
+        Some(told_m)
+    );
+    // and the reference solver agrees on both ends
+    stage.study["analysis"]["solver"] = json!("reference");
+    stage.study["analysis"]
+        .as_object_mut()
+        .unwrap()
+        .remove("operator_tolerance");
+    stage.ran("reference");
+    let used = stage.numbers("reference/jobs.parquet", "utilisation");
+    assert!(used[0].unwrap() <= 1.0 && used[1].unwrap() > 1.0, "{used:?}");
 }
 
 /// A search along other axes, in either sense: the fastest, and the shortest spacing of a column. Three vehicles 17 m apart press a bridge of
