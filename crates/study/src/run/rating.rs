@@ -62,7 +62,7 @@ impl Rating<'_> {
             return Ok(record);
         }
         let ladder = self.find.ladder();
-        let mut rungs = self.tried(&ladder, 1.0);
+        let mut rungs = self.tried(&at_own_load(&ladder));
         let fails = |tried: &Result<Tried, JobFailure>| !tried.as_ref().is_ok_and(Tried::passes);
         let first = rungs.iter().position(fails);
         let Some(first) = self.first_failing(&rungs, first)? else {
@@ -93,7 +93,7 @@ impl Rating<'_> {
             if values.is_empty() {
                 break;
             }
-            for (value, tried) in values.iter().zip(self.tried(&values, 1.0)) {
+            for (value, tried) in values.iter().zip(self.tried(&at_own_load(&values))) {
                 let tried = tried.map_err(|failure| self.at(*value, failure))?;
                 if !tried.passes() {
                     failed = tried;
@@ -103,7 +103,7 @@ impl Rating<'_> {
             }
         }
         let (passed, failed) = self.settled(passed, failed)?;
-        let spread = self.spread(&passed)?.max(self.spread(&failed)?);
+        let spread = self.spread([&passed, &failed])?;
         let mut record = self.whole(&passed)?;
         let summary = &mut record.summary;
         summary.rated_value = Some(passed.value);
@@ -145,11 +145,11 @@ impl Rating<'_> {
         failure.said(&format!("crossing at {} = {value}: ", self.find.axis.name), "")
     }
 
-    /// The crossings at some values with all weights multiplied, side by side.
-    fn tried(&mut self, values: &[f64], load_factor: f64) -> Vec<Result<Tried, JobFailure>> {
-        let made: Vec<Result<Job, JobFailure>> = values
+    /// The crossings at some values, each with all weights multiplied, side by side.
+    fn tried(&mut self, asked: &[(f64, f64)]) -> Vec<Result<Tried, JobFailure>> {
+        let made: Vec<Result<Job, JobFailure>> = asked
             .iter()
-            .map(|&value| match self.candidates.at(self.job, value) {
+            .map(|&(value, load_factor)| match self.candidates.at(self.job, value) {
                 Ok(Some(job)) if load_factor != 1.0 => Ok(job.with_load(load_factor)),
                 Ok(Some(job)) => Ok(job),
                 Ok(None) => Err(JobFailure::of_program("a rating without a point")),
@@ -161,9 +161,9 @@ impl Rating<'_> {
         let own = self.prepared_for(&jobs);
         let models = own.as_ref().unwrap_or(self.models);
         let mut solved = solved(&jobs, models).into_iter();
-        let value_and_made = values.iter().zip(made);
+        let value_and_made = asked.iter().zip(made);
         value_and_made
-            .map(|(&value, job)| {
+            .map(|(&(value, _), job)| {
                 let job = job?;
                 let response = solved
                     .next()
@@ -270,16 +270,20 @@ impl Rating<'_> {
         tried.whole(own.as_ref().unwrap_or(self.models))
     }
 
-    /// How far a ten-thousandth of the load moves the utilisation of a crossing, as a share of it.
-    fn spread(&mut self, tried: &Tried) -> Result<f64, JobFailure> {
-        let mut range = [tried.by_study; 2];
-        for factor in [1.0 - NUDGE, 1.0 + NUDGE] {
-            for moved in self.tried(&[tried.value], factor) {
+    /// How far a ten-thousandth of the load moves the utilisation of crossings, as a share of it, of the one that it moves most.
+    fn spread(&mut self, pair: [&Tried; 2]) -> Result<f64, JobFailure> {
+        let nudged = |tried: &Tried| [1.0 - NUDGE, 1.0 + NUDGE].map(|factor| (tried.value, factor));
+        let mut moved = self.tried(&pair.map(nudged).concat()).into_iter();
+        let mut most = 0.0_f64;
+        for tried in pair {
+            let mut range = [tried.by_study; 2];
+            for moved in moved.by_ref().take(2) {
                 let utilisation = moved.map_err(|failure| self.at(tried.value, failure))?.utilisation();
                 range = [range[0].min(utilisation), range[1].max(utilisation)];
             }
+            most = most.max((range[1] - range[0]) / tried.by_study);
         }
-        Ok((range[1] - range[0]) / tried.by_study)
+        Ok(most)
     }
 
     /// The rating of a load that nothing but weight presses on a linear bridge: demands are in proportion to it.
@@ -326,10 +330,15 @@ impl Rating<'_> {
     }
 
     fn one_tried(&mut self, value: f64) -> Result<Tried, JobFailure> {
-        let tried = self.tried(&[value], 1.0).pop();
+        let tried = self.tried(&[(value, 1.0)]).pop();
         let tried = tried.unwrap_or_else(|| Err(JobFailure::of_program("no answer")));
         tried.map_err(|failure| self.at(value, failure))
     }
+}
+
+/// Values, each at the load that it says.
+fn at_own_load(values: &[f64]) -> Vec<(f64, f64)> {
+    values.iter().map(|&value| (value, 1.0)).collect()
 }
 
 /// Whether demands are in proportion to the load: nothing on the bridge but weights that are so, all connectors and banks linear,
