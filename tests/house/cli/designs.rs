@@ -61,6 +61,22 @@ fn every_form_is_planned_with_its_points_and_its_jobs() {
         ),
         (json!({ "sobol": { "count": 32, "seed": 1, "ranges": ranges } }), 32, 32),
         (
+            json!({ "saltelli": { "count": 8, "seed": 1, "ranges": ranges } }),
+            40,
+            40,
+        ),
+        (
+            json!({ "saltelli": { "count": 8, "seed": 1, "ranges": ranges, "second_order": true } }),
+            64,
+            64,
+        ),
+        // two levels of three axes have eight points
+        (
+            json!({ "morris": { "trajectories": 50, "levels": 2, "seed": 1, "ranges": ranges } }),
+            200,
+            8,
+        ),
+        (
             json!({ "grid": { "gap_tension_m": four, "gap_compression_m": four, "speed_m_s": 5, "load_n": 1e5 },
                     "where": gaps }),
             10,
@@ -119,11 +135,16 @@ fn the_schema_tells_every_form_and_every_key() {
         let text = of["properties"][key]["description"].as_str();
         assert!(text.is_some_and(|text| text.ends_with('.')), "{key}: {of}");
     };
-    let forms = ["grid", "zip", "cases", "latin_hypercube", "sobol"];
-    for (form, shape) in forms
-        .into_iter()
-        .zip(["Axes", "Axes", "Case", "SampleSpec", "SampleSpec"])
-    {
+    let forms = [
+        ("grid", "Axes"),
+        ("zip", "Axes"),
+        ("cases", "Case"),
+        ("latin_hypercube", "SampleSpec"),
+        ("sobol", "SampleSpec"),
+        ("saltelli", "SaltelliSpec"),
+        ("morris", "MorrisSpec"),
+    ];
+    for (form, shape) in forms {
         described(&defs["Design"], form);
         let said = defs["Design"]["properties"][form].to_string();
         assert!(said.contains(&format!("#/$defs/{shape}\"")), "{form}: {said}");
@@ -131,11 +152,18 @@ fn the_schema_tells_every_form_and_every_key() {
     described(&defs["Design"], "where");
     assert_eq!(
         defs["Design"]["oneOf"],
-        json!(forms.map(|form| json!({ "required": [form] })))
+        json!(forms.map(|(form, _)| json!({ "required": [form] })))
     );
     for key in ["count", "seed", "ranges"] {
         described(&defs["SampleSpec"], key);
     }
+    for key in ["count", "seed", "ranges", "second_order"] {
+        described(&defs["SaltelliSpec"], key);
+    }
+    for key in ["trajectories", "levels", "seed", "ranges"] {
+        described(&defs["MorrisSpec"], key);
+    }
+    assert_eq!(defs["MorrisSpec"]["properties"]["levels"]["multipleOf"], json!(2));
     assert_eq!(defs["SampleSpec"]["required"], json!(["count", "seed", "ranges"]));
     assert_eq!(defs["SampleSpec"]["properties"]["count"]["maximum"], json!(10_000_000));
     let bounds = &defs["Conditions"]["additionalProperties"]["anyOf"][2];
@@ -159,7 +187,7 @@ fn the_schema_tells_every_form_and_every_key() {
 
 #[test]
 fn designs_of_no_form_or_of_two() {
-    let one = "exactly one of grid, zip, cases, latin_hypercube, sobol";
+    let one = "exactly one of grid, zip, cases, latin_hypercube, sobol, saltelli, morris";
     bad(json!({}), "", "none of them", one);
     bad(json!({ "grid": {}, "zip": {} }), "", "grid and zip", one);
     study(

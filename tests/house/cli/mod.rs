@@ -18,6 +18,7 @@ mod export_input;
 mod export_stage;
 mod export_stresses;
 mod figures;
+mod indices;
 mod joints;
 mod kinds;
 mod old_results;

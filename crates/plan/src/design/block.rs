@@ -2,21 +2,19 @@
 //!
 //! Knows what makes a design one that can be expanded: names, forms and sizes. Does not know what a point means.
 
-use super::axes::{Axis, AxisValues, JobAxis, NamedAxis, Root, Varies, check_apart};
+use super::axes::{Axis, JobAxis, Root, Varies, check_apart};
 use super::cases::{CaseRun, Cases};
 use super::condition::{Conditions, Test};
-use super::forms::{AxisMap, Design, Form, SampleSpec};
-use super::points::{PointSource, RandomSample, SampledAxis, count_met, values};
-use super::sampling::SobolPoints;
-use super::values::{MOST_POINTS, Values, numbers};
+use super::forms::{AxisMap, Design, Form};
+use super::points::{PointSource, count_met, values};
+use super::samples::SampleReader;
+use super::trajectories::TrajectoryStep;
+use super::values::{MOST_POINTS, Values};
 use crate::input::{Cell, DocumentPath, FoundValue, Refusal, RefusalKind};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Most parts of all ranges of a Latin hypercube, whose orders take four bytes a part.
-const MOST_PARTS: usize = 100_000_000;
 
 /// A design with its axes read, or those of its cases that name the same axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,6 +149,39 @@ impl Block {
         }
     }
 
+    /// Where its axes stand in the study file; of cases the list that they stand in.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// How its points belong together; nothing where no indices can be made of them.
+    pub fn groups(&self) -> Option<PointGroups> {
+        match &self.source {
+            PointSource::Saltelli(sample) => Some(PointGroups::Saltelli {
+                groups: sample.count,
+                second_order: sample.second_order,
+            }),
+            PointSource::Morris(sample) => Some(PointGroups::Morris {
+                groups: sample.trajectories,
+                levels: sample.levels,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The axes that are drawn, in the order of the file; none of a block whose axes are listed.
+    pub fn factors(&self) -> Vec<&Axis> {
+        let drawn = self.source.drawn();
+        let factors = self.axes.iter().zip(drawn).filter(|(_, drawn)| drawn.is_range());
+        factors.map(|(axis, _)| axis).collect()
+    }
+
+    /// The steps of each trajectory of Morris: point `i + 1` of a trajectory is point `i` after step `i`.
+    pub fn trajectories(&self) -> impl Iterator<Item = Vec<TrajectoryStep>> {
+        let walks = self.source.trajectories(&self.axes);
+        walks.into_iter().flatten().map(|walk| walk.steps)
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.count
@@ -171,6 +202,36 @@ impl Block {
             values,
             searched: None,
         })
+    }
+}
+
+/// How the points of a block belong together where indices of sensitivity can be made of them, group after group. A factor
+/// is an axis that is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointGroups {
+    /// Of Saltelli: a group is a row of the base sample with the points made of it.
+    Saltelli {
+        /// Number of groups.
+        groups: usize,
+        /// Whether there are points for indices of pairs.
+        second_order: bool,
+    },
+    /// Of Morris: a group is a trajectory.
+    Morris {
+        /// Number of groups.
+        groups: usize,
+        /// Levels of the grid.
+        levels: usize,
+    },
+}
+
+impl PointGroups {
+    /// The form's key, and what a group is called.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Saltelli { .. } => ("saltelli", "a row of the base sample"),
+            Self::Morris { .. } => ("morris", "a trajectory"),
+        }
     }
 }
 
@@ -235,33 +296,27 @@ impl DesignReader<'_> {
             }
             Form::Cases(cases) => self.cases(&format!("{key}.cases"), cases),
             Form::LatinHypercube(spec) => {
-                let key = format!("{key}.latin_hypercube");
-                let (axes, sample) = self.sample(&key, spec)?;
-                let ranges = sample.drawn.iter().filter(|drawn| drawn.is_range()).count();
-                if sample.count > MOST_PARTS / ranges {
-                    let found = format!("{} points of {ranges} ranges", sample.count);
-                    let allowed = format!("at most {} points of so many ranges", MOST_PARTS / ranges);
-                    return self.refuse(format!("{key}.count"), found, allowed);
-                }
-                let key = format!("{key}.ranges");
-                Ok(vec![Block::new(
-                    self.file,
-                    key,
-                    axes,
-                    PointSource::LatinHypercube(sample),
-                )?])
+                self.drawn(&format!("{key}.latin_hypercube"), spec, SampleReader::latin_hypercube)
             }
-            Form::Sobol(spec) => {
-                let (axes, sample) = self.sample(&format!("{key}.sobol"), spec)?;
-                let key = format!("{key}.sobol.ranges");
-                let dimensions = sample.drawn.iter().filter(|drawn| drawn.is_range()).count();
-                if dimensions > SobolPoints::MOST_DIMENSIONS {
-                    let allowed = format!("at most {} ranges", SobolPoints::MOST_DIMENSIONS);
-                    return self.refuse(key, format!("{dimensions} ranges"), allowed);
-                }
-                Ok(vec![Block::new(self.file, key, axes, PointSource::Sobol(sample))?])
-            }
+            Form::Sobol(spec) => self.drawn(&format!("{key}.sobol"), spec, SampleReader::sobol),
+            Form::Saltelli(spec) => self.drawn(&format!("{key}.saltelli"), spec, SampleReader::saltelli),
+            Form::Morris(spec) => self.drawn(&format!("{key}.morris"), spec, SampleReader::morris),
         }
+    }
+
+    /// The block of a sample at `key`, by what reads it.
+    fn drawn<'r, S>(
+        &'r self,
+        key: &str,
+        spec: &S,
+        read: impl FnOnce(&SampleReader<'r>, &str, &S) -> Result<(Vec<Axis>, PointSource), Refusal>,
+    ) -> Result<Vec<Block>, Refusal> {
+        let samples = SampleReader {
+            file: self.file,
+            known: self.known,
+        };
+        let (axes, source) = read(&samples, key, spec)?;
+        Ok(vec![Block::new(self.file, format!("{key}.ranges"), axes, source)?])
     }
 
     /// A block of axes with their values.
@@ -315,94 +370,16 @@ impl DesignReader<'_> {
         })
     }
 
-    /// The axes of a sample and what they are drawn from; `key` is where its count stands.
-    fn sample(&self, key: &str, spec: &SampleSpec) -> Result<(Vec<Axis>, RandomSample), Refusal> {
-        if !(1..=MOST_POINTS).contains(&spec.count) {
-            let allowed = format!("a whole number from 1 to {MOST_POINTS}");
-            return self.refuse(format!("{key}.count"), spec.count, allowed);
-        }
-        let key = format!("{key}.ranges");
-        let axis = |(name, written): (&String, &Value)| {
-            let at = format!("{key}.{name}");
-            let axis = Axis::read(self.file, &at, name, self.known)?;
-            Ok((axis, self.drawn(&at, name, written)?))
-        };
-        let read = spec.ranges.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
-        let (axes, drawn): (_, Vec<SampledAxis>) = read.into_iter().unzip();
-        if !drawn.iter().any(SampledAxis::is_range) {
-            let refused = Refusal::new(
-                self.file,
-                key,
-                "no range",
-                "at least one axis with a range [from, to], whole or values",
-            );
-            return Err(refused.because(RefusalKind::Missing));
-        }
-        let sample = RandomSample {
-            count: spec.count,
-            seed: spec.seed,
-            drawn,
-        };
-        Ok((axes, sample))
-    }
-
-    fn drawn(&self, key: &str, name: &str, written: &Value) -> Result<SampledAxis, Refusal> {
-        let allowed = "[from, to], two numbers with from below to, {\"whole\": [from, to]}, {\"values\": [...]}, or one number or word";
-        let counts = || matches!(NamedAxis::of(name).map(|axis| axis.values), Some(AxisValues::Counts));
-        match written {
-            Value::Number(_) | Value::String(_) | Value::Bool(_) => {
-                Ok(SampledAxis::Constant(Cell::from(written).canonical()))
-            }
-            Value::Object(map) if map.len() == 1 => match map.iter().next() {
-                Some((form, ends)) if form == "whole" => self.whole(&format!("{key}.whole"), ends),
-                Some((form, Value::Array(list))) if form == "values" && !list.is_empty() => {
-                    Ok(SampledAxis::OneOf(list.iter().map(Cell::from).collect()))
-                }
-                Some((form, list)) if form == "values" => {
-                    self.refuse(format!("{key}.values"), list, "a list of at least one value")
-                }
-                Some((form, _)) => {
-                    let known = ["whole", "values"].map(str::to_owned);
-                    Err(Refusal::unknown_key(self.file, format!("{key}.{form}"), form, &known))
-                }
-                None => self.refuse(key, written, allowed),
-            },
-            Value::Array(_) if counts() => self.whole(key, written),
-            _ if name == "connection" => self.refuse(key, written, "linear or nonlinear, the same for all points"),
-            Value::Array(ends) => match (
-                ends.as_slice(),
-                ends.iter().map(Value::as_f64).collect::<Vec<_>>().as_slice(),
-            ) {
-                ([_, _], &[Some(from), Some(to)]) if from < to && (to - from).is_finite() => {
-                    Ok(SampledAxis::Range(from, to))
-                }
-                ([_, _], &[Some(from), Some(to)]) if from < to => self.refuse(
-                    key,
-                    format!("from {from:e} to {to:e}"),
-                    "ends that are not so far apart",
-                ),
-                _ => self.refuse(key, written, allowed),
-            },
-            _ => self.refuse(key, written, allowed),
-        }
-    }
-
-    /// The whole numbers of `[from, to]`, both included.
-    fn whole(&self, key: &str, ends: &Value) -> Result<SampledAxis, Refusal> {
-        // beyond these, numbers of a file are no longer each a number of their own
-        const MOST: f64 = 9e15;
-        match numbers(ends) {
-            Some([from, to]) if from < to && [from, to].iter().all(|end| end.fract() == 0.0 && end.abs() <= MOST) => {
-                Ok(SampledAxis::Whole(from as i64, to as i64))
-            }
-            _ => self.refuse(key, ends, "[from, to], two whole numbers with from below to"),
-        }
-    }
-
     /// What conditions leave of the blocks of a design; `key` is where the conditions stand.
     fn met(&self, key: &str, conditions: &Conditions, blocks: Vec<Block>) -> Result<Vec<Block>, Refusal> {
         if conditions.is_empty() {
             return Ok(blocks);
+        }
+        if let Some(groups) = blocks.iter().find_map(Block::groups) {
+            let (form, whole) = groups.words();
+            let allowed = format!("none: {whole} is of use only with all of its points");
+            let refused = Refusal::new(self.file, key, format!("conditions beside {form}"), allowed);
+            return Err(refused.because(RefusalKind::Misplaced));
         }
         let mut axes: Vec<Axis> = Vec::new();
         for axis in blocks.iter().flat_map(|block| &block.axes) {

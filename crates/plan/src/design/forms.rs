@@ -10,8 +10,8 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
-/// One design: exactly one of `grid`, `zip`, `cases`, `latin_hypercube` and `sobol` says which points it has. The designs
-/// of a study are united in the order of the file.
+/// One design: exactly one of `grid`, `zip`, `cases`, `latin_hypercube`, `sobol`, `saltelli` and `morris` says which points it
+/// has. The designs of a study are united in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = Form::NAMES.map(|name| json!({ "required": [name] }))))]
@@ -37,6 +37,15 @@ pub struct Design {
     #[serde(default)]
     #[schemars(with = "SampleSpec")]
     pub sobol: Option<SampleSpec>,
+    /// Points from which `pontoon indices` computes Sobol' indices: two samples A and B of `count` rows, and of each row the
+    /// points that have one factor of the other sample.
+    #[serde(default)]
+    #[schemars(with = "SaltelliSpec")]
+    pub saltelli: Option<SaltelliSpec>,
+    /// Points from which `pontoon indices` computes elementary effects: trajectories of Morris.
+    #[serde(default)]
+    #[schemars(with = "MorrisSpec")]
+    pub morris: Option<MorrisSpec>,
     /// What a point must meet to become a job.
     #[serde(default, rename = "where")]
     pub conditions: Conditions,
@@ -55,14 +64,28 @@ pub enum Form<'a> {
     LatinHypercube(&'a SampleSpec),
     /// Points of a sequence.
     Sobol(&'a SampleSpec),
+    /// Two samples and what is made of their rows.
+    Saltelli(&'a SaltelliSpec),
+    /// Trajectories.
+    Morris(&'a MorrisSpec),
 }
 
 impl Form<'_> {
     /// The keys of the forms.
-    pub const NAMES: [&'static str; 5] = ["grid", "zip", "cases", "latin_hypercube", "sobol"];
+    pub const NAMES: [&'static str; 7] = ["grid", "zip", "cases", "latin_hypercube", "sobol", "saltelli", "morris"];
 }
 
 impl Design {
+    /// The seed of its form, where it draws.
+    pub fn seed(&self) -> Option<u64> {
+        match self.form().ok()? {
+            Form::Grid(_) | Form::Zip(_) | Form::Cases(_) => None,
+            Form::LatinHypercube(spec) | Form::Sobol(spec) => Some(spec.seed),
+            Form::Saltelli(spec) => Some(spec.seed),
+            Form::Morris(spec) => Some(spec.seed),
+        }
+    }
+
     /// The form.
     ///
     /// # Errors
@@ -74,6 +97,8 @@ impl Design {
             self.cases.as_ref().map(Form::Cases),
             self.latin_hypercube.as_ref().map(Form::LatinHypercube),
             self.sobol.as_ref().map(Form::Sobol),
+            self.saltelli.as_ref().map(Form::Saltelli),
+            self.morris.as_ref().map(Form::Morris),
         ];
         let found: Vec<(&str, Form<'_>)> = Form::NAMES
             .into_iter()
@@ -103,6 +128,44 @@ pub struct SampleSpec {
     pub seed: u64,
     /// The axes with their ranges.
     pub ranges: RangeMap,
+}
+
+/// Points for Sobol' indices.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SaltelliSpec {
+    /// Number of rows of the base sample, best a power of two. Of k drawn axes each row makes k + 2 points, with `second_order`
+    /// 2 k + 2.
+    #[schemars(range(min = 2, max = 10_000_000))]
+    pub count: usize,
+    /// Equal seeds give equal points, another one others.
+    pub seed: u64,
+    /// The axes with their ranges, at most 50 of them drawn.
+    pub ranges: RangeMap,
+    /// Whether there are points for indices of pairs; none where absent.
+    #[serde(default)]
+    pub second_order: bool,
+}
+
+/// Points for elementary effects.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MorrisSpec {
+    /// Number of trajectories. Of k drawn axes each has k + 1 points.
+    #[schemars(range(min = 2, max = 10_000_000))]
+    pub trajectories: usize,
+    /// Number of levels that each range is divided into, ends included: an even number; 4 where absent.
+    #[serde(default = "default_levels")]
+    #[schemars(range(min = 2, max = 1000), extend("multipleOf" = 2))]
+    pub levels: usize,
+    /// Equal seeds give equal points, another one others.
+    pub seed: u64,
+    /// The axes with their ranges.
+    pub ranges: RangeMap,
+}
+
+fn default_levels() -> usize {
+    4
 }
 
 /// Ranges and constants by the name of their axis, in the order of the file.

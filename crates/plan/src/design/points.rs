@@ -6,7 +6,9 @@ use super::axes::Axis;
 use super::column::ValueColumn;
 use super::condition::Test;
 use super::grid_sieve::GridSieve;
+use super::saltelli::SaltelliRow;
 use super::sampling::{LatinHypercubeAxis, SobolPoints};
+use super::trajectories::{MorrisWalk, Trajectories, Trajectory};
 use super::values::{Values, rounded};
 use crate::input::Cell;
 use std::sync::Arc;
@@ -22,6 +24,10 @@ pub(super) enum PointSource {
     LatinHypercube(RandomSample),
     /// Points of the Sobol' sequence.
     Sobol(RandomSample),
+    /// Two samples of that sequence and what is made of their rows.
+    Saltelli(SaltelliSample),
+    /// Trajectories.
+    Morris(MorrisSample),
     /// Point by point: the values of each axis, and how many points there are.
     Cases(Arc<Vec<ValueColumn>>, usize),
 }
@@ -35,6 +41,51 @@ pub(super) struct RandomSample {
     pub(super) seed: u64,
     /// What each axis is drawn from.
     pub(super) drawn: Vec<SampledAxis>,
+}
+
+/// Two samples A and B, and of each row the points that have one factor of the other sample.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SaltelliSample {
+    /// Number of rows of each sample.
+    pub(super) count: usize,
+    /// Seed.
+    pub(super) seed: u64,
+    /// Whether rows of B with one factor of A are points too.
+    pub(super) second_order: bool,
+    /// What each axis is drawn from.
+    pub(super) drawn: Vec<SampledAxis>,
+}
+
+/// Trajectories over ranges.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MorrisSample {
+    /// Number of trajectories.
+    pub(super) trajectories: usize,
+    /// Levels of each range.
+    pub(super) levels: usize,
+    /// Seed.
+    pub(super) seed: u64,
+    /// What each axis is drawn from.
+    pub(super) drawn: Vec<SampledAxis>,
+}
+
+impl SaltelliSample {
+    /// Points of one row: A, A with each factor of B, with pairs B with each factor of A, B.
+    fn width(&self) -> usize {
+        let factors = self.drawn.iter().filter(|drawn| drawn.is_range()).count();
+        if self.second_order {
+            2 * factors + 2
+        } else {
+            factors + 2
+        }
+    }
+}
+
+impl MorrisSample {
+    /// Points of one trajectory.
+    fn width(&self) -> usize {
+        factors(&self.drawn) + 1
+    }
 }
 
 /// What an axis of a sample is drawn from.
@@ -59,6 +110,8 @@ impl PointSource {
                 .try_fold(1_usize, |count, values| count.checked_mul(values.len())),
             Self::Zip(axes) => Some(axes.iter().map(Values::len).max().unwrap_or(1)),
             Self::LatinHypercube(sample) | Self::Sobol(sample) => Some(sample.count),
+            Self::Saltelli(sample) => sample.count.checked_mul(sample.width()),
+            Self::Morris(sample) => sample.trajectories.checked_mul(sample.width()),
             Self::Cases(_, count) => Some(*count),
         }
     }
@@ -69,6 +122,23 @@ impl PointSource {
             (Self::Grid(axes), None) => axes.iter().map(|values| values.len() as f64).product(),
             (_, count) => count.map_or(f64::INFINITY, |count| count as f64),
         }
+    }
+
+    /// What each axis is drawn from; nothing where axes are listed.
+    pub(super) fn drawn(&self) -> &[SampledAxis] {
+        match self {
+            Self::LatinHypercube(sample) | Self::Sobol(sample) => &sample.drawn,
+            Self::Saltelli(sample) => &sample.drawn,
+            Self::Morris(sample) => &sample.drawn,
+            Self::Grid(_) | Self::Zip(_) | Self::Cases(..) => &[],
+        }
+    }
+
+    /// The trajectories of Morris; none of another form.
+    pub(super) fn trajectories(&self, axes: &[Axis]) -> Option<impl Iterator<Item = Trajectory> + use<>> {
+        let Self::Morris(sample) = self else { return None };
+        let names = names_of_ranges(axes, &sample.drawn);
+        Some(Trajectories::new(&names, sample.levels, sample.seed).take(sample.trajectories))
     }
 }
 
@@ -127,6 +197,10 @@ enum ValueSource<'a> {
     LatinHypercube(Drawn<'a>, Vec<LatinHypercubeAxis>),
     /// With the dimension of each range, in the order of the axes.
     Sobol(Drawn<'a>, Vec<usize>, SobolPoints),
+    /// With the row under way.
+    Saltelli(Drawn<'a>, SaltelliRow),
+    /// With the trajectory under way.
+    Morris(Drawn<'a>, MorrisWalk),
     /// With the number of the point.
     Cases(&'a [ValueColumn], usize),
 }
@@ -181,6 +255,16 @@ impl<'a> ValueSource<'a> {
                 let points = SobolPoints::new(dimensions.len(), *seed);
                 Self::Sobol(Drawn::new(drawn), dimensions, points)
             }
+            PointSource::Saltelli(sample) => {
+                let dimensions = dimensions(&names_of_ranges(axes, &sample.drawn));
+                let row = SaltelliRow::new(dimensions, sample.seed, sample.second_order);
+                Self::Saltelli(Drawn::new(&sample.drawn), row)
+            }
+            PointSource::Morris(sample) => {
+                let names = names_of_ranges(axes, &sample.drawn);
+                let walk = MorrisWalk::new(&names, sample.levels, sample.seed);
+                Self::Morris(Drawn::new(&sample.drawn), walk)
+            }
             PointSource::Cases(columns, _) => Self::Cases(columns, 0),
         }
     }
@@ -207,6 +291,16 @@ impl<'a> ValueSource<'a> {
                     *share = shares[dimension];
                 }
             }
+            Self::Saltelli(drawn, row) => {
+                row.go_to(number)?;
+                let shares = drawn.shares.iter_mut().enumerate();
+                shares.for_each(|(factor, share)| *share = row.share(factor));
+            }
+            Self::Morris(drawn, walk) => {
+                walk.go_to(number)?;
+                let shares = drawn.shares.iter_mut().enumerate();
+                shares.for_each(|(factor, share)| *share = walk.share(factor));
+            }
         }
         Some(())
     }
@@ -216,10 +310,18 @@ impl<'a> ValueSource<'a> {
         match self {
             Self::Grid(axes, places) => axes[axis].at(places[axis]),
             Self::Zip(axes, number) => axes[axis].at(if axes[axis].len() == 1 { 0 } else { *number }),
-            Self::LatinHypercube(drawn, _) | Self::Sobol(drawn, ..) => drawn.value(axis),
+            Self::LatinHypercube(drawn, _)
+            | Self::Sobol(drawn, ..)
+            | Self::Saltelli(drawn, _)
+            | Self::Morris(drawn, _) => drawn.value(axis),
             Self::Cases(columns, number) => columns[axis].at(*number),
         }
     }
+}
+
+/// Number of axes that are drawn.
+pub(super) fn factors(drawn: &[SampledAxis]) -> usize {
+    drawn.iter().filter(|drawn| drawn.is_range()).count()
 }
 
 /// The names that the random numbers of the ranges follow from, in the order of the axes.

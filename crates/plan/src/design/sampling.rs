@@ -14,8 +14,14 @@ use sobol_burley::parts::owen_scramble_rev;
 const PLACE_BITS: u32 = 26;
 
 /// 32 bytes that look random and are equal for equal words.
-fn key(design: &str, seed: u64, of: &str) -> [u8; 32] {
+pub(super) fn key(design: &str, seed: u64, of: &str) -> [u8; 32] {
     *blake3::hash(format!("{design} {seed} {of}").as_bytes()).as_bytes()
+}
+
+/// A number drawn evenly from 0 to `count - 1`.
+pub(super) fn below(random: &mut Pcg64, count: usize) -> usize {
+    // the upper half of the product is evenly spread
+    ((u128::from(random.next_u64()) * count as u128) >> 64) as usize
 }
 
 /// One coordinate of a Latin hypercube of `count` points: each of as many equal parts of 0 to 1 is hit once, in an order
@@ -33,9 +39,7 @@ impl LatinHypercubeAxis {
         let mut random = Pcg64::from_seed(key("latin_hypercube", seed, name));
         let mut parts: Vec<u32> = (0..count as u32).collect();
         for last in (1..count).rev() {
-            // the upper half of the product is evenly spread over 0 to `last`
-            let other = (u128::from(random.next_u64()) * (last as u128 + 1)) >> 64;
-            parts.swap(last, other as usize);
+            parts.swap(last, below(&mut random, last + 1));
         }
         Self { parts, random }
     }

@@ -172,7 +172,7 @@ fn an_unknown_name_is_refused_with_the_nearest() {
 
 #[test]
 fn a_design_has_one_form() {
-    let allowed = "exactly one of grid, zip, cases, latin_hypercube, sobol";
+    let allowed = "exactly one of grid, zip, cases, latin_hypercube, sobol, saltelli, morris";
     is_refused(json!({}), "", "none of them", allowed);
     is_refused(json!({"grid": null}), "", "none of them", allowed);
     is_refused(json!({"where": {"load_n": 1}}), "", "none of them", allowed);

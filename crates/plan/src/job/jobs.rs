@@ -62,11 +62,7 @@ impl Iterator for Jobs<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             let point = self.points.next()?;
-            let job = match &self.study.find {
-                None => self.job(&point),
-                Some(find) => self.rating(&point, find),
-            };
-            match job {
+            match self.of_point(&point) {
                 Ok(job) if self.seen.insert(&job.identity()) => return Some(Ok(job)),
                 Ok(_) => {}
                 Err(refusal) => return Some(Err(refusal)),
@@ -76,6 +72,14 @@ impl Iterator for Jobs<'_> {
 }
 
 impl Jobs<'_> {
+    /// What a point asks for: a job, or a rating.
+    pub(super) fn of_point(&mut self, point: &DesignPoint<'_>) -> Result<Job, Refusal> {
+        match &self.study.find {
+            None => self.job(point),
+            Some(find) => self.rating(point, find),
+        }
+    }
+
     /// The rating of a point: its crossing at the end where the limits are to hold, and that at the other end has to be one.
     fn rating(&mut self, point: &DesignPoint<'_>, find: &Find) -> Result<Job, Refusal> {
         let [holds, beyond] = find.ends();

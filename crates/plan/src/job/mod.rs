@@ -8,6 +8,7 @@
 //! | `crossing_type` | which spacing, speed and lane vehicles keep |
 //! | `rating_point` | the point of a design that a rating is of |
 //! | `candidates` | the crossings that a rating tries |
+//! | `point_jobs` | the job of each point |
 //! | `seen` | which jobs were there before |
 //! | `key` | what a job is known by from run to run |
 //! | `springs` | what of a crossing rides on springs |
@@ -23,6 +24,7 @@ mod doubts;
 mod jobs;
 mod key;
 mod plan;
+mod point_jobs;
 mod rating_point;
 mod seen;
 mod shard;
@@ -35,6 +37,7 @@ pub use doubts::Doubts;
 pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};
+pub use point_jobs::PointJobs;
 pub use rating_point::RatingPoint;
 pub use shard::{NoShard, Shard};
 pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word, has_springs, on_springs};

@@ -14,6 +14,13 @@ pub(super) struct SeenJobs {
     bytes: Bytes,
 }
 
+/// The fingerprint of what tells a job apart.
+pub(super) fn fingerprint(identity: &impl Hash) -> u128 {
+    let mut bytes = Bytes::default();
+    identity.hash(&mut bytes);
+    bytes.fingerprint()
+}
+
 impl SeenJobs {
     /// None yet, with room for so many: a table that grows would for a while be there twice.
     pub(super) fn with_room_for(jobs: usize) -> Self {

@@ -10,7 +10,7 @@ use super::raw::{AnalysisSpec, Kind, StudySpec};
 use super::record::RecordSpec;
 use super::vehicle_files::{VehicleFile, at_home, with_vehicle_files};
 use super::wear::WearSpec;
-use crate::design::{Axis, Block, Goes, JobAxis, NAMED_AXES, Varies};
+use crate::design::{Axis, Block, Design, Goes, JobAxis, NAMED_AXES, Varies};
 use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::traffic::TrafficDesign;
@@ -224,12 +224,8 @@ impl Study {
                 .iter_mut()
                 .for_each(|block| block.searched = Some(find.axis.clone()));
         }
-        let drawn = spec
-            .design
-            .iter()
-            .flat_map(|design| [&design.latin_hypercube, &design.sobol]);
         Ok(Self {
-            seeds: drawn.flatten().map(|sample| sample.seed).collect(),
+            seeds: spec.design.iter().filter_map(Design::seed).collect(),
             file,
             document,
             name: spec.name,
