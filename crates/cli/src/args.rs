@@ -148,6 +148,16 @@ pub(crate) enum Command {
         after_help = "Examples:\n  pontoon compare results/table1 --with studies/table1/reference.json\n  pontoon compare results/fu2005 --with results/fu2005-old --tolerance tolerance.json --format junit"
     )]
     Compare(CompareArguments),
+    /// Says which axes an output hangs on: Sobol' indices and elementary effects.
+    ///
+    /// The study has a design `saltelli`, from which come first orders, totals and, where it asks for them, second orders; or a design
+    /// `morris`, from which come mu, mu_star and sigma. Half widths of 95 % intervals stand beside them. Points of one row of the base
+    /// sample, or of one trajectory, belong together: where a job of them failed or left no number, they are left out, and how many were is
+    /// told with each output. Exit status 1 where a job failed.
+    #[command(
+        after_help = "Examples:\n  pontoon indices results/gaps\n  pontoon indices results/gaps --of peak_deflection_m --of peak_compression_n --format json"
+    )]
+    Indices(IndicesArguments),
     /// Identifies numbers of a bridge by a bounded least-squares fit to the checks of references.
     ///
     /// The parameters file names what may move and between which bounds, what is held, and which checks are fitted; each
@@ -310,6 +320,23 @@ pub(crate) struct CompareArguments {
     /// How far columns may be from older results: {"default": {"relative_tolerance": 1e-6}, "columns": {"NAME": ...}}.
     #[arg(long, value_name = "FILE")]
     pub tolerance: Option<PathBuf>,
+}
+
+/// What `indices` takes.
+#[derive(Debug, Args)]
+pub(crate) struct IndicesArguments {
+    /// Folder of the results.
+    #[arg(value_name = "RESULTS")]
+    pub results: PathBuf,
+    /// A column of numbers of the table of jobs; may be given several times. All measures that hold numbers where absent.
+    #[arg(long, value_name = "COLUMN")]
+    pub of: Vec<String>,
+    /// How often rows or trajectories are drawn again for the intervals.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u16).range(2..=10_000))]
+    pub resamples: u16,
+    /// Equal seeds give equal intervals. The indices do not depend on it.
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = whole)]
+    pub seed: usize,
 }
 
 /// What `report` takes.

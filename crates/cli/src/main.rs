@@ -71,6 +71,7 @@ fn main() -> ExitCode {
         Command::Merge(merge) => commands::merge::merge(&merge, common),
         Command::Plan(plan) => commands::plan::plan(&plan, common),
         Command::Modes(modes) => commands::modes::modes(&modes, common),
+        Command::Indices(indices) => commands::indices::indices(&indices, common),
         Command::Calibrate(calibrate) => commands::calibrate::calibrate(&calibrate, common),
         Command::Compare(compare) => commands::compare::compare(&compare, common),
         Command::Report(report) => commands::report::report(&report, common),

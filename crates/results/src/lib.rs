@@ -14,6 +14,8 @@
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `exceedance` | which share of jobs exceeds each limit |
+//! | `indices` | indices of sensitivity of a study's outputs |
+//! | `sobol_indices`, `elementary_effects`, `resampling` | their estimators, and intervals by the bootstrap |
 //! | `manifest`, `moment`, `files` | what ran, where, when; names of files |
 //! | `table`, `results`, `documents`, `results_error` | tables to read; the documents that they are of; why they cannot be read |
 //!
@@ -22,11 +24,13 @@
 
 mod arrays;
 mod documents;
+mod elementary_effects;
 mod exceedance;
 mod extreme;
 mod failure;
 mod files;
 mod frame;
+mod indices;
 pub mod labels;
 mod layout;
 mod limit_rows;
@@ -39,9 +43,11 @@ mod preparation;
 mod quantities;
 mod record;
 mod registry;
+mod resampling;
 mod rest_rows;
 mod results;
 mod results_error;
+mod sobol_indices;
 mod summary;
 mod table;
 mod varying;
@@ -51,10 +57,12 @@ mod writer;
 
 pub use arrays::CellKind;
 pub use documents::{RunDocuments, keep_documents};
+pub use elementary_effects::{MorrisIndex, MorrisOutputs};
 pub use exceedance::Exceedance;
 pub use extreme::Extreme;
 pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE, replaceable};
+pub use indices::{DesignIndices, FactorIndex, FactorIndices, FactorPair, Indices, OutputIndices};
 pub use limit_rows::{LimitRow, governing};
 pub use manifest::{DocumentPlace, Manifest, SessionNote, check_own};
 pub use memory::too_large;
@@ -68,9 +76,11 @@ pub use record::{
     PositionRow, SectionRow, Summary,
 };
 pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, SpeedFigure, When, registered};
+pub use resampling::Resampling;
 pub use rest_rows::{DeadRow, FreeboardRow};
 pub use results::Results;
 pub use results_error::ResultsError;
+pub use sobol_indices::{PairIndex, SaltelliOutputs, SobolIndex};
 pub use summary::{DoubtfulRatings, SummaryTable};
 pub use table::{ColumnKind, Table, TableName};
 pub use varying::Seen;

@@ -5,6 +5,7 @@ pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod explain;
 pub(crate) mod export;
+pub(crate) mod indices;
 pub(crate) mod man;
 pub(crate) mod merge;
 pub(crate) mod modes;
