@@ -257,7 +257,7 @@ def main():
         return 0
     own = source == (ROOT / "book/src").resolve()
     faults = faults_of_pages(pages, source) + faults_of_patches(source)
-    faults += faults_of_equations(pages, cited_in(ROOT / "crates/core/src") if own else None)
+    faults += faults_of_equations(pages, cited_in(ROOT / "crates") if own else None)
     counts = Counter()
     if not arguments.text:
         faults += book_columns.faults(read, book_columns.registered(program()))
