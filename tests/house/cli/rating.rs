@@ -292,6 +292,25 @@ fn a_bracket_without_the_rating_is_a_failed_row() {
     }
 }
 
+/// A crossing that a rating tries is held to the limit of time steps, as a job is: the job of the rating is that of the end where
+/// the limits are to hold, and a slower crossing takes longer.
+#[test]
+fn a_crossing_of_a_rating_is_held_to_its_steps() {
+    let mut stage = stage();
+    stage.study["analysis"]["step_limit"] = json!(1000);
+    stage.study["limits"] = json!({ "edge_sinkage_m": 5.0 });
+    stage.study["find"] = json!({ "smallest": "speed_m_s", "between": [0.2, 20], "ladder_ratio": 1.5 });
+    stage.study["design"] = json!([{ "grid": { "load_n": 1e5 } }]);
+    let output = stage.write().pontoon(&["run", "study.json", "--out", "r", "--quiet"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert_eq!(word(&stage, "r", "failure"), "too_many_steps");
+    let reason = word(&stage, "r", "reason");
+    assert!(
+        reason.contains("crossing at speed_m_s = ") && reason.contains("the limit is 1000"),
+        "{reason}"
+    );
+}
+
 /// A class table: a row a vehicle, the columns by type and speed, a crossing a cell; what a type says is what a column says.
 #[test]
 fn a_table_of_classes_has_a_crossing_a_cell() {

@@ -1,6 +1,6 @@
 //! Ratings on threads, in shares and killed: which values are tried depends on the rating alone.
 
-use super::sweep::{Random, begin, command, finish, records, run, same_tables, sweep, tables};
+use super::sweep::{begin, command, finish, records, run, same_tables, sweep, tables};
 use crate::stage::{Stage, stderr};
 use serde_json::json;
 use std::time::{Duration, Instant};
@@ -19,20 +19,20 @@ fn ratings() -> Stage {
 #[test]
 fn ratings_leave_the_same_tables_whatever_runs_them() {
     let stage = ratings();
-    let began = Instant::now();
     finish(&stage, "whole");
-    let whole = began.elapsed();
     let expected = tables(&stage, "whole");
-    for threads in ["1", "3"] {
+    let mut longest = Duration::ZERO;
+    for threads in ["3", "1"] {
+        let began = Instant::now();
         let output = run(&stage, threads, &["--threads", threads]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         same_tables(&stage, threads, &expected);
+        longest = began.elapsed();
     }
-    let mut random = Random(7);
+    // at a sixth, two sixths and so on of what one thread takes with the operators at hand
     for kill in 0..4 {
-        let mut child = begin(&stage, "killed", &[]);
-        let micros = u64::try_from(whole.as_micros()).unwrap();
-        std::thread::sleep(Duration::from_micros(random.below(micros)));
+        let mut child = begin(&stage, "killed", &["--threads", "1"]);
+        std::thread::sleep(longest * (kill + 1) / 6);
         if child.try_wait().unwrap().is_some() {
             assert!(kill > 0, "no rating was killed");
             break;

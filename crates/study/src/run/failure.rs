@@ -9,7 +9,7 @@ use pontoon_core::bridge::BridgeError;
 use pontoon_core::bridge::LinkPlace;
 use pontoon_core::fem::FemError;
 use pontoon_core::operator::OperatorError;
-use pontoon_plan::job::TooManySteps;
+use pontoon_plan::job::{Job, TooManySteps};
 use pontoon_results::{Failure, FailureKind};
 
 /// Why a job gave no record.
@@ -96,6 +96,13 @@ fn keys_of(error: &FemError) -> Option<&'static str> {
         FemError::Degenerate { .. } => Some("the sizes of bridge.module and bridge.module.mesh"),
         FemError::Shift { .. } | FemError::OutOfMemory { .. } | FemError::Stopped => None,
     }
+}
+
+/// The failure of a job whose crossing has more time steps than it may; none of another job.
+pub(super) fn too_long(job: &Job) -> Option<Failure> {
+    let crossing = job.as_crossing()?;
+    let checked = crossing.check_steps(crossing.first_time_step_s());
+    checked.err().map(too_many_steps)
 }
 
 /// The failure of a crossing that may not take so many steps.

@@ -6,6 +6,7 @@ use super::Setting;
 use super::batch::JobObserver;
 use super::cancel::{CancelToken, Why};
 use super::error::RunError;
+use super::failure::too_long;
 use super::model_keys::by_bridge;
 use super::progress::{Progress, Tally};
 use super::resume_index::ResumeIndex;
@@ -130,12 +131,8 @@ impl<'a> Monitor<'a> {
 
     /// Why a job is not to be solved; none where it is.
     pub(super) fn passes_over(&self, job: &Job) -> Option<Failure> {
-        let too_long = || {
-            let crossing = job.as_crossing()?;
-            let checked = crossing.check_steps(crossing.first_time_step_s());
-            checked.err().map(super::failure::too_many_steps)
-        };
-        self.passed_over.get(&job.number).cloned().or_else(too_long)
+        let known = self.passed_over.get(&job.number).cloned();
+        known.or_else(|| too_long(job))
     }
 
     /// The failures of jobs that are not to be solved.

@@ -4,7 +4,7 @@
 //! crossing is solved.
 
 use super::crossing::JobResult;
-use super::failure::JobFailure;
+use super::failure::{JobFailure, too_long};
 use super::finer::{FINER_TOLERANCE, finer_operator};
 use super::shared_models::SharedModels;
 use super::tried::{Tried, solved};
@@ -154,6 +154,10 @@ impl Rating<'_> {
                 Ok(Some(job)) => Ok(job),
                 Ok(None) => Err(JobFailure::of_program("a rating without a point")),
                 Err(refusal) => Err(Failure::new(FailureKind::NotPrepared, refusal.to_string()).into()),
+            })
+            .map(|job: Result<Job, JobFailure>| {
+                let job = job?;
+                too_long(&job).map_or(Ok(job), |failure| Err(failure.into()))
             })
             .collect();
         let jobs: Vec<&Job> = made.iter().flatten().collect();
