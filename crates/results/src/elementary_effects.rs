@@ -90,10 +90,8 @@ impl MorrisOutputs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pontoon_plan::design::{Axis, Block, Design};
-    use pontoon_plan::input::{Cell, typed_value};
+    use crate::drawn_block::drawn_block;
     use serde_json::json;
-    use std::path::Path;
 
     const FEW: Resampling = Resampling {
         resamples: 100,
@@ -103,16 +101,9 @@ mod tests {
     /// The effects of a function of three factors, each from 0 to 1 but for the last from 0 to 10.
     fn effects(trajectories: usize, levels: usize, f: impl Fn(&[f64]) -> f64) -> Vec<MorrisIndex> {
         let ranges = json!({ "bridge.x": [0, 1], "bridge.y": [0, 1], "bridge.z": [0, 10] });
-        let spec =
-            json!([{ "morris": { "trajectories": trajectories, "levels": levels, "seed": 1, "ranges": ranges } }]);
-        let file = Path::new("study.json");
-        let designs: Vec<Design> = typed_value(file, "design", &spec).unwrap();
-        let block = Block::read(file, &designs, &[]).unwrap().remove(0);
-        let number = |(_, cell): (&Axis, &Cell<'_>)| cell.number().unwrap();
-        let points: Vec<Vec<f64>> = block
-            .points()
-            .map(|point| point.values().map(number).collect())
-            .collect();
+        let design =
+            json!({ "morris": { "trajectories": trajectories, "levels": levels, "seed": 1, "ranges": ranges } });
+        let (block, points) = drawn_block(&design);
         let mut found = MorrisOutputs::new(3, levels);
         for (walk, steps) in points.chunks(4).zip(block.trajectories()) {
             assert!(found.take(&steps, &walk.iter().map(|x| Some(f(x))).collect::<Vec<_>>()));

@@ -24,6 +24,8 @@
 
 mod arrays;
 mod documents;
+#[cfg(test)]
+mod drawn_block;
 mod elementary_effects;
 mod exceedance;
 mod extreme;

@@ -147,11 +147,9 @@ fn normalised(numbers: &[f64]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pontoon_plan::design::{Axis, Block, Design};
-    use pontoon_plan::input::{Cell, typed_value};
+    use crate::drawn_block::drawn_block;
     use serde_json::{Map, Value, json};
     use std::f64::consts::PI;
-    use std::path::Path;
 
     const FEW: Resampling = Resampling {
         resamples: 100,
@@ -165,16 +163,9 @@ mod tests {
             .map(|(i, ends)| (format!("bridge.x{i}"), json!(ends)))
             .collect();
         let factors = ranges.len();
-        let spec =
-            json!([{ "saltelli": { "count": count, "seed": 1, "ranges": ranges, "second_order": second_order } }]);
-        let file = Path::new("study.json");
-        let designs: Vec<Design> = typed_value(file, "design", &spec).unwrap();
-        let block = Block::read(file, &designs, &[]).unwrap().remove(0);
-        let number = |(_, cell): (&Axis, &Cell<'_>)| cell.number().unwrap();
-        let points: Vec<Vec<f64>> = block
-            .points()
-            .map(|point| point.values().map(number).collect())
-            .collect();
+        let design =
+            json!({ "saltelli": { "count": count, "seed": 1, "ranges": ranges, "second_order": second_order } });
+        let (_, points) = drawn_block(&design);
         let mut found = SaltelliOutputs::new(factors, second_order);
         for group in points.chunks(points.len() / count) {
             assert!(found.take(&group.iter().map(|x| Some(f(x))).collect::<Vec<_>>()));

@@ -59,15 +59,11 @@ pub(super) fn sweep_of(
 ) -> Result<(PathBuf, bool)> {
     let signals = Signals::listen()?;
     let setting = SweepSetting {
-        out: arguments
-            .out
-            .clone()
-            .unwrap_or_else(|| PathBuf::from("results").join(&study.name)),
-        threads: arguments.threads.map_or(0, usize::from),
-        cache: Cache::of_user(),
         fresh: arguments.fresh,
-        commit: crate::commit::COMMIT.map(str::to_owned),
-        ..SweepSetting::default()
+        ..setting_into(
+            arguments.out.clone().unwrap_or_else(|| whole_results(study)),
+            arguments.threads,
+        )
     };
     let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &signals, None);
     let swept = sweep(study, jobs, &setting, &signals.stop, &watching);
@@ -79,21 +75,33 @@ pub(super) fn sweep_of(
 
 fn setting(arguments: &RunArguments, study: &Study) -> SweepSetting {
     let default_out = || {
-        let whole = PathBuf::from("results").join(&study.name);
+        let whole = whole_results(study);
         match arguments.shard {
             Some(shard) => whole.join("shards").join(format!("{}-of-{}", shard.number, shard.of)),
             None => whole,
         }
     };
     SweepSetting {
-        out: arguments.out.clone().unwrap_or_else(default_out),
-        threads: arguments.threads.map_or(0, usize::from),
-        cache: Cache::of_user(),
         shard: arguments.shard,
         fresh: arguments.fresh,
         retry_failed: arguments.retry_failed,
         any_instructions: arguments.any_instructions,
         most_failures: arguments.max_failures,
+        ..setting_into(arguments.out.clone().unwrap_or_else(default_out), arguments.threads)
+    }
+}
+
+/// The folder of a study's whole results where none is named.
+fn whole_results(study: &Study) -> PathBuf {
+    PathBuf::from("results").join(&study.name)
+}
+
+/// The settings that every command has: this program's commit, the user's cache.
+fn setting_into(out: PathBuf, threads: Option<u16>) -> SweepSetting {
+    SweepSetting {
+        out,
+        threads: threads.map_or(0, usize::from),
+        cache: Cache::of_user(),
         commit: crate::commit::COMMIT.map(str::to_owned),
         ..SweepSetting::default()
     }

@@ -2,6 +2,7 @@
 import { strict as assert } from 'node:assert';
 import { after, before, test } from 'node:test';
 import { launch, on, pages, sample } from './browser.mjs';
+import { EACH_KIND } from './sample.mjs';
 
 let stop;
 before(async () => {
@@ -75,20 +76,7 @@ const faults = page =>
     return out.slice(0, 12);
   });
 
-for (const which of pages([
-  'crossing',
-  'big',
-  'wide',
-  'still',
-  'natural',
-  'allFailed',
-  'oneJob',
-  'half',
-  'markup',
-  'classes',
-  'drawn',
-  'rating',
-])) {
+for (const which of pages(['big', 'wide', ...EACH_KIND])) {
   for (const width of [360, 768, 1280]) {
     test(`${which.name} at ${width} pixels`, () =>
       on(which, { width, scheme: width === 768 ? 'dark' : 'light' }, async page => {

@@ -3,6 +3,7 @@ import AxeBuilder from 'axe-core';
 import { strict as assert } from 'node:assert';
 import { after, before, test } from 'node:test';
 import { launch, on, pages, reports, sample, shownWithoutScripts } from './browser.mjs';
+import { EACH_KIND } from './sample.mjs';
 import { SENTENCE } from './build.mjs';
 
 let stop;
@@ -108,18 +109,7 @@ test('a request would be seen, and would not get out', () =>
     );
   }));
 
-for (const which of pages([
-  'crossing',
-  'still',
-  'natural',
-  'allFailed',
-  'oneJob',
-  'half',
-  'markup',
-  'classes',
-  'drawn',
-  'rating',
-])) {
+for (const which of pages(EACH_KIND)) {
   for (const scheme of ['light', 'dark']) {
     test(`${which.name}, ${scheme}: axe finds nothing`, () =>
       on(which, { scheme }, async page => {

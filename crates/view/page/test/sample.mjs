@@ -751,6 +751,20 @@ export function half() {
   return { ...data, verdicts: null, histories: [], modes: [] };
 }
 
+/** The samples of which every part of a page is seen once: what holds for each page is held on them. */
+export const EACH_KIND = [
+  'crossing',
+  'still',
+  'natural',
+  'allFailed',
+  'oneJob',
+  'half',
+  'markup',
+  'classes',
+  'drawn',
+  'rating',
+];
+
 export const samples = {
   crossing,
   big,
