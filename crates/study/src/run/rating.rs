@@ -65,7 +65,7 @@ impl Rating<'_> {
         let mut rungs = self.tried(&at_own_load(&ladder));
         let fails = |tried: &Result<Tried, JobFailure>| !tried.as_ref().is_ok_and(Tried::passes);
         let first = rungs.iter().position(fails);
-        let Some(first) = self.first_failing(&rungs, first)? else {
+        let Some(first) = self.first_failing(&mut rungs, first)? else {
             let last = rungs
                 .pop()
                 .unwrap_or_else(|| Err(JobFailure::of_program("no ladder")))?;
@@ -177,25 +177,29 @@ impl Rating<'_> {
             .collect()
     }
 
-    /// Of the rungs before the first that fails, or of all, the first of which finer solvers say that it fails: the study's own operator is not
-    /// sure of one that is close to its limit. The last before a failure is judged with the pair.
+    /// The first rung that fails: `first` by the study's own solver, or one before it that is close to its limit and fails by the solvers
+    /// that judge, whose crossing then stands for it. The last rung before `first` is judged with the pair.
     fn first_failing(
         &mut self,
-        rungs: &[Result<Tried, JobFailure>],
+        rungs: &mut [Result<Tried, JobFailure>],
         first: Option<usize>,
     ) -> Result<Option<usize>, JobFailure> {
         let before = first.map_or(rungs.len(), |first| first.saturating_sub(1));
-        for (at, rung) in rungs[..before].iter().enumerate() {
+        for (at, rung) in rungs[..before].iter_mut().enumerate() {
             let Ok(tried) = rung else { continue };
-            if tried.utilisation() > 1.0 - CLOSE && !self.judged(tried.clone())?.passes() {
-                return Ok(Some(at));
+            if tried.utilisation() > 1.0 - CLOSE {
+                let judged = self.judged(tried.clone())?;
+                if !judged.passes() {
+                    *tried = judged;
+                    return Ok(Some(at));
+                }
             }
         }
         Ok(first)
     }
 
-    /// A pair of which finer solvers say that one end passes and the other fails: where they say otherwise of an end, the pair is moved by
-    /// its own width until they do.
+    /// The pair of which the solvers that judge say that one end passes and the other fails. Where they say otherwise of an end, the pair
+    /// moves by its own width.
     fn settled(&mut self, passed: Tried, failed: Tried) -> Result<(Tried, Tried), JobFailure> {
         let (mut passed, mut failed) = (self.judged(passed)?, self.judged(failed)?);
         for _ in 0..MOST_MOVES {
@@ -225,8 +229,8 @@ impl Rating<'_> {
         Err(Failure::new(FailureKind::RatingNotSettled, text).into())
     }
 
-    /// A crossing by a solver that is sure whether it passes: by an operator of more modes, and where that is too close to the
-    /// limit too by the reference solver. What the finer operator is off by is a small part of what it changes.
+    /// A crossing by a solver that tells surely whether it passes: an operator of more modes, or the reference solver where that
+    /// operator's answer is too close to the limit.
     fn judged(&mut self, tried: Tried) -> Result<Tried, JobFailure> {
         let Some(tolerance) = tried.tolerance() else {
             return Ok(tried);
