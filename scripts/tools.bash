@@ -25,6 +25,16 @@ program() {
   export PONTOON
 }
 
+# Builds the extension of the Python package and puts it into the package, for tests that import it from there.
+python_extension() {
+  (cd "$root" && cargo build --profile "$profile" --locked -p pontoon-python) || return
+  local file=$built/lib_engine.so
+  [ -f "$file" ] || file=$built/lib_engine.dylib
+  # a file in its place at once: a process that has the old one open keeps it
+  cp "$file" "$root/crates/python/pontoon/_engine.abi3.so.new" &&
+    mv "$root/crates/python/pontoon/_engine.abi3.so.new" "$root/crates/python/pontoon/_engine.abi3.so"
+}
+
 # Installs Python packages into a venv of the repository, at the versions of scripts/pins.txt, and sets `python` to its
 # Python:
 #   python_packages .venv polars pandas

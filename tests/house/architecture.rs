@@ -82,7 +82,9 @@ fn below(member: &str, arrows: &[(String, Vec<String>)]) -> Vec<String> {
     known
 }
 
-const MEMBERS: [&str; 8] = ["core", "plan", "journal", "results", "study", "judge", "view", "cli"];
+const MEMBERS: [&str; 9] = [
+    "core", "plan", "journal", "results", "study", "judge", "view", "cli", "python",
+];
 
 /// The compiler refuses circles of crates. It does not refuse an arrow that nobody drew.
 #[test]
@@ -105,20 +107,39 @@ fn libraries_are_known_where_they_belong() {
     // numbers in, numbers out; rows that know no mechanics; words that know none
     assert!(!has("results", "pontoon-core") && !has("cli", "pontoon-core"));
     for (library, known) in [
-        ("polars-arrow", &["results"][..]),
+        // its own arrays, and their way to another library
+        ("polars-arrow", &["results", "python"][..]),
         ("polars-parquet", &["results"]),
         ("csv", &["results"]),
         // a long bridge prepared, jobs, and columns of a table read in parallel
         ("rayon", &["core", "results", "study"]),
         ("faer", &["core"]),
         ("resvg", &["view"]),
-        ("anyhow", &["cli"]),
+        ("anyhow", &["cli", "python"]),
+        ("pyo3", &["python"]),
         ("clap", &["cli"]),
     ] {
         for member in MEMBERS {
             assert_eq!(has(member, library), known.contains(&member), "{library} in {member}");
         }
     }
+}
+
+/// The compiler forbids it in every other crate; in this one it warns of what is denied and not of what is allowed.
+#[test]
+fn unsafe_code_may_stand_in_one_file() {
+    let root = root();
+    let allowed: Vec<PathBuf> = rust_files()
+        .into_iter()
+        .filter(|file| read(file).contains(concat!("allow(unsafe", "_code")))
+        .collect();
+    assert_eq!(allowed, [root.join("crates/python/src/capsule.rs")]);
+    for member in MEMBERS {
+        let manifest = read(&root.join("crates").join(member).join("Cargo.toml"));
+        let own = manifest.contains("[lints]\nworkspace = true");
+        assert_eq!(own, member != "python", "{member}");
+    }
+    assert!(read(&root.join("crates/python/Cargo.toml")).contains("unsafe_code = \"deny\""));
 }
 
 #[test]

@@ -30,6 +30,30 @@ pub(crate) fn excerpt(refusal: &Refusal, text_style: TextStyle) -> Option<String
     ))
 }
 
+/// Where in a file something stands, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PlaceInFile {
+    /// Line and column where it begins.
+    pub start: (usize, usize),
+    /// Line and column behind its end.
+    pub end: (usize, usize),
+}
+
+/// The place that a refusal is about, where it is one of a file that a person wrote.
+pub fn place_in_file(refusal: &Refusal) -> Option<PlaceInFile> {
+    let text = text_of(&refusal.file)?;
+    let Range { start, end } = mark(&text, refusal)?.bytes;
+    let place = |byte: usize| {
+        let before = text.get(..byte)?;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        Some((before.matches('\n').count() + 1, column))
+    };
+    Some(PlaceInFile {
+        start: place(start)?,
+        end: place(end)?,
+    })
+}
+
 /// The text of a file; none of what is no file of its own, of a manifest (which this program writes), and of one too large.
 fn text_of(file: &Path) -> Option<String> {
     let known = fs::metadata(file).ok()?;

@@ -3,6 +3,7 @@
 //! Knows terminals. Does not know what runs.
 
 use crate::bar::set_bar;
+use crate::caller::{Caller, caller};
 use crate::terminal::TextStyle;
 use crate::text;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -18,6 +19,8 @@ pub(crate) enum ProgressDisplay {
     Not,
     /// As a bar with what a line says beside it.
     Bar(ProgressBar, Mutex<Pace>),
+    /// To the caller of the command.
+    Caller(Caller),
     /// As lines, no more than one in a few seconds.
     Lines(Mutex<Pace>),
 }
@@ -41,6 +44,9 @@ const BESIDE_BAR: usize = 62;
 impl ProgressDisplay {
     /// What fits where standard error goes.
     pub(crate) fn fitting(quiet: bool) -> Self {
+        if let Some(caller) = caller() {
+            return Self::Caller(caller);
+        }
         let now = Instant::now();
         let pace = Mutex::new(Pace {
             began: now,
@@ -92,10 +98,14 @@ impl Progress for ProgressDisplay {
             Self::Not => {}
             Self::Bar(bar, _) => bar.set_message(what.to_owned()),
             Self::Lines(_) => text::note(what),
+            Self::Caller(caller) => caller.progress.stage(what),
         }
     }
 
     fn jobs(&self, tally: Tally) {
+        if let Self::Caller(caller) = self {
+            caller.progress.jobs(tally);
+        }
         let (Self::Bar(_, pace) | Self::Lines(pace)) = self else {
             return;
         };

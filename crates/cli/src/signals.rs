@@ -2,6 +2,7 @@
 //!
 //! Knows what SIGINT, SIGTERM and SIGUSR1 ask of a run. Does not know how a run stops.
 
+use crate::caller::caller;
 use crate::text;
 use pontoon_journal::JournalWriter;
 use pontoon_study::run::{CancelToken, Tally, Why};
@@ -16,18 +17,24 @@ const INTERRUPTED: i32 = 130;
 #[derive(Debug, Default)]
 pub(crate) struct Signals {
     /// The run is to stop.
-    pub stop: CancelToken,
+    pub stop: Arc<CancelToken>,
     journal: Mutex<Weak<JournalWriter>>,
     tally: Mutex<Option<Tally>>,
 }
 
 impl Signals {
-    /// Listens from now on.
+    /// Listens from now on; where the command is called, nothing but the caller's word stops it.
     ///
     /// # Errors
     /// What the system says.
     #[cfg(unix)]
     pub(crate) fn listen() -> std::io::Result<Arc<Self>> {
+        if let Some(caller) = caller() {
+            return Ok(Arc::new(Self {
+                stop: caller.stop,
+                ..Self::default()
+            }));
+        }
         use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
         let signals = Arc::new(Self::default());
         let mut received = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;

@@ -2,6 +2,7 @@
 //!
 //! Knows terminals, `NO_COLOR` and `TERM`. Does not know what is written.
 
+use crate::caller::caller;
 use anstyle::{AnsiColor, Style};
 use std::io::{IsTerminal, stderr, stdout};
 use terminal_size::{Width, terminal_size_of};
@@ -29,6 +30,9 @@ pub(crate) const FAINT: Style = Style::new().dimmed();
 impl TextStyle {
     /// Of standard output, where results go.
     pub(crate) fn of_results() -> Self {
+        if caller().is_some() {
+            return Self::new(false, None);
+        }
         Self::new(
             stdout().is_terminal(),
             terminal_size_of(stdout()).map(|(width, _)| width),

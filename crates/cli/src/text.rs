@@ -2,13 +2,14 @@
 //!
 //! Knows text. Does not know what it says.
 
+use crate::caller::{caller, keep_note, keep_result};
 use pontoon_plan::input::Cell;
 use pontoon_results::labels;
 pub(crate) use pontoon_results::labels::printable;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use unicode_width::UnicodeWidthStr;
 
-/// Writes results on standard output. A reader that has left (a closed pipe) wants no more, which is no error.
+/// Writes results on standard output, or hands them to the caller. A reader that has left (a closed pipe) wants no more, which is no error.
 ///
 /// # Errors
 /// What the system says of any other failure.
@@ -21,6 +22,12 @@ pub(crate) fn result(text: &str) -> io::Result<()> {
 /// # Errors
 /// As above.
 pub(crate) fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    if caller().is_some() {
+        let mut kept = Vec::new();
+        write(&mut kept)?;
+        keep_result(&kept);
+        return Ok(());
+    }
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
@@ -30,6 +37,9 @@ pub(crate) fn results(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> i
 
 /// Writes a line on standard error, where it is nobody's loss if nobody reads it.
 pub(crate) fn note(line: &str) {
+    if keep_note(line) {
+        return;
+    }
     crate::bar::aside(|| {
         let _ = writeln!(io::stderr().lock(), "{line}");
     });

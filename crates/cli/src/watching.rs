@@ -8,6 +8,7 @@ use crate::text;
 use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Progress, Tally};
 use pontoon_study::sweep::{Apart, ApartEnd, ApartTask, Watcher};
+use std::ffi::OsString;
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -24,13 +25,62 @@ const KILLED: i32 = 9;
 pub(crate) struct Watching<'a> {
     shown: ProgressDisplay,
     signals: &'a Signals,
-    /// Study and folder of results, for a process of its own.
-    again: Option<(PathBuf, PathBuf)>,
+    again: Option<StartedAgain<'a>>,
+}
+
+/// How this program is started again for jobs of a study, in a process of its own.
+pub struct StartedAgain<'a> {
+    /// The start of the command line: the program, and what it needs before its first word.
+    pub program: &'a [OsString],
+    /// The study's file.
+    pub study: PathBuf,
+    /// Its folder of results.
+    pub out: PathBuf,
+}
+
+impl StartedAgain<'_> {
+    /// Does a task on jobs of a study in a process of its own and waits for its end; `stopped` says whether it is to end
+    /// before. Nothing where no process can be started.
+    pub fn work(&self, task: ApartTask, study: &str, jobs: &[usize], stopped: &dyn Fn() -> bool) -> Option<Apart> {
+        let (program, before) = self.program.split_first()?;
+        let numbers: Vec<String> = jobs.iter().map(ToString::to_string).collect();
+        // its standard input tells it when this process is gone
+        let mut child = Command::new(program)
+            .args(before)
+            .args(["run", "--quiet", "--apart", &format!("{study}:{}", numbers.join(","))])
+            .args((task == ApartTask::Prepare).then_some("--prepare-only"))
+            .arg("--out")
+            .arg(&self.out)
+            .arg(&self.study)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .spawn()
+            .ok()?;
+        let process = child.id();
+        let mut input = child.stdin.take();
+        let ended = loop {
+            if let Some(ended) = child.try_wait().ok()? {
+                break ended;
+            }
+            if stopped() {
+                input = None;
+            }
+            std::thread::sleep(BETWEEN_LOOKS);
+        };
+        drop(input);
+        // a process that ends by itself has a status
+        let end = match (ended.code(), ended.signal()) {
+            (None, Some(KILLED)) => ApartEnd::Killed,
+            (None, _) => ApartEnd::Died,
+            (Some(_), _) => ApartEnd::Own,
+        };
+        Some(Apart { process, end })
+    }
 }
 
 impl<'a> Watching<'a> {
     /// Shows and counts.
-    pub(crate) fn new(shown: ProgressDisplay, signals: &'a Signals, again: Option<(PathBuf, PathBuf)>) -> Self {
+    pub(crate) fn new(shown: ProgressDisplay, signals: &'a Signals, again: Option<StartedAgain<'a>>) -> Self {
         Self { shown, signals, again }
     }
 
@@ -67,37 +117,7 @@ impl Watcher for Watching<'_> {
     }
 
     fn work_apart(&self, task: ApartTask, study: &str, jobs: &[usize]) -> Option<Apart> {
-        let (file, out) = self.again.as_ref()?;
-        let numbers: Vec<String> = jobs.iter().map(ToString::to_string).collect();
-        // its standard input tells it when this process is gone
-        let mut child = Command::new(std::env::current_exe().ok()?)
-            .args(["run", "--quiet", "--apart", &format!("{study}:{}", numbers.join(","))])
-            .args((task == ApartTask::Prepare).then_some("--prepare-only"))
-            .arg("--out")
-            .arg(out)
-            .arg(file)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .spawn()
-            .ok()?;
-        let process = child.id();
-        let mut input = child.stdin.take();
-        let ended = loop {
-            if let Some(ended) = child.try_wait().ok()? {
-                break ended;
-            }
-            if self.signals.stop.is_asked() {
-                input = None;
-            }
-            std::thread::sleep(BETWEEN_LOOKS);
-        };
-        drop(input);
-        // a process that ends by itself has a status
-        let end = match (ended.code(), ended.signal()) {
-            (None, Some(KILLED)) => ApartEnd::Killed,
-            (None, _) => ApartEnd::Died,
-            (Some(_), _) => ApartEnd::Own,
-        };
-        Some(Apart { process, end })
+        let again = self.again.as_ref()?;
+        again.work(task, study, jobs, &|| self.signals.stop.is_asked())
     }
 }

@@ -53,6 +53,12 @@ impl ArrowFrame {
         self.0.iter().map(|(name, array)| (name.as_str(), &**array))
     }
 
+    /// The columns without rows.
+    pub(super) fn without_rows(&self) -> Self {
+        let none = |(name, array): &(String, Box<dyn Array>)| (name.clone(), new_empty_array(array.dtype().clone()));
+        Self(self.0.iter().map(none).collect())
+    }
+
     /// Names and types of the columns.
     #[cfg(test)]
     pub(super) fn types(&self) -> Vec<(&str, &polars_arrow::datatypes::ArrowDataType)> {

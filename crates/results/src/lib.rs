@@ -11,6 +11,7 @@
 //! | `varying` | which axes vary |
 //! | `layout` | which tables a study leaves, and their rows from records |
 //! | `arrays` | the few types of columns, filled one after the other |
+//! | `arrow` | tables as arrays in memory |
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `exceedance` | which share of jobs exceeds each limit |
@@ -23,6 +24,7 @@
 //! knows the table library. Tables hold nothing that changes from run to run; the manifest does.
 
 mod arrays;
+mod arrow;
 mod documents;
 #[cfg(test)]
 mod drawn_block;
@@ -58,6 +60,7 @@ mod verification;
 mod writer;
 
 pub use arrays::CellKind;
+pub use arrow::{ArrowTable, MemoryTables};
 pub use documents::{RunDocuments, keep_documents};
 pub use elementary_effects::{MorrisIndex, MorrisOutputs};
 pub use exceedance::Exceedance;
@@ -77,7 +80,9 @@ pub use record::{
     AtPeakRow, BankRow, ConnectorRow, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow,
     PositionRow, SectionRow, Summary,
 };
-pub use registry::{COLUMNS, Card, Column, ColumnRole, Curve, Digits, SpeedFigure, When, registered};
+pub use registry::{
+    COLUMNS, Card, Column, ColumnRole, Curve, Digits, STATIC_PEAK_COLUMNS, SpeedFigure, When, registered,
+};
 pub use resampling::Resampling;
 pub use rest_rows::{DeadRow, FreeboardRow};
 pub use results::Results;

@@ -47,6 +47,9 @@ fn reason(record: &JobRecord) -> Cell<'_> {
     }
 }
 
+/// The columns of the table of jobs that hang on the same load creeping over the bridge.
+pub const STATIC_PEAK_COLUMNS: [&str; 2] = ["static_peak_deflection_m", "dynamic_amplification"];
+
 /// The columns of all tables in their order; those of the axes stand behind the state of the jobs.
 #[rustfmt::skip]
 pub const COLUMNS: &[Column] = &[

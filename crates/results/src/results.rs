@@ -3,9 +3,10 @@
 //! Knows how a folder proves that it holds one whole run: its manifest names each table's hash. Does not know what is
 //! read of it.
 
+use super::arrow::ArrowTable;
 use super::documents::RunDocuments;
 use super::files::MANIFEST;
-use super::frame::{bytes_in_memory, read};
+use super::frame::{ArrowFrame, bytes_in_memory, read};
 use super::layout::Layout;
 use super::memory::too_large;
 use super::registry::Column;
@@ -210,6 +211,32 @@ impl Results {
             TableName::Jobs => Some(&self.jobs),
             other => self.tables.get(&other),
         }
+    }
+
+    /// Whether the run left a table.
+    pub fn has_table(&self, name: TableName) -> bool {
+        self.table(name).is_some() || self.on_disk.contains_key(&name)
+    }
+
+    /// A table of a folder as arrays; nothing where the run left none.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`], [`ResultsError::TooLarge`].
+    pub fn arrays(&self, name: TableName) -> Result<Option<ArrowTable>, ResultsError> {
+        let path = self.place.join(name.file());
+        if !self.has_table(name) {
+            return Ok(None);
+        }
+        check_memory(&path)?;
+        let read = || read(&mut File::open(&path)?, None, &(0..usize::MAX));
+        let read =
+            catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err(io::Error::other("no readable Parquet file")));
+        let parts = read.map_err(|found| ResultsError::Damaged {
+            file: path.clone(),
+            found: found.to_string(),
+        })?;
+        let empty = parts.first().map(ArrowFrame::without_rows).unwrap_or_default();
+        Ok(Some(ArrowTable::new(empty, parts)))
     }
 
     /// The row of a job in the table of jobs.

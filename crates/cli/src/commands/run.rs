@@ -5,7 +5,7 @@ use crate::exit_status::ExitStatus;
 use crate::progress::ProgressDisplay;
 use crate::signals::Signals;
 use crate::terminal::TextStyle;
-use crate::watching::Watching;
+use crate::watching::{StartedAgain, Watching};
 use crate::{comparison, summary, text};
 use anyhow::Result;
 use pontoon_judge::compare::{Comparison, against_reference};
@@ -19,12 +19,13 @@ use pontoon_study::sweep::{ApartTask, SweepSetting, Swept, run_apart, sweep};
 use pontoon_view::asked;
 use serde::ser::{Serialize, Serializer};
 use serde_json::Value;
+use std::ffi::OsString;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Checks every job, runs what is missing, writes the tables, prints the summary and, where asked, holds the results against
 /// a reference.
-pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus> {
+pub(crate) fn run(arguments: &RunArguments, common: Common, again: &[OsString]) -> Result<ExitStatus> {
     let signals = Signals::listen()?;
     let study = Study::open(&arguments.study)?;
     let reference = arguments.with.as_deref().map(Reference::open).transpose()?;
@@ -43,8 +44,12 @@ pub(crate) fn run(arguments: &RunArguments, common: Common) -> Result<ExitStatus
         run_apart(&study, &jobs, (task, of, numbers), &setting, &signals.stop)?;
         return Ok(ExitStatus::Good);
     }
-    let again = Some((arguments.study.clone(), setting.out.clone()));
-    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &signals, again);
+    let again = StartedAgain {
+        program: again,
+        study: arguments.study.clone(),
+        out: setting.out.clone(),
+    };
+    let watching = Watching::new(ProgressDisplay::fitting(common.quiet), &signals, Some(again));
     let swept = sweep(&study, &jobs, &setting, &signals.stop, &watching);
     watching.finish();
     answer(&study, &swept?, &setting.out, reference.as_ref(), common)

@@ -29,7 +29,7 @@ pub use find::{Find, FindSpec};
 pub use limits::{Allowed, Limit, LimitsSpec};
 pub use raw::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, StudySpec, VerifySpec};
 pub use record::{HistoriesSpec, PeakAt, PeakColumn, PeakSpec, RecordSpec};
-pub use study::{BridgeFile, Study, filled_vehicle, read_bridge};
+pub use study::{BridgeFile, Study, bridge_of, filled_vehicle, read_bridge};
 pub(crate) use vehicle_files::at_home;
 pub use vehicle_files::{VehicleFile, read_vehicle};
 pub use wear::{ScatterSpec, WearSpec};

@@ -39,7 +39,11 @@ pub fn read_bridge(file: &Path) -> Result<BridgeFile, Refusal> {
     bridge_of(file, Document::read(file)?)
 }
 
-fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
+/// Checks the document of a bridge that a program holds; `file` stands for it in messages.
+///
+/// # Errors
+/// [`Refusal`].
+pub fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
     let design: BridgeDesign = typed(file, "", &document)?;
     let checked = design.check().and_then(|()| design.check_water_line());
     checked.map_err(|e| Refusal::of(file, "", e))?;
@@ -137,6 +141,17 @@ impl Study {
         let spec: StudySpec = typed(file, "", &document)?;
         let bridge = bridge_of(file, bridge)?;
         Self::checked(file.to_owned(), document, spec, bridge, Vec::new())
+    }
+
+    /// The study of documents that a program holds: `file` stands for the study in messages, and paths of vehicle files in it
+    /// are relative to its folder; the bridge is named by its own file.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn of_values(file: &Path, document: Document, bridge: &BridgeFile) -> Result<Self, Refusal> {
+        let (document, vehicle_files) = with_vehicle_files(file, document)?;
+        let spec: StudySpec = typed(file, "", &document)?;
+        Self::checked(file.to_owned(), document, spec, bridge.clone(), vehicle_files)
     }
 
     fn checked(

@@ -8,6 +8,7 @@
 //! | `demands` | what a crossing asks of limits |
 //! | `tried`, `finer` | crossings that a rating tries, and the operator that judges them |
 //! | `verify`, `self_test` | the reference solver as judge; a crossing whose answer is known |
+//! | `session` | studies solved one after the other in one process, without a file |
 //! | `failure`, `guard` | an error of the mechanics as the failure that a record keeps; panics made failures |
 //! | `resume_index` | records in the journal, and back |
 //! | `monitor`, `progress`, `cancel`, `probe` | who is told, who may stop it, how long it will take |
@@ -39,6 +40,7 @@ mod rating;
 mod resume_index;
 mod retry;
 pub mod self_test;
+mod session;
 mod shared_models;
 mod statics;
 mod tried;
@@ -55,6 +57,7 @@ pub use resume_index::ResumeIndex;
 pub(crate) use resume_index::record_key;
 pub use retry::{RETRY_STEP_SHARE, half_step_may_help};
 pub use self_test::SelfTestError;
+pub use session::{SessionError, SessionSetting, SolveSession};
 pub use shared_models::PreparedModules;
 
 use batch::NoObserver;

@@ -51,7 +51,7 @@ impl PreparedModules {
 }
 
 /// All that the jobs of a run share.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct SharedModels {
     modules: BTreeMap<ModuleKey, SharedResult<PreparedModule>>,
     bridges: BTreeMap<BridgeKey, SharedResult<Bridge>>,
@@ -62,6 +62,8 @@ pub(super) struct SharedModels {
     statics: BTreeMap<BridgeKey, SharedResult<StaticSolver>>,
     dead: BTreeMap<DeadKey, SharedResult<Option<Arc<DeadState>>>>,
     creeping: BTreeMap<CreepingKey, SharedResult<Vec<f64>>>,
+    /// Whether nobody asks for static peaks.
+    no_static_peaks: bool,
     condensations: AtomicUsize,
     operators_made: OperatorsMade,
 }
@@ -77,43 +79,76 @@ struct OperatorsMade {
 impl SharedModels {
     /// Prepares everything that `all` jobs need, each thing once, on the current pool; modules that are `known` are taken
     /// from there. What is not begun when a stop is asked for is not prepared.
-    pub(super) fn prepare<'j>(
-        all: &[&'j Job],
+    pub(super) fn prepare(
+        all: &[&Job],
         known: &PreparedModules,
         cache: Option<&Cache>,
         cancel: &CancelToken,
         progress: &dyn Progress,
     ) -> Self {
+        Self::prepare_after(all, &Self::of_modules(known), true, (cache, cancel), progress)
+    }
+
+    /// Prepares everything that `all` jobs need. What was prepared `before` is taken from there; what they do not need of it is
+    /// left out. Static peaks of creeping loads are prepared where they are asked for.
+    pub(super) fn prepare_after<'j>(
+        all: &[&'j Job],
+        before: &Self,
+        static_peaks: bool,
+        (cache, cancel): (Option<&Cache>, &CancelToken),
+        progress: &dyn Progress,
+    ) -> Self {
         let finer = |job: &&'j Job| Some((*job, finer_analysis(job)?));
         let finer: Vec<(&Job, CrossingAnalysis)> = all.iter().filter_map(finer).collect();
-        Self::prepare_beside(all, &finer, known, (cache, cancel), progress)
+        Self::prepare_beside(all, &finer, (before, static_peaks), (cache, cancel), progress)
+    }
+
+    fn of_modules(known: &PreparedModules) -> Self {
+        Self {
+            modules: known.0.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes over what another has and this has not, but for what failed there, and the static peaks and dead states, which
+    /// are those of single loads and gaps.
+    pub(super) fn keep(&mut self, other: &Self) {
+        fn add<K: Ord + Clone, T>(own: &mut BTreeMap<K, SharedResult<T>>, other: &BTreeMap<K, SharedResult<T>>) {
+            for (key, made) in other.iter().filter(|(_, made)| made.is_ok()) {
+                own.entry(key.clone()).or_insert_with(|| made.clone());
+            }
+        }
+        add(&mut self.modules, &other.modules);
+        add(&mut self.bridges, &other.bridges);
+        add(&mut self.damping, &other.damping);
+        add(&mut self.operators, &other.operators);
+        add(&mut self.operated, &other.operated);
+        add(&mut self.crossings, &other.crossings);
+        add(&mut self.statics, &other.statics);
+    }
+
+    /// Bridges and modules, of which each takes megabytes.
+    pub(super) fn large_parts(&self) -> usize {
+        self.modules.len() + self.bridges.len() + self.operated.len() + self.crossings.len()
     }
 
     /// Prepares what some candidates of a rating need, and nothing that judges them.
     pub(super) fn prepare_candidates(all: &[&Job], known: &PreparedModules) -> Self {
-        Self::prepare_beside(all, &[], known, (None, &CancelToken::default()), &Silent)
+        let before = Self::of_modules(known);
+        Self::prepare_beside(all, &[], (&before, true), (None, &CancelToken::default()), &Silent)
     }
 
-    /// Prepares what all jobs need, and operators of some for other analyses beside.
+    /// Prepares what all jobs need beyond what was prepared before, and operators of some for other analyses beside.
     fn prepare_beside(
         all: &[&Job],
         beside: &[(&Job, CrossingAnalysis)],
-        known: &PreparedModules,
+        (before, static_peaks): (&Self, bool),
         (cache, cancel): (Option<&Cache>, &CancelToken),
         progress: &dyn Progress,
     ) -> Self {
         let mut models = Self {
-            modules: BTreeMap::new(),
-            bridges: BTreeMap::new(),
-            damping: BTreeMap::new(),
-            operators: BTreeMap::new(),
-            operated: BTreeMap::new(),
-            crossings: BTreeMap::new(),
-            statics: BTreeMap::new(),
-            dead: BTreeMap::new(),
-            creeping: BTreeMap::new(),
-            condensations: AtomicUsize::new(0),
-            operators_made: OperatorsMade::default(),
+            no_static_peaks: !static_peaks,
+            ..Self::default()
         };
         let crossings: Vec<CrossingJob<'_>> = all.iter().filter_map(|job| job.as_crossing()).collect();
         let judges = beside.iter().filter_map(|(job, analysis)| {
@@ -122,26 +157,30 @@ impl SharedModels {
         });
         let by_operator: Vec<CrossingJob<'_>> = crossings.iter().copied().chain(judges).collect();
         progress.stage("modules: finite elements, condensation");
-        models.modules = models.all_modules(all, known, cancel);
+        models.modules = models.all_modules(all, &before.modules, cancel);
         progress.stage("bridges: assembly");
         let loaded: Vec<&Job> = all.iter().copied().filter(|job| job.task != Task::Modes).collect();
         let bridge = |job: &&Job| Some(bridge_key(job));
         let damping = || {
             let key = |job: &CrossingJob<'_>| Some(damping_key(job));
-            each(cancel, &crossings, key, |job| models.damping_of(job, cancel))
+            each(cancel, &crossings, &before.damping, key, |job| {
+                models.damping_of(job, cancel)
+            })
         };
         let bridges_and_operators = || {
-            let bridges = each(cancel, &loaded, bridge, |job| models.bridge(job, Ends::Supported));
+            let bridges = each(cancel, &loaded, &before.bridges, bridge, |job| {
+                models.bridge(job, Ends::Supported)
+            });
             progress.stage("damping, operators: modes and what they leave out");
             let operator = |job: &CrossingJob<'_>| models.operator(job, &bridges, cache, cancel);
-            let operators = each(cancel, &by_operator, operator_key, operator);
+            let operators = each(cancel, &by_operator, &before.operators, operator_key, operator);
             (bridges, operators)
         };
         // damping has a bridge of its own, and the search for its modes runs on one thread
         ((models.bridges, models.operators), models.damping) = rayon::join(bridges_and_operators, damping);
         progress.stage("solvers: factors");
         let held: Vec<&Job> = loaded.iter().copied().filter(|job| is_held(job)).collect();
-        models.statics = each(cancel, &held, bridge, |job| {
+        models.statics = each(cancel, &held, &before.statics, bridge, |job| {
             Ok(StaticSolver::new(&shared(&models.bridges, &bridge_key(job))?)?)
         });
         let integrated =
@@ -150,27 +189,28 @@ impl SharedModels {
         models.crossings = each(
             cancel,
             &judged,
+            &before.crossings,
             |job| Some(crossing_key(job)),
             |job| models.crossing_solver(job),
         );
-        models.operated = each(cancel, &by_operator, Self::lane_batch_key, |job| {
+        models.operated = each(cancel, &by_operator, &before.operated, Self::lane_batch_key, |job| {
             models.operator_solver(job)
         });
-        models.dead = models.dead_states(cancel, &loaded);
+        models.dead = models.dead_states(cancel, &loaded, &before.dead);
         progress.stage("static peaks of creeping loads");
         let creeping: Vec<&Job> = crossings
             .iter()
             .map(|crossing| crossing.job)
             .filter(|job| models.has_static_peak(job))
             .collect();
-        models.creeping = models.creeping_peaks(cancel, &creeping);
+        models.creeping = models.creeping_peaks(cancel, &creeping, &before.creeping);
         models
     }
 
     fn all_modules<'j>(
         &self,
         all: &[&'j Job],
-        known: &PreparedModules,
+        known: &BTreeMap<ModuleKey, SharedResult<PreparedModule>>,
         cancel: &CancelToken,
     ) -> BTreeMap<ModuleKey, SharedResult<PreparedModule>> {
         let each_module = |job: &&'j Job| {
@@ -180,13 +220,9 @@ impl SharedModels {
                 .enumerate()
                 .map(move |(variant, key)| (job, variant, key))
         };
-        let is_known = |(.., key): &(&Job, usize, ModuleKey)| known.0.contains_key(key);
-        let (old, new): (Vec<_>, Vec<_>) = all.iter().flat_map(each_module).partition(is_known);
+        let all: Vec<(&Job, usize, ModuleKey)> = all.iter().flat_map(each_module).collect();
         let key = |(.., key): &(&Job, usize, ModuleKey)| Some(key.clone());
-        let mut modules = each(cancel, &new, key, |(job, variant, _)| self.module(job, *variant));
-        let taken = old.iter().filter_map(|(.., key)| known.0.get_key_value(key));
-        modules.extend(taken.map(|(key, module)| (key.clone(), module.clone())));
-        modules
+        each(cancel, &all, known, key, |(job, variant, _)| self.module(job, *variant))
     }
 
     fn module(&self, job: &Job, variant: usize) -> Result<PreparedModule, JobFailure> {
@@ -331,23 +367,33 @@ impl SharedModels {
 
     /// The static peaks of creeping loads; cases of one vehicle on one bridge share what it does at its places, which is let
     /// go before the next vehicle's.
-    fn creeping_peaks(&self, cancel: &CancelToken, jobs: &[&Job]) -> BTreeMap<CreepingKey, SharedResult<Vec<f64>>> {
+    fn creeping_peaks(
+        &self,
+        cancel: &CancelToken,
+        jobs: &[&Job],
+        known: &BTreeMap<CreepingKey, SharedResult<Vec<f64>>>,
+    ) -> BTreeMap<CreepingKey, SharedResult<Vec<f64>>> {
+        let (old, new): (Vec<&Job>, Vec<&Job>) = jobs.iter().partition(|job| known.contains_key(&creeping_key(job)));
         let mut vehicles: BTreeMap<(BridgeKey, Arc<str>), Vec<&Job>> = BTreeMap::new();
-        for job in jobs {
+        for job in new {
             let key = (bridge_key(job), job.vehicle.key.clone());
             vehicles.entry(key).or_default().push(job);
         }
         let peaks = |((bridge, _), jobs): ((BridgeKey, _), Vec<&Job>)| {
             let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
             let key = |job: &&Job| Some(creeping_key(job));
-            each(cancel, &jobs, key, |job| {
+            each(cancel, &jobs, known, key, |job| {
                 let load = load.as_ref().map_err(Clone::clone)?;
                 Ok(load.peaks_m(&static_case(job, 0.0, self.dead(job)?))?)
             })
         };
         let vehicles: Vec<_> = vehicles.into_iter().collect();
         let made: Vec<_> = vehicles.into_par_iter().with_max_len(1).map(peaks).collect();
-        made.into_iter().flatten().collect()
+        let old = old
+            .into_iter()
+            .filter_map(|job| known.get_key_value(&creeping_key(job)));
+        let old = old.map(|(key, peaks)| (key.clone(), peaks.clone()));
+        made.into_iter().flatten().chain(old).collect()
     }
 
     /// The dead states of bridges that are loaded before any vehicle comes.
@@ -355,6 +401,7 @@ impl SharedModels {
         &self,
         cancel: &CancelToken,
         jobs: &[&Job],
+        known: &BTreeMap<DeadKey, SharedResult<Option<Arc<DeadState>>>>,
     ) -> BTreeMap<DeadKey, SharedResult<Option<Arc<DeadState>>>> {
         let loaded: Vec<&Job> = jobs
             .iter()
@@ -364,6 +411,7 @@ impl SharedModels {
         each(
             cancel,
             &loaded,
+            known,
             |job| Some(dead_key(job)),
             |job| {
                 let case = DeadCase::new(&job.bridge.design, job.connection, job.laws_at_rest());
@@ -406,7 +454,8 @@ impl SharedModels {
 
     /// Whether a load can creep over the bridge of a job: something linear holds it.
     fn has_static_peak(&self, job: &Job) -> bool {
-        job.rating.is_none()
+        !self.no_static_peaks
+            && job.rating.is_none()
             && job.is_single()
             && is_held(job)
             && !self.statics(job).is_ok_and(|solver| solver.is_loose())
@@ -492,10 +541,11 @@ fn is_held(job: &Job) -> bool {
     job.bridge.design.check_held().is_ok()
 }
 
-/// Makes one thing for each distinct key, in parallel; the first job with a key stands for the others.
+/// Makes one thing for each distinct key that is not known, in parallel; the first job with a key stands for the others.
 fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
     cancel: &CancelToken,
     jobs: &[J],
+    known: &BTreeMap<K, SharedResult<T>>,
     key: impl Fn(&J) -> Option<K>,
     make: impl Fn(&J) -> Result<T, JobFailure> + Sync,
 ) -> BTreeMap<K, SharedResult<T>> {
@@ -505,8 +555,16 @@ fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
             first.entry(key).or_insert(job);
         }
     }
-    let list: Vec<(K, &J)> = first.into_iter().collect();
-    let made: Vec<(K, SharedResult<T>)> = list
+    let (mut list, mut made) = (Vec::new(), BTreeMap::new());
+    for (key, job) in first {
+        match known.get(&key) {
+            Some(old) => {
+                made.insert(key, old.clone());
+            }
+            None => list.push((key, job)),
+        }
+    }
+    let new: Vec<(K, SharedResult<T>)> = list
         .into_par_iter()
         .with_max_len(1)
         .map(|(key, job)| {
@@ -519,7 +577,8 @@ fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
             (key, made.map(Arc::new))
         })
         .collect();
-    made.into_iter().collect()
+    made.extend(new);
+    made
 }
 
 fn shared<K: Ord, T>(map: &BTreeMap<K, SharedResult<T>>, key: &K) -> SharedResult<T> {

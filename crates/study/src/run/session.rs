@@ -1,0 +1,188 @@
+//! Studies solved one after the other in one process, without a file: what one has prepared serves the next.
+//!
+//! Knows what is kept between studies, and that several may be solved at once. Does not know where records go.
+
+use super::batch::{self, JobObserver};
+use super::cache::Cache;
+use super::cancel::CancelToken;
+use super::cut::{self, Batch};
+use super::failure::too_long;
+use super::pool::{PoolError, on_threads};
+use super::progress::{Progress, Tally};
+use super::self_test::{self, SelfTestError};
+use super::shared_models::SharedModels;
+use pontoon_plan::job::Job;
+use pontoon_plan::study_file::Study;
+use pontoon_results::JobRecord;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use thiserror::Error;
+
+/// Bridges, modules and solvers that are kept between studies, at some megabytes each.
+const MOST_KEPT: usize = 32;
+
+/// What a session keeps between studies. Threads may share it.
+#[derive(Debug)]
+pub struct SolveSession {
+    cache: Option<Cache>,
+    kept: Mutex<Arc<SharedModels>>,
+    /// Set once this machine has proven itself.
+    proven: OnceLock<()>,
+}
+
+/// How a study of a session is solved.
+#[derive(Debug, Clone, Copy)]
+pub struct SessionSetting {
+    /// Threads; 0: as many as the machine has.
+    pub threads: usize,
+    /// Whether the static peaks of crossings are asked for: they take about as long as a crossing.
+    pub static_peaks: bool,
+}
+
+/// Why a study of a session was not solved.
+#[derive(Debug, Error)]
+pub enum SessionError {
+    /// It could not begin.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// This machine or build computes wrongly.
+    #[error(transparent)]
+    SelfTest(#[from] SelfTestError),
+    /// It was asked to stop.
+    #[error("stopped after {} of {} jobs", tally.done, tally.total)]
+    Stopped {
+        /// How far it came.
+        tally: Tally,
+    },
+}
+
+impl SolveSession {
+    /// A session that takes operators from a cache and keeps them there.
+    pub fn new(cache: Option<Cache>) -> Self {
+        Self {
+            cache,
+            kept: Mutex::default(),
+            proven: OnceLock::new(),
+        }
+    }
+
+    /// Solves the jobs of a study and hands their records on, batch by batch in the order of jobs. The records are those of
+    /// [`super::run`], to the last bit.
+    ///
+    /// # Errors
+    /// [`SessionError`]. A job that fails is a record.
+    pub fn solve(
+        &self,
+        study: &Study,
+        jobs: &[Job],
+        setting: SessionSetting,
+        (cancel, progress): (&CancelToken, &dyn Progress),
+        mut take: impl FnMut(&[Job], Vec<JobRecord>) + Send,
+    ) -> Result<(), SessionError> {
+        if self.proven.get().is_none() {
+            self_test::run()?;
+            self.proven.get_or_init(|| ());
+        }
+        on_threads(setting.threads, || {
+            let observer = SessionObserver {
+                cancel,
+                progress,
+                total: jobs.len(),
+                done: AtomicUsize::new(0),
+                failed: AtomicUsize::new(0),
+            };
+            let solvable: Vec<&Job> = jobs.iter().filter(|job| too_long(job).is_none()).collect();
+            let models = self.prepare(&solvable, setting.static_peaks, (cancel, progress));
+            progress.stage("running jobs");
+            progress.jobs(observer.tally());
+            for batch in cut::cut(study, jobs, Batch::default()) {
+                let records = solve_batch(study, batch, &models, &observer);
+                if cancel.is_asked() {
+                    break;
+                }
+                take(batch, records);
+            }
+            match cancel.is_asked() {
+                true => Err(SessionError::Stopped {
+                    tally: observer.tally(),
+                }),
+                false => Ok(()),
+            }
+        })?
+    }
+
+    /// Prepares what jobs share beyond what is kept, and keeps it. No lock is held meanwhile.
+    fn prepare(
+        &self,
+        jobs: &[&Job],
+        static_peaks: bool,
+        (cancel, progress): (&CancelToken, &dyn Progress),
+    ) -> SharedModels {
+        let before = Arc::clone(&self.kept.lock().unwrap_or_else(PoisonError::into_inner));
+        let cache = self.cache.as_ref();
+        let prepare =
+            |before: &SharedModels| SharedModels::prepare_after(jobs, before, static_peaks, (cache, cancel), progress);
+        let models = prepare(&before);
+        if !cancel.is_asked() {
+            let mut kept = SharedModels::default();
+            kept.keep(&models);
+            let mut latest = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            if kept.large_parts() + latest.large_parts() <= MOST_KEPT {
+                kept.keep(&latest);
+            }
+            *latest = Arc::new(kept);
+        }
+        models
+    }
+}
+
+/// Solves the jobs of a batch; those with too many time steps fail unsolved.
+fn solve_batch(study: &Study, batch: &[Job], models: &SharedModels, observer: &SessionObserver<'_>) -> Vec<JobRecord> {
+    let pairs = batch.iter().map(|job| (study, job));
+    let (long, solvable): (Vec<_>, Vec<_>) = pairs.partition(|(_, job)| too_long(job).is_some());
+    let mut records = batch::solve(&solvable, false, models, observer);
+    if !long.is_empty() && !observer.cancel.is_asked() {
+        let failed = long
+            .iter()
+            .filter_map(|(_, job)| Some(JobRecord::failed(job, too_long(job)?)));
+        let failed: Vec<JobRecord> = failed.collect();
+        observer.end(&[], &failed);
+        records.extend(failed);
+        records.sort_by_key(|record| record.job);
+    }
+    records
+}
+
+/// Counts jobs.
+struct SessionObserver<'a> {
+    cancel: &'a CancelToken,
+    progress: &'a dyn Progress,
+    total: usize,
+    done: AtomicUsize,
+    failed: AtomicUsize,
+}
+
+impl SessionObserver<'_> {
+    fn tally(&self) -> Tally {
+        let done = self.done.load(Ordering::Relaxed);
+        Tally {
+            done,
+            failed: self.failed.load(Ordering::Relaxed),
+            total: self.total,
+            ran: done,
+        }
+    }
+}
+
+impl JobObserver for SessionObserver<'_> {
+    fn begin(&self, _: &[&Job]) -> bool {
+        !self.cancel.is_asked()
+    }
+
+    fn end(&self, _: &[&Job], records: &[JobRecord]) {
+        let failed = records.iter().filter(|record| record.failure.is_some()).count();
+        self.failed.fetch_add(failed, Ordering::Relaxed);
+        self.done.fetch_add(records.len(), Ordering::Relaxed);
+        self.progress.jobs(self.tally());
+    }
+}
