@@ -1,10 +1,8 @@
 //! A table handed to another library by Arrow's C stream interface, without a copy.
 //!
 //! Knows the interface, and is the only module of the workspace in which `unsafe` code may stand. Does not know columns.
-#![allow(
-    unsafe_code,
-    reason = "a C interface; today the libraries' own functions do without it here"
-)]
+// a C interface; today the libraries' own functions do without it
+#![allow(unsafe_code)]
 
 use crate::errors::failed;
 use polars_arrow::ffi::export_iterator;
