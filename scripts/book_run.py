@@ -212,6 +212,8 @@ class Sandbox:
             "HOME": str(folder),
             "LC_ALL": "C.UTF-8",
             "PONTOON_CACHE_DIR": str(cache),
+            # the package, with the extension that scripts/check-book puts there
+            "PYTHONPATH": str(root / "crates" / "python"),
             "NO_COLOR": "1",
             "MPLBACKEND": "Agg",
             "COLUMNS": "120",

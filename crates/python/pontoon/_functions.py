@@ -108,7 +108,7 @@ class Function:
         with Progress(progress) as told:
             text = to_json(_CALL, study)
             solved = _SESSION.solve_points(text, _CALL, self._bridge._engine, self._outputs, self._threads, told)
-        jobs, rows = solved
+        jobs, rows, self._last.solved_s = solved
         numbers = [numpy.frombuffer(jobs.numbers(output) or b"") for output in self._outputs]
         failed = jobs.failures()
         if failed:

@@ -31,8 +31,14 @@ enum Unsolved {
     Tables(io::Error),
 }
 
-/// What a study left: its tables, and the row of each point where those were asked for.
-type Solved = (BTreeMap<TableName, ArrowTable>, Option<Vec<usize>>);
+/// What a study left.
+struct Solved {
+    tables: BTreeMap<TableName, ArrowTable>,
+    /// The row of each point, where those were asked for.
+    rows: Option<Vec<usize>>,
+    /// Seconds in which jobs were solved.
+    solved_s: f64,
+}
 
 #[pymethods]
 impl Session {
@@ -63,12 +69,13 @@ impl Session {
             outputs: None,
         };
         let solved = wait(py, told, |watched| self.tables(&asked, watched))?;
-        let (tables, _) = solved.map_err(|unsolved| exception(py, unsolved))?;
+        let Solved { tables, .. } = solved.map_err(|unsolved| exception(py, unsolved))?;
         let named = |(name, table): (TableName, _)| (name.word(), EngineTable::from(table));
         Ok(tables.into_iter().map(named).collect())
     }
 
-    /// Solves a study for some columns of its table of jobs alone: that table, and the row of each point.
+    /// Solves a study for some columns of its table of jobs alone: that table, the row of each point, and the seconds in which
+    /// jobs were solved.
     #[pyo3(signature = (study, name, bridge, outputs, threads, told))]
     #[allow(clippy::too_many_arguments, reason = "a call from Python")]
     fn solve_points(
@@ -80,7 +87,7 @@ impl Session {
         outputs: Vec<String>,
         threads: usize,
         told: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<(EngineTable, Vec<usize>)> {
+    ) -> PyResult<(EngineTable, Vec<usize>, f64)> {
         let asked = Asked {
             study,
             name,
@@ -89,9 +96,9 @@ impl Session {
             outputs: Some(&outputs),
         };
         let solved = wait(py, told, |watched| self.tables(&asked, watched))?;
-        let (mut tables, rows) = solved.map_err(|unsolved| exception(py, unsolved))?;
-        match (tables.remove(&TableName::Jobs), rows) {
-            (Some(jobs), Some(rows)) => Ok((jobs.into(), rows)),
+        let mut solved = solved.map_err(|unsolved| exception(py, unsolved))?;
+        match (solved.tables.remove(&TableName::Jobs), solved.rows) {
+            (Some(jobs), Some(rows)) => Ok((jobs.into(), rows, solved.solved_s)),
             _ => Err(failed(py, &"program error: no table of jobs")),
         }
     }
@@ -132,9 +139,13 @@ impl Session {
                 taken = tables.append(batch, &records);
             }
         });
-        solved.map_err(Unsolved::Session)?;
+        let solved_s = solved.map_err(Unsolved::Session)?;
         taken.map_err(Unsolved::Tables)?;
-        Ok((tables.finish(), rows))
+        Ok(Solved {
+            tables: tables.finish(),
+            rows,
+            solved_s,
+        })
     }
 }
 

@@ -16,6 +16,7 @@ use pontoon_plan::study_file::Study;
 use pontoon_results::JobRecord;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
 use thiserror::Error;
 
 /// Bridges, modules and solvers that are kept between studies, at some megabytes each.
@@ -67,7 +68,7 @@ impl SolveSession {
     }
 
     /// Solves the jobs of a study and hands their records on, batch by batch in the order of jobs. The records are those of
-    /// [`super::run`], to the last bit.
+    /// [`super::run`], to the last bit. Returns the seconds in which jobs were solved.
     ///
     /// # Errors
     /// [`SessionError`]. A job that fails is a record.
@@ -78,7 +79,7 @@ impl SolveSession {
         setting: SessionSetting,
         (cancel, progress): (&CancelToken, &dyn Progress),
         mut take: impl FnMut(&[Job], Vec<JobRecord>) + Send,
-    ) -> Result<(), SessionError> {
+    ) -> Result<f64, SessionError> {
         if self.proven.get().is_none() {
             self_test::run()?;
             self.proven.get_or_init(|| ());
@@ -95,8 +96,11 @@ impl SolveSession {
             let models = self.prepare(&solvable, setting.static_peaks, (cancel, progress));
             progress.stage("running jobs");
             progress.jobs(observer.tally());
+            let mut solved_s = 0.0;
             for batch in cut::cut(study, jobs, Batch::default()) {
+                let began = Instant::now();
                 let records = solve_batch(study, batch, &models, &observer);
+                solved_s += began.elapsed().as_secs_f64();
                 if cancel.is_asked() {
                     break;
                 }
@@ -106,7 +110,7 @@ impl SolveSession {
                 true => Err(SessionError::Stopped {
                     tally: observer.tally(),
                 }),
-                false => Ok(()),
+                false => Ok(solved_s),
             }
         })?
     }

@@ -3,6 +3,7 @@
 //! Knows which files of a folder are results. Removes nothing: a later `mv` brings everything back.
 
 use super::SweepError;
+use pontoon_journal::place::sync_folder;
 use pontoon_journal::{DOCUMENTS, FOLDER, JournalError, JournalIndex};
 use pontoon_results::{OwnFiles, PAGE};
 use std::fs;
@@ -33,9 +34,7 @@ pub(super) fn archive(folder: &Path, index: Option<&JournalIndex>) -> Result<Opt
     fs::create_dir_all(&to).map_err(|cause| error(&to, cause))?;
     // the new entries first, so that nothing is moved into what may be gone
     for dir in [folder, &folder.join(ASIDE)] {
-        fs::File::open(dir)
-            .and_then(|dir| dir.sync_all())
-            .map_err(|cause| error(dir, cause))?;
+        sync_folder(dir).map_err(|cause| error(dir, cause))?;
     }
     for path in list {
         let target = to.join(path.file_name().unwrap_or_default());
@@ -44,9 +43,7 @@ pub(super) fn archive(folder: &Path, index: Option<&JournalIndex>) -> Result<Opt
             .map_err(|cause| error(&path, cause))?;
     }
     for dir in [to.as_path(), folder] {
-        fs::File::open(dir)
-            .and_then(|dir| dir.sync_all())
-            .map_err(|cause| error(dir, cause))?;
+        sync_folder(dir).map_err(|cause| error(dir, cause))?;
     }
     Ok(Some(to))
 }

@@ -10,7 +10,7 @@ use super::results_folder::{check_folder, instruction_paths, preparations, sessi
 use super::status::study_of_index;
 use super::{SweepError, SweepSetting, Swept, Watcher};
 use crate::run::{CancelToken, ResumeIndex, Setting, record_key, run};
-use pontoon_journal::place::{Folder, HiddenFile, hash_of};
+use pontoon_journal::place::{Folder, HiddenFile, hash_of, sync_folder};
 use pontoon_journal::{EXTENSION, FOLDER, JournalError, JournalIndex, JournalWriter, Lock, Session, fault};
 use pontoon_plan::input::Refusal;
 use pontoon_plan::job::{Job, Jobs};
@@ -305,9 +305,7 @@ fn copy_journal(from: &Path, to: &Path) -> Result<(), SweepError> {
         };
         copy().map_err(|cause| error(&target, cause))?;
     }
-    File::open(&to)
-        .and_then(|dir| dir.sync_all())
-        .map_err(|cause| error(&to, cause))?;
+    sync_folder(&to).map_err(|cause| error(&to, cause))?;
     Ok(())
 }
 
