@@ -33,7 +33,7 @@ from ._studies import (
     schema,
     status,
 )
-from ._tables import Jobs, Table
+from ._tables import Histories, Jobs, JobTable, Table
 
 __all__ = [
     "Bridge",
@@ -41,7 +41,9 @@ __all__ = [
     "Crossing",
     "EngineError",
     "Function",
+    "Histories",
     "InputError",
+    "JobTable",
     "Jobs",
     "Study",
     "Table",

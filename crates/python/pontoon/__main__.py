@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+import signal
 import sys
-from typing import List
 
 from . import _engine
-
-
-def _again() -> List[str]:
-    """The start of a command line that starts the program as a process of its own."""
-    return [sys.executable, "-m", "pontoon"]
+from ._studies import again
 
 
 def main() -> None:
     """Runs the program with the words of this process's command line."""
-    sys.exit(_engine.program(["pontoon", *sys.argv[1:]], _again()))
+    # an interrupt is the program's, which answers it or ends: Python's own handler would wait for the program's end
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    sys.exit(_engine.program(["pontoon", *sys.argv[1:]], again()))
 
 
 if __name__ == "__main__":

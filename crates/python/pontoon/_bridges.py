@@ -12,7 +12,7 @@ from ._documents import merged, plain, to_json
 from ._errors import refused
 from ._functions import Function
 from ._progress import Progress
-from ._tables import Jobs, Table
+from ._tables import Histories, Jobs, Table
 
 #: A path, as a text or an object.
 AnyPath = Union[str, "os.PathLike[str]"]
@@ -86,21 +86,21 @@ class Crossing(Mapping[str, Any]):
         return len(self._row)
 
     @property
-    def histories(self) -> Table:
-        """What was recorded in each time step: a row for each quantity, place and time.
+    def histories(self) -> Histories:
+        """What was recorded in each time step.
 
         >>> import pontoon as pt
         >>> crossing = pt.Bridge("studies/bridges/smoke.json").crossing(speed_m_s=10, load_n=100_000)
         >>> crossing.histories.columns
         ['job', 'time_s', 'quantity', 'position', 'value']
         """
-        return self.tables["histories"]
+        histories = self.tables["histories"]
+        assert isinstance(histories, Histories)
+        return histories
 
     def plot(self, quantity: str = "deflection_m", *, ax: Any = None) -> Any:
         """Draws a quantity of the histories against time, a line for each place; the axes of matplotlib."""
-        from ._plots import histories
-
-        return histories(self, quantity, ax)
+        return self.histories.plot(quantity, ax=ax)
 
     def __repr__(self) -> str:
         told = {name: value for name, value in self._row.items() if value is not None}

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
 from ._errors import refused
 
 if TYPE_CHECKING:
-    from ._bridges import Crossing
-    from ._tables import Table
+    from ._tables import Histories, Table
 
 
 def _axes(ax: Any) -> Any:
@@ -44,10 +43,10 @@ def _place(names: List[str], cells: Tuple[Any, ...]) -> str:
     return ", ".join(f"{name} {cell}" for name, cell in zip(names, cells) if cell is not None)
 
 
-def histories(crossing: Crossing, quantity: str, ax: Any) -> Any:
-    """A quantity of the histories against time, a line for each place."""
-    table = crossing.histories
-    told = [name for name in table.columns if name not in ("job", "time_s", "quantity", "value")]
+def histories(table: Histories, quantity: str, ax: Any) -> Any:
+    """A quantity of the histories against time, a line for each place and job."""
+    same = ("time_s", "quantity", "value", *(["job"] if len(set(table["job"])) == 1 else []))
+    told = [name for name in table.columns if name not in same]
     kinds, places = table["quantity"], [_place(told, cells) for cells in zip(*(table[name] for name in told))]
     times, values = table.numpy("time_s").tolist(), table.numpy("value").tolist()
     lines: Dict[Any, Tuple[List[float], List[float]]] = {}

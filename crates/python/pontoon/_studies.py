@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from . import _engine
-from .__main__ import _again
 from ._bridges import AnyPath
 from ._progress import Progress
-from ._tables import Table
+from ._tables import JobTable, Table, table_of
+
+
+def again() -> List[str]:
+    """The start of a command line that starts the program as a process of its own."""
+    return [sys.executable, "-m", "pontoon"]
 
 
 class Study:
@@ -33,9 +38,9 @@ class Study:
         self.outcome: Dict[str, Any] = {}
 
     @property
-    def jobs(self) -> Table:
+    def jobs(self) -> JobTable:
         """The table of jobs."""
-        return self.table("jobs")
+        return JobTable(_engine.read_table(self.folder, "jobs"))
 
     @property
     def tables(self) -> List[str]:
@@ -54,7 +59,7 @@ class Study:
         >>> len(pt.run("studies/smoke", out=tempfile.mkdtemp(), fresh=True).table("positions"))
         24
         """
-        return Table(_engine.read_table(self.folder, name))
+        return table_of(name, _engine.read_table(self.folder, name))
 
     @property
     def manifest(self) -> Dict[str, Any]:
@@ -153,7 +158,7 @@ def _call(command: str, *places: AnyPath, progress: Optional[bool] = False, **wo
     line.append("--")
     line.extend(os.fspath(place) for place in places)
     with Progress(progress) as told:
-        return _Called(*_engine.call(line, _again(), told))
+        return _Called(*_engine.call(line, again(), told))
 
 
 def _object(called: _Called) -> Dict[str, Any]:

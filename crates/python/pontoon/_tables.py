@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 #: Rows that are shown of a long table, half of them from its end.
 _SHOWN = 10
+#: Columns that are shown as text.
+_COLUMNS = 8
 
 
 def _written(cell: Any) -> str:
@@ -123,12 +125,6 @@ class Table:
     def __arrow_c_stream__(self, requested_schema: Optional[object] = None) -> object:
         return self._table.__arrow_c_stream__(requested_schema)
 
-    def plot(self, x: str, y: str, *, by: Optional[str] = None, ax: Any = None) -> Any:
-        """Draws a column against another, a line for each value of the column ``by``; the axes of matplotlib."""
-        from ._plots import columns
-
-        return columns(self, x, y, by, ax)
-
     def _check(self, name: str) -> None:
         if name not in self.columns:
             known = ", ".join(self.columns)
@@ -148,12 +144,13 @@ class Table:
         return lines
 
     def __repr__(self) -> str:
-        names = self.columns
-        shown = names[:8]
-        lines = [shown] + [line[: len(shown)] for line in self._cells()]
-        widths = [max(len(line[at]) for line in lines) for at in range(len(shown))]
-        text = "\n".join("  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in lines)
-        more = f", {len(names) - len(shown)} more columns" if len(names) > len(shown) else ""
+        names, rows = self.columns, self._cells()
+        # what is empty in all rows that are shown says nothing
+        told = [at for at in range(len(names)) if any(line[at] not in ("", "…") for line in rows)][:_COLUMNS]
+        lines = [names] + rows
+        widths = [max(len(line[at]) for line in lines) for at in told]
+        text = "\n".join("  ".join(line[at].rjust(width) for at, width in zip(told, widths)) for line in lines)
+        more = f", {len(names) - len(told)} more columns" if len(names) > len(told) else ""
         return f"{text}\n[{len(self)} rows{more}]"
 
     def _repr_html_(self) -> str:
@@ -165,8 +162,39 @@ class Table:
         return f"<table><thead>{head}</thead><tbody>{rows}</tbody></table><p>{len(self)} rows</p>"
 
 
-class Jobs(Table):
-    """The table of the jobs of a call, a row a job, with the other tables that it left.
+class JobTable(Table):
+    """The table of jobs: a row a job, a failed one too.
+
+    >>> import pontoon as pt
+    >>> jobs = pt.Bridge("studies/bridges/smoke.json").cross(speed_m_s=5, load_n=[100_000, 120_000])
+    >>> jobs["status"], jobs.failed
+    (['ok', 'ok'], [])
+    """
+
+    @property
+    def failed(self) -> List[int]:
+        """Numbers of the rows that failed.
+
+        >>> import pontoon as pt
+        >>> pt.Bridge("studies/bridges/smoke.json").cross(speed_m_s=5, load_n=100_000).failed
+        []
+        """
+        return list(self._table.failures())
+
+    def plot(
+        self, x: str = "speed_m_s", y: str = "peak_deflection_m", *, by: Optional[str] = None, ax: Any = None
+    ) -> Any:
+        """Draws a column against another, a line for each value of the column ``by``; the axes of matplotlib.
+
+        Needs ``pip install pontoon-bridge[plot]``: ``jobs.plot(by="gap_tension_m")``.
+        """
+        from ._plots import columns
+
+        return columns(self, x, y, by, ax)
+
+
+class Jobs(JobTable):
+    """The table of the jobs of a call, with the other tables that it left.
 
     >>> import pontoon as pt
     >>> jobs = pt.Bridge("studies/bridges/smoke.json").cross(speed_m_s=5, load_n=[100_000, 120_000])
@@ -181,15 +209,30 @@ class Jobs(Table):
 
     def __init__(self, tables: Mapping[str, _engine.EngineTable]) -> None:
         super().__init__(tables["jobs"])
-        others = {name: Table(table) for name, table in tables.items() if name != "jobs"}
+        others = {name: table_of(name, table) for name, table in tables.items() if name != "jobs"}
         self.tables = {"jobs": self, **others}
 
-    @property
-    def failed(self) -> List[int]:
-        """Numbers of the rows that failed.
 
-        >>> import pontoon as pt
-        >>> pt.Bridge("studies/bridges/smoke.json").cross(speed_m_s=5, load_n=100_000).failed
-        []
+class Histories(Table):
+    """Recorded histories: a row for each quantity, place and time.
+
+    >>> import pontoon as pt
+    >>> histories = pt.Bridge("studies/bridges/smoke.json").crossing(speed_m_s=10, load_n=100_000).histories
+    >>> histories.columns
+    ['job', 'time_s', 'quantity', 'position', 'value']
+    """
+
+    def plot(self, quantity: str = "deflection_m", *, ax: Any = None) -> Any:
+        """Draws a quantity against time, a line for each place and job; the axes of matplotlib.
+
+        Needs ``pip install pontoon-bridge[plot]``: ``bridge.crossing(speed_m_s=15, load_n=230_300).histories.plot()``.
         """
-        return list(self._table.failures())
+        from ._plots import histories
+
+        return histories(self, quantity, ax)
+
+
+def table_of(name: str, table: _engine.EngineTable) -> Table:
+    """A table of the engine by its name."""
+    kinds = {"jobs": JobTable, "histories": Histories}
+    return kinds.get(name, Table)(table)
