@@ -190,3 +190,7 @@ impl JobObserver for SessionObserver<'_> {
         self.progress.jobs(self.tally());
     }
 }
+
+#[cfg(test)]
+#[path = "session_tests.rs"]
+mod tests;
