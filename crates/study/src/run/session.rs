@@ -192,5 +192,4 @@ impl JobObserver for SessionObserver<'_> {
 }
 
 #[cfg(test)]
-#[path = "session_tests.rs"]
 mod tests;
