@@ -13,6 +13,7 @@ from ._errors import refused
 from ._functions import Function
 from ._progress import Progress
 from ._tables import Histories, Jobs, Table
+from ._words import known_words, threads_of
 
 #: A path, as a text or an object.
 AnyPath = Union[str, "os.PathLike[str]"]
@@ -292,6 +293,7 @@ class Bridge:
         _put(study, record=record, wear=wear)
         return self._solve("statics()", study, threads, progress)
 
+    @known_words
     def modes(
         self,
         count: int = 20,
@@ -365,6 +367,7 @@ class Bridge:
         return study
 
     def _solve(self, call: str, study: Mapping[str, Any], threads: int, progress: Optional[bool]) -> Jobs:
+        threads = threads_of(call, threads)
         with Progress(progress) as told:
             return Jobs(_SESSION.solve(to_json(call, study), call, self._engine, threads, told))
 

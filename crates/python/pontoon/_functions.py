@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, 
 
 from ._documents import plain, to_json
 from ._errors import refused
+from ._words import threads_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -48,7 +49,7 @@ class Function:
         self._fixed: Dict[str, Any] = plain(_CALL, "fixed", fixed)
         self._inputs = {str(name): _bounds(f"inputs.{name}", of) for name, of in inputs.items()}
         self._outputs = [str(output) for output in outputs]
-        self._threads = threads
+        self._threads = threads_of(_CALL, threads)
         self._last = threading.local()
         if not self._inputs:
             raise refused(_CALL, "inputs", "none", "at least one axis with its bounds")

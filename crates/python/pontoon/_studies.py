@@ -11,6 +11,7 @@ from . import _engine
 from ._bridges import AnyPath
 from ._progress import Progress
 from ._tables import JobTable, Table, table_of
+from ._words import known_words
 
 
 def again() -> List[str]:
@@ -68,6 +69,7 @@ class Study:
             manifest: Dict[str, Any] = json.load(file)
         return manifest
 
+    @known_words
     def report(
         self,
         out: Optional[AnyPath] = None,
@@ -86,6 +88,7 @@ class Study:
         """
         return _object(_call("report", self.folder, out=out, with_=with_, plays=plays, figures=figures))
 
+    @known_words
     def compare(self, with_: AnyPath, *, tolerance: Optional[AnyPath] = None) -> Comparison:
         """Holds the results against a reference, or against older results."""
         return compare(self.folder, with_, tolerance=tolerance)
@@ -94,6 +97,7 @@ class Study:
         """Writes a job as files for ParaView, see :func:`export`."""
         return export(self.folder, to, **words)
 
+    @known_words
     def indices(
         self, of: Optional[Sequence[str]] = None, *, resamples: Optional[int] = None, seed: Optional[int] = None
     ) -> Dict[str, Any]:
@@ -103,6 +107,7 @@ class Study:
         """
         return _object(_call("indices", self.folder, of=of, resamples=resamples, seed=seed))
 
+    @known_words
     def explain(self, job: int) -> Dict[str, Any]:
         """Why a job ran or will run.
 
@@ -166,6 +171,7 @@ def _object(called: _Called) -> Dict[str, Any]:
     return result
 
 
+@known_words
 def run(
     study: AnyPath,
     *,
@@ -207,6 +213,7 @@ def run(
     return results
 
 
+@known_words
 def rate(
     study: AnyPath,
     *,
@@ -219,6 +226,7 @@ def rate(
     return _object(_call("rate", study, progress=progress, out=out, threads=threads, fresh=fresh))
 
 
+@known_words
 def plan(study: AnyPath, *, out: Optional[AnyPath] = None) -> Dict[str, Any]:
     """Checks every job of a study and says what would run, how long it takes, and what of it is done.
 
@@ -240,6 +248,7 @@ def status(*folders: AnyPath) -> Dict[str, Any]:
     return _object(_call("status", *folders))
 
 
+@known_words
 def merge(*folders: AnyPath, out: AnyPath, any_instructions: bool = False) -> Study:
     """Puts shards of a study together.
 
@@ -255,6 +264,7 @@ def merge(*folders: AnyPath, out: AnyPath, any_instructions: bool = False) -> St
     return results
 
 
+@known_words
 def compare(results: AnyPath, with_: AnyPath, *, tolerance: Optional[AnyPath] = None) -> Comparison:
     """Holds a folder of results against a reference, or against older results: the verdicts as a table.
 
@@ -288,6 +298,7 @@ def _verdict(line: Dict[str, Any]) -> Dict[str, Any]:
     }
 
 
+@known_words
 def calibrate(
     bridge: AnyPath,
     *,
@@ -305,6 +316,7 @@ def calibrate(
     return _object(called)
 
 
+@known_words
 def export(
     source: AnyPath,
     to: AnyPath,
@@ -344,6 +356,7 @@ def export(
     return _object(_call("export", source, to=to, **words))
 
 
+@known_words
 def schema(of: str) -> Dict[str, Any]:
     """The JSON schema of a file: ``study``, ``bridge``, ``vehicle``, ``reference``, ``parameters``, or of ``tables``.
 

@@ -6,7 +6,7 @@ import html
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Optional
 
 from . import _engine
-from ._errors import InputError, refused
+from ._errors import refused
 
 if TYPE_CHECKING:
     import numpy as np
@@ -127,9 +127,7 @@ class Table:
 
     def _check(self, name: str) -> None:
         if name not in self.columns:
-            known = ", ".join(self.columns)
-            text = f"Table: found unknown column {name!r}, allowed: {known}"
-            raise InputError(text, file="Table", path=str(name), kind="unknown_word", found=str(name), allowed=known)
+            _engine.refuse_word("Table", str(name), str(name), self.columns)
 
     def _cells(self) -> List[List[str]]:
         """The rows that are shown, ``…`` in the place of those left out."""

@@ -8,6 +8,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::fmt::Display;
+use std::path::PathBuf;
 
 /// The module of the package that holds the exceptions.
 const CLASSES: &str = "pontoon._errors";
@@ -66,4 +67,10 @@ pub(crate) fn ended(py: Python<'_>, error: &anyhow::Error) -> PyErr {
         Some(refusal) => refused(py, refusal),
         None => failed(py, error),
     }
+}
+
+/// Raises the refusal of a word of a call that is not among those it knows.
+#[pyfunction]
+pub(crate) fn refuse_word(py: Python<'_>, call: PathBuf, path: &str, word: &str, known: Vec<String>) -> PyResult<()> {
+    Err(refused(py, &Refusal::unknown_key(&call, path, word, &known)))
 }

@@ -30,6 +30,8 @@ mod _engine {
     #[pymodule_export]
     use super::command::{call, program};
     #[pymodule_export]
+    use super::errors::refuse_word;
+    #[pymodule_export]
     use super::folder::{read_table, table_names, table_of_rows};
     #[pymodule_export]
     use super::session::{Session, axes, columns};

@@ -63,6 +63,18 @@ CALLS = [
         lambda b: pt.run("studies/smoke", fresh=True, retry_failed=True),
         "the argument '--fresh' cannot be used with '--retry-failed'",
     ),
+    (
+        lambda b: pt.run("studies/smoke", ot="x"),
+        "run(): ot: found unknown key `ot` (nearest known: out), allowed: study, out, with_",
+    ),
+    (lambda b: b.modes(cout=3), "modes(): cout: found unknown key `cout` (nearest known: count)"),
+    (lambda b: pt.Study("x").report(paly=3), "report(): paly: found unknown key `paly` (nearest known: plays)"),
+    (
+        lambda b: b.cross(speed_m_s=5, load_n=1e5, threads=-1),
+        "cross(): threads: found -1, allowed: a whole number from 0",
+    ),
+    (lambda b: b.cross(speed_m_s=5, load_n=1e5, threads=1.5), "cross(): threads: found 1.5, allowed: a whole number"),
+    (lambda b: function(b, threads="all"), "function(): threads: found 'all'"),
     (lambda b: pt.Study("studies/smoke").jobs, "studies/smoke: found no results: manifest.json is missing"),
     (lambda b: pt.compare("studies/smoke", "studies/table1"), "studies/smoke: found no results"),
     (lambda b: pt.schema("boat"), "invalid value 'boat' for '<OF>'"),
@@ -120,7 +132,7 @@ CALLS = [
         lambda b: b.crossing(speed_m_s=[5, 6], load_n=1e5),
         "crossing(): axes: found 2 crossings, allowed: one value of each axis",
     ),
-    (lambda b: b.modes(3)["shap"], "Table: found unknown column 'shap'"),
+    (lambda b: b.modes(3)["shap"], "Table: shap: found unknown key `shap` (nearest known: shape)"),
     (lambda b: b.modes(3).numpy("shape"), "Table: shape: found a column of words"),
     (
         lambda b: b.crossing(speed_m_s=5, load_n=1e5).plot("speed"),
