@@ -43,12 +43,22 @@ class Vehicle:
 
     @property
     def name(self) -> str:
-        """Its name in tables: that of its file."""
+        """Its name in tables: that of its file.
+
+        >>> import pontoon as pt
+        >>> pt.Vehicle("studies/vehicles/mlc60_tracked.json").name
+        'mlc60_tracked'
+        """
         return self._name
 
     @property
     def document(self) -> Dict[str, Any]:
-        """Its document, a copy."""
+        """Its document, a copy.
+
+        >>> import pontoon as pt
+        >>> pt.Vehicle({"track_y_m": [-1, 1]}).document
+        {'track_y_m': [-1, 1]}
+        """
         result: Dict[str, Any] = json.loads(self._json)
         return result
 
@@ -100,7 +110,12 @@ class Crossing(Mapping[str, Any]):
         return histories
 
     def plot(self, quantity: str = "deflection_m", *, ax: Any = None) -> Any:
-        """Draws a quantity of the histories against time, a line for each place; the axes of matplotlib."""
+        """Draws a quantity of the histories against time, a line for each place; the axes of matplotlib.
+
+        >>> import pontoon as pt
+        >>> pt.Bridge("studies/bridges/smoke.json").crossing(speed_m_s=10, load_n=100_000).plot("force_n").get_ylabel()
+        'force_n'
+        """
         return self.histories.plot(quantity, ax=ax)
 
     def __repr__(self) -> str:
@@ -142,7 +157,12 @@ class Bridge:
 
     @property
     def modules(self) -> int:
-        """Number of modules."""
+        """Number of modules.
+
+        >>> import pontoon as pt
+        >>> pt.Bridge("studies/bridges/fu2005.json").modules
+        15
+        """
         return self._engine.modules
 
     @property

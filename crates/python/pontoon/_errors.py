@@ -65,7 +65,18 @@ def _again(message: str, told: dict) -> InputError:  # type: ignore[type-arg]
 
 
 class EngineError(RuntimeError):
-    """What went wrong that no input is to blame for: a file that cannot be written, damaged results."""
+    """What went wrong that no input is to blame for: a file that cannot be written, damaged results.
+
+    >>> import pontoon as pt, tempfile, os
+    >>> study = pt.run("studies/smoke", out=tempfile.mkdtemp(), fresh=True)
+    >>> with open(os.path.join(study.folder, "jobs.parquet"), "ab") as file:
+    ...     _ = file.write(b"more")
+    >>> try:
+    ...     study.jobs
+    ... except pt.EngineError as error:
+    ...     print("damaged results" in str(error))
+    True
+    """
 
 
 def refused(call: str, path: str, found: str, allowed: str) -> InputError:

@@ -59,17 +59,38 @@ class Function:
 
     @property
     def inputs(self) -> Dict[str, Tuple[float, float]]:
-        """The inputs with their bounds, in the order of the columns of ``X``."""
+        """The inputs with their bounds, in the order of the columns of ``X``.
+
+        >>> import pontoon as pt
+        >>> bridge = pt.Bridge("studies/bridges/smoke.json")
+        >>> f = bridge.function({"speed_m_s": (2, 20)}, ["peak_deflection_m"], load_n=100_000)
+        >>> f.inputs
+        {'speed_m_s': (2.0, 20.0)}
+        """
         return dict(self._inputs)
 
     @property
     def outputs(self) -> List[str]:
-        """The outputs, in the order of the columns of ``Y``."""
+        """The outputs, in the order of the columns of ``Y``.
+
+        >>> import pontoon as pt
+        >>> bridge = pt.Bridge("studies/bridges/smoke.json")
+        >>> f = bridge.function({"speed_m_s": (2, 20)}, ["peak_deflection_m"], load_n=100_000)
+        >>> f.outputs
+        ['peak_deflection_m']
+        """
         return list(self._outputs)
 
     @property
     def problem(self) -> Dict[str, Any]:
-        """The inputs as SALib describes them."""
+        """The inputs as SALib describes them.
+
+        >>> import pontoon as pt
+        >>> bridge = pt.Bridge("studies/bridges/smoke.json")
+        >>> f = bridge.function({"speed_m_s": (2, 20)}, ["peak_deflection_m"], load_n=100_000)
+        >>> f.problem["names"]
+        ['speed_m_s']
+        """
         bounds = [[low, high] for low, high in self._inputs.values()]
         return {"num_vars": len(bounds), "names": list(self._inputs), "bounds": bounds}
 

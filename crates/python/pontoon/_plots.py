@@ -20,6 +20,10 @@ def _axes(ax: Any) -> Any:
     return pyplot.subplots(figsize=(8, 4.5), layout="constrained")[1]
 
 
+def _number(cell: Any) -> str:
+    return f"{cell:g}" if isinstance(cell, float) else str(cell)
+
+
 def columns(table: Table, x: str, y: str, by: Optional[str], ax: Any) -> Any:
     """A column against another, a line for each value of a third."""
     lines: Dict[Any, List[Tuple[float, float]]] = {}
@@ -29,7 +33,7 @@ def columns(table: Table, x: str, y: str, by: Optional[str], ax: Any) -> Any:
     ax = _axes(ax)
     for group, points in lines.items():
         points.sort(key=lambda point: point[0])
-        label = None if by is None else f"{by} {group}"
+        label = None if by is None else f"{by} {_number(group)}"
         ax.plot([at for at, _ in points], [value for _, value in points], "o-", label=label)
     ax.set_xlabel(x)
     ax.set_ylabel(y)

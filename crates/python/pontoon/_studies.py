@@ -40,7 +40,13 @@ class Study:
 
     @property
     def jobs(self) -> JobTable:
-        """The table of jobs."""
+        """The table of jobs.
+
+        >>> import pontoon as pt, tempfile
+        >>> study = pt.run("studies/smoke", out=tempfile.mkdtemp(), fresh=True)
+        >>> study.jobs.failed
+        []
+        """
         return JobTable(_engine.read_table(self.folder, "jobs"))
 
     @property
@@ -64,7 +70,13 @@ class Study:
 
     @property
     def manifest(self) -> Dict[str, Any]:
-        """What ran, where, when, from which sources."""
+        """What ran, where, when, from which sources.
+
+        >>> import pontoon as pt, tempfile
+        >>> study = pt.run("studies/smoke", out=tempfile.mkdtemp(), fresh=True)
+        >>> study.manifest["jobs"]
+        6
+        """
         with open(os.path.join(self.folder, "manifest.json"), encoding="utf-8") as file:
             manifest: Dict[str, Any] = json.load(file)
         return manifest
@@ -90,11 +102,23 @@ class Study:
 
     @known_words
     def compare(self, with_: AnyPath, *, tolerance: Optional[AnyPath] = None) -> Comparison:
-        """Holds the results against a reference, or against older results."""
+        """Holds the results against a reference, or against older results.
+
+        >>> import pontoon as pt, tempfile
+        >>> study = pt.run("studies/smoke", out=tempfile.mkdtemp(), fresh=True)
+        >>> study.compare(study.folder).good
+        True
+        """
         return compare(self.folder, with_, tolerance=tolerance)
 
     def export(self, to: AnyPath, **words: Any) -> Dict[str, Any]:
-        """Writes a job as files for ParaView, see :func:`export`."""
+        """Writes a job as files for ParaView, see :func:`export`.
+
+        >>> import pontoon as pt, tempfile
+        >>> study = pt.run("studies/smoke", out=tempfile.mkdtemp(), fresh=True)
+        >>> study.export(tempfile.mkdtemp(), job=0, count=0, every=100)["files"] > 1
+        True
+        """
         return export(self.folder, to, **words)
 
     @known_words
@@ -104,6 +128,18 @@ class Study:
         """Indices of sensitivity of a study with a Saltelli or a Morris design, with their intervals.
 
         Blocks with a failed row are left out and counted.
+
+        >>> import json, os, pontoon as pt, tempfile
+        >>> bridge = os.path.abspath("studies/bridges/smoke.json")
+        >>> ranges = {"speed_m_s": [5, 20], "load_n": [50_000, 200_000]}
+        >>> design = [{"morris": {"trajectories": 4, "levels": 4, "seed": 1, "ranges": ranges}}]
+        >>> study = {"name": "s", "bridge": bridge, "analysis": {"kind": "crossing"}, "design": design}
+        >>> folder = tempfile.mkdtemp()
+        >>> with open(os.path.join(folder, "study.json"), "w") as file:
+        ...     json.dump(study, file)
+        >>> indices = pt.run(folder, out=os.path.join(folder, "out")).indices(["peak_deflection_m"])
+        >>> indices["designs"][0]["groups"]
+        4
         """
         return _object(_call("indices", self.folder, of=of, resamples=resamples, seed=seed))
 
@@ -222,7 +258,18 @@ def rate(
     fresh: bool = False,
     progress: Optional[bool] = None,
 ) -> Dict[str, Any]:
-    """Which vehicle of a study with limits may cross how: the table of ``pontoon rate``."""
+    """Which vehicle of a study with limits may cross how: the table of ``pontoon rate``.
+
+    >>> import json, os, pontoon as pt, tempfile
+    >>> bridge, truck = (os.path.abspath(f"studies/{file}.json") for file in ("bridges/smoke", "vehicles/truck"))
+    >>> study = {"name": "s", "bridge": bridge, "vehicle": truck, "analysis": {"kind": "crossing"},
+    ...          "limits": {"joint_compression_n": 1e6}, "design": [{"grid": {"speed_m_s": [3, 5]}}]}
+    >>> folder = tempfile.mkdtemp()
+    >>> with open(os.path.join(folder, "study.json"), "w") as file:
+    ...     json.dump(study, file)
+    >>> sorted(pt.rate(folder, out=os.path.join(folder, "out")))
+    ['results', 'table']
+    """
     return _object(_call("rate", study, progress=progress, out=out, threads=threads, fresh=fresh))
 
 
@@ -308,7 +355,15 @@ def calibrate(
     threads: Optional[int] = None,
     progress: Optional[bool] = None,
 ) -> Dict[str, Any]:
-    """Identifies parameters of a bridge from references, and writes the bridge found: ``pontoon calibrate``."""
+    """Identifies parameters of a bridge from references, and writes the bridge found: ``pontoon calibrate``.
+
+    >>> import pontoon as pt
+    >>> try:
+    ...     pt.calibrate("studies/bridges/fu2005.json", with_="studies/table1", parameters="no.json", out="/tmp/b.json")
+    ... except pt.InputError as error:
+    ...     print(error.file)
+    no.json
+    """
     references = [with_] if isinstance(with_, (str, os.PathLike)) else list(with_)
     called = _call(
         "calibrate", bridge, progress=progress, with_=references, parameters=parameters, out=out, threads=threads

@@ -44,7 +44,12 @@ class Table:
 
     @property
     def columns(self) -> List[str]:
-        """Names of the columns in their order."""
+        """Names of the columns in their order.
+
+        >>> import pontoon as pt
+        >>> pt.Bridge("studies/bridges/smoke.json").modes(3).columns[:3]
+        ['job', 'number', 'frequency_hz']
+        """
         return self._table.columns
 
     def __len__(self) -> int:
@@ -113,11 +118,21 @@ class Table:
         return pyarrow.table(self)
 
     def to_pandas(self) -> Any:
-        """The table as a data frame of pandas, by way of pyarrow."""
+        """The table as a data frame of pandas, by way of pyarrow.
+
+        >>> import pontoon as pt
+        >>> pt.Bridge("studies/bridges/smoke.json").modes(3).to_pandas().shape
+        (3, 8)
+        """
         return self.to_arrow().to_pandas()
 
     def to_polars(self) -> Any:
-        """The table as a data frame of polars."""
+        """The table as a data frame of polars.
+
+        >>> import pontoon as pt
+        >>> pt.Bridge("studies/bridges/smoke.json").modes(3).to_polars().height
+        3
+        """
         import polars
 
         return polars.DataFrame(self)
@@ -184,7 +199,10 @@ class JobTable(Table):
     ) -> Any:
         """Draws a column against another, a line for each value of the column ``by``; the axes of matplotlib.
 
-        Needs ``pip install pontoon-bridge[plot]``: ``jobs.plot(by="gap_tension_m")``.
+        >>> import pontoon as pt
+        >>> jobs = pt.Bridge("studies/bridges/smoke.json").cross(speed_m_s=[5, 10], load_n=[1e5, 2e5])
+        >>> [line.get_label() for line in jobs.plot(by="load_n").get_lines()]
+        ['load_n 100000', 'load_n 200000']
         """
         from ._plots import columns
 
@@ -223,7 +241,10 @@ class Histories(Table):
     def plot(self, quantity: str = "deflection_m", *, ax: Any = None) -> Any:
         """Draws a quantity against time, a line for each place and job; the axes of matplotlib.
 
-        Needs ``pip install pontoon-bridge[plot]``: ``bridge.crossing(speed_m_s=15, load_n=230_300).histories.plot()``.
+        >>> import pontoon as pt
+        >>> crossing = pt.Bridge("studies/bridges/smoke.json").crossing(speed_m_s=10, load_n=100_000)
+        >>> len(crossing.histories.plot().get_lines())
+        4
         """
         from ._plots import histories
 
