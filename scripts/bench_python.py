@@ -16,7 +16,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-
 import pontoon as pt
 
 BRIDGE = "studies/bridges/fu2005.json"
@@ -137,7 +136,9 @@ def main():
     short = []
 
     def row(what, program, call, figure, asked, holds):
-        print(f"| {what} | {program} | {call} | {figure} | {asked} | {'holds' if holds else 'FALLS SHORT'} |", flush=True)
+        print(
+            f"| {what} | {program} | {call} | {figure} | {asked} | {'holds' if holds else 'FALLS SHORT'} |", flush=True
+        )
         if not holds:
             short.append(what)
 

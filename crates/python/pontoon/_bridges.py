@@ -347,13 +347,16 @@ class Bridge:
         column: Optional[Mapping[str, Any]] = None,
         roughness: Optional[Mapping[str, Any]] = None,
         wear: Optional[Mapping[str, Any]] = None,
+        paths: Optional[Mapping[str, Any]] = None,
         threads: int = 0,
+        on_failure: str = "nan",
         **fixed: Any,
     ) -> Function:
         """A function of points: ``Y = f(X)`` with a column of ``X`` for each input and one of ``Y`` for each output.
 
         ``inputs`` are axes by name or path with their bounds, ``outputs`` columns of the table of jobs, ``fixed`` axes
-        with one value.
+        with one value, those by their path in ``paths``. A crossing that fails leaves a row of nan, which other
+        libraries may take for a safe one; with ``on_failure="raise"`` the call raises :class:`EngineError`.
 
         >>> import pontoon as pt
         >>> bridge = pt.Bridge("studies/bridges/smoke.json")
@@ -365,7 +368,7 @@ class Bridge:
         """
         study = self._study("crossing", analysis, vehicle, {}, None, None)
         _put(study, limits=limits, record=record, traffic=traffic, column=column, roughness=roughness, wear=wear)
-        return Function(self, study, inputs, outputs, fixed, threads)
+        return Function(self, study, inputs, outputs, {**fixed, **(paths or {})}, threads, on_failure)
 
     def _study(
         self,

@@ -6,7 +6,7 @@ import threading
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ._documents import plain, to_json
-from ._errors import refused
+from ._errors import EngineError, refused
 from ._words import threads_of
 
 if TYPE_CHECKING:
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from ._bridges import Bridge
 
 _CALL = "function()"
+
+#: What becomes of a crossing that fails: its row is nan, or the call raises.
+_ON_FAILURE = ("nan", "raise")
 
 
 class Function:
@@ -41,6 +44,7 @@ class Function:
         outputs: Sequence[str],
         fixed: Mapping[str, Any],
         threads: int,
+        on_failure: str = "nan",
     ) -> None:
         if isinstance(outputs, str) or not outputs:
             raise refused(_CALL, "outputs", repr(outputs), "a list of columns of the table of jobs")
@@ -50,6 +54,9 @@ class Function:
         self._inputs = {str(name): _bounds(f"inputs.{name}", of) for name, of in inputs.items()}
         self._outputs = [str(output) for output in outputs]
         self._threads = threads_of(_CALL, threads)
+        if on_failure not in _ON_FAILURE:
+            raise refused(_CALL, "on_failure", repr(on_failure), ", ".join(_ON_FAILURE))
+        self._on_failure = on_failure
         self._last = threading.local()
         if not self._inputs:
             raise refused(_CALL, "inputs", "none", "at least one axis with its bounds")
@@ -134,7 +141,11 @@ class Function:
         numbers = [numpy.frombuffer(jobs.numbers(output) or b"") for output in self._outputs]
         failed = jobs.failures()
         if failed:
-            self._last.failures = {point: failed[job] for point, job in enumerate(rows) if job in failed}
+            failures = {point: failed[job] for point, job in enumerate(rows) if job in failed}
+            self._last.failures = failures
+            if self._on_failure == "raise":
+                first, reason = next(iter(failures.items()))
+                raise EngineError(f"{len(failures)} of {len(points)} crossings failed; row {first}: {reason}")
         result = numpy.stack(numbers, axis=1)[rows]
         return result[0] if single else result
 
@@ -161,12 +172,12 @@ class Function:
             beyond = numpy.flatnonzero(~((points[:, column] >= low) & (points[:, column] <= high)))
             if len(beyond) > 0:
                 row = int(beyond[0])
-                found = f"{points[row, column]:g}"
-                raise refused(_CALL, f"X[{row}, {column}]", found, f"{name} from {low:g} to {high:g}")
+                found = repr(float(points[row, column]))
+                raise refused(_CALL, f"X[{row}, {column}]", found, f"{name} from {low!r} to {high!r}")
         return points, single
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        words = (self._bridge, self._study, self._inputs, self._outputs, self._fixed, self._threads)
+        words = (self._bridge, self._study, self._inputs, self._outputs, self._fixed, self._threads, self._on_failure)
         return (Function, words)
 
     def __repr__(self) -> str:

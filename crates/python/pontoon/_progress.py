@@ -6,7 +6,7 @@ import sys
 import time
 from typing import Any, Optional
 
-#: Seconds that a call may take before anything is shown.
+#: Seconds that a call may take before anything is shown, and between two lines.
 _QUIET_S = 0.5
 
 
@@ -23,7 +23,8 @@ class Progress:
 
     def __init__(self, shown: Optional[bool]) -> None:
         self._shown = _shows() if shown is None else shown
-        self._began = time.monotonic()
+        self._last = time.monotonic()
+        self._text = ""
         self._bar: Any = None
         self._line = False
 
@@ -31,8 +32,10 @@ class Progress:
         return self if self._shown else None
 
     def __call__(self, stage: str, done: int, failed: int, total: int) -> None:
-        if time.monotonic() - self._began < _QUIET_S:
+        now, text = time.monotonic(), stage if total == 0 else f"{done}/{total} jobs, {failed} failed"
+        if now - self._last < _QUIET_S or text == self._text:
             return
+        self._last, self._text = now, text
         if self._bar is None and not self._line:
             try:
                 from tqdm.auto import tqdm
@@ -47,7 +50,6 @@ class Progress:
                 self._bar.set_postfix(failed=failed, refresh=False)
             self._bar.update(done - self._bar.n)
         elif sys.stderr is not None:
-            text = stage if total == 0 else f"{done}/{total} jobs, {failed} failed"
             sys.stderr.write(f"\r{text:<60}")
             sys.stderr.flush()
 

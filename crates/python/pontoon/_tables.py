@@ -77,7 +77,7 @@ class Table:
         numbers = self._table.numbers(name)
         if numbers is None:
             raise refused("Table", name, "a column of words", "a column of numbers")
-        return numpy.frombuffer(numbers)
+        return numpy.frombuffer(numbers).copy()
 
     def row(self, number: int) -> Dict[str, Any]:
         """A row by its number from 0, or from the end where it is negative.

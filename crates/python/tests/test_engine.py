@@ -103,6 +103,20 @@ def test_a_failed_crossing_is_a_row(bridge):
     assert np.isnan(found[:, 0]).tolist() == [False, True, True]
     assert f.failures == dict.fromkeys((1, 2), jobs["reason"][0])
     assert found[0, 0] == jobs["peak_deflection_m"][1]
+    words = {"load_n": 1e5, "analysis": limited, "on_failure": "raise"}
+    strict = bridge.function({"speed_m_s": (2, 20)}, ["peak_deflection_m"], **words)
+    with pytest.raises(pt.EngineError, match="1 of 2 crossings failed; row 1: .* time steps, the limit is 400"):
+        strict([[20], [2]])
+    assert strict([[20]]).shape == (1, 1)
+
+
+def test_axes_by_their_path_are_inputs_or_fixed(bridge):
+    path = "bridge.connectors.stiffness_n_m"
+    f = bridge.function({path: (1e8, 1e9)}, ["peak_deflection_m"], load_n=1e5, speed_m_s=8)
+    fixed = bridge.function({"speed_m_s": (2, 20)}, ["peak_deflection_m"], load_n=1e5, paths={path: 2e8})
+    assert (
+        f([2e8])[0] == fixed([8])[0] == bridge.cross(load_n=1e5, speed_m_s=8, paths={path: 2e8})["peak_deflection_m"][0]
+    )
 
 
 def test_a_linear_bridge_takes_a_load_in_proportion():

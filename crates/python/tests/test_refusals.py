@@ -105,13 +105,13 @@ CALLS = [
     (lambda b: function(b)(np.array([[5 + 1j, 1e5]])), "function(): X: found a ndarray of what is no number"),
     (
         lambda b: function(b)([[5, 1e5], [float("nan"), 1e5]]),
-        "function(): X[1, 0]: found nan, allowed: speed_m_s from 2 to 20",
+        "function(): X[1, 0]: found nan, allowed: speed_m_s from 2.0 to 20.0",
     ),
     (
         lambda b: function(b)([[5, float("inf")]]),
-        "function(): X[0, 1]: found inf, allowed: load_n from 10000 to 200000",
+        "function(): X[0, 1]: found inf, allowed: load_n from 10000.0 to 200000.0",
     ),
-    (lambda b: function(b)([[0.5, 1e5]]), "function(): X[0, 0]: found 0.5, allowed: speed_m_s from 2 to 20"),
+    (lambda b: function(b)([[0.5, 1e5]]), "function(): X[0, 0]: found 0.5, allowed: speed_m_s from 2.0 to 20.0"),
     (
         lambda b: function(b, inputs={"speed_m_s": (20, 2)}),
         "function(): inputs.speed_m_s: found (20, 2), allowed: a lower bound below the upper one",
