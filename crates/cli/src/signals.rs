@@ -3,14 +3,14 @@
 //! Knows what SIGINT, SIGTERM and SIGUSR1 ask of a run. Does not know how a run stops.
 
 use crate::caller::caller;
-use crate::text;
 use pontoon_journal::JournalWriter;
-use pontoon_study::run::{CancelToken, Tally, Why};
-use pontoon_study::sweep::ended_now;
-use std::process::exit;
+use pontoon_study::run::{CancelToken, Tally};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
+#[cfg(unix)]
+use {crate::text, pontoon_study::run::Why, pontoon_study::sweep::ended_now};
 
 /// Exit status of a run that was interrupted.
+#[cfg(unix)]
 const INTERRUPTED: i32 = 130;
 
 /// What signals act on.
@@ -23,11 +23,11 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Listens from now on; where the command is called, nothing but the caller's word stops it.
+    /// Listens from now on; where the command is called, nothing but the caller's word stops it. Elsewhere than on Unix nothing
+    /// is heard: Ctrl-C ends the process at once, as a death does, and the same command goes on from the journal.
     ///
     /// # Errors
     /// What the system says.
-    #[cfg(unix)]
     pub(crate) fn listen() -> std::io::Result<Arc<Self>> {
         if let Some(caller) = caller() {
             return Ok(Arc::new(Self {
@@ -35,25 +35,9 @@ impl Signals {
                 ..Self::default()
             }));
         }
-        use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
         let signals = Arc::new(Self::default());
-        let mut received = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
-        let own = Arc::clone(&signals);
-        let mut interrupted = false;
-        std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
-            for signal in received.forever() {
-                if signal == SIGUSR1 {
-                    own.answer();
-                } else if interrupted {
-                    own.end_at_once();
-                    exit(INTERRUPTED);
-                } else {
-                    interrupted = true;
-                    own.stop.ask(Why::Interrupted);
-                    text::note("interrupted: jobs under way are finished; once more stops at once");
-                }
-            }
-        })?;
+        #[cfg(unix)]
+        signals.hear()?;
         Ok(signals)
     }
 
@@ -68,6 +52,33 @@ impl Signals {
         if last.is_none_or(|last| last.done <= tally.done) {
             *last = Some(tally);
         }
+    }
+}
+
+/// What signals of Unix do.
+#[cfg(unix)]
+impl Signals {
+    /// Answers signals on a thread of its own.
+    fn hear(self: &Arc<Self>) -> std::io::Result<()> {
+        use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+        let mut received = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGUSR1])?;
+        let own = Arc::clone(self);
+        let mut interrupted = false;
+        std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
+            for signal in received.forever() {
+                if signal == SIGUSR1 {
+                    own.answer();
+                } else if interrupted {
+                    own.end_at_once();
+                    std::process::exit(INTERRUPTED);
+                } else {
+                    interrupted = true;
+                    own.stop.ask(Why::Interrupted);
+                    text::note("interrupted: jobs under way are finished; once more stops at once");
+                }
+            }
+        })?;
+        Ok(())
     }
 
     /// Says in the journal that this was no death.

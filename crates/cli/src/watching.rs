@@ -9,17 +9,13 @@ use pontoon_journal::JournalWriter;
 use pontoon_study::run::{Progress, Tally};
 use pontoon_study::sweep::{Apart, ApartEnd, ApartTask, Watcher};
 use std::ffi::OsString;
-use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
 /// Time between two looks whether a process has ended.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(10);
-
-/// The signal that no process can answer.
-const KILLED: i32 = 9;
 
 /// Who is told of a sweep.
 pub(crate) struct Watching<'a> {
@@ -68,13 +64,32 @@ impl StartedAgain<'_> {
             std::thread::sleep(BETWEEN_LOOKS);
         };
         drop(input);
-        // a process that ends by itself has a status
-        let end = match (ended.code(), ended.signal()) {
-            (None, Some(KILLED)) => ApartEnd::Killed,
-            (None, _) => ApartEnd::Died,
-            (Some(_), _) => ApartEnd::Own,
-        };
+        let end = end_of(ended);
         Some(Apart { process, end })
+    }
+}
+
+/// How a process ended, by what the system says of it.
+#[cfg(unix)]
+fn end_of(ended: ExitStatus) -> ApartEnd {
+    use std::os::unix::process::ExitStatusExt;
+    /// The signal that no process can answer.
+    const KILLED: i32 = 9;
+    // a process that ends by itself has a status
+    match (ended.code(), ended.signal()) {
+        (None, Some(KILLED)) => ApartEnd::Killed,
+        (None, _) => ApartEnd::Died,
+        (Some(_), _) => ApartEnd::Own,
+    }
+}
+
+/// How a process ended, by what the system says of it: Windows gives one that died the number of its fault, a negative one.
+/// Who kills a process gives it a status there, so that it looks like one that ended by itself.
+#[cfg(not(unix))]
+fn end_of(ended: ExitStatus) -> ApartEnd {
+    match ended.code() {
+        Some(code) if code >= 0 => ApartEnd::Own,
+        _ => ApartEnd::Died,
     }
 }
 

@@ -3,9 +3,9 @@
 //! Knows that a text stands once, however many processes and tables are of it, and that a file proves to be whole by its name.
 //! Does not know what a document means.
 
-use super::place::{FolderError, HiddenFile, hash_of};
+use super::place::{FolderError, HiddenFile, hash_of, sync_folder};
 use super::{JournalError, fault};
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -33,8 +33,8 @@ pub fn keep_document(folder: &Path, hash: &str, text: &str) -> Result<(), Folder
         hidden.file().sync_all()?;
         fault::at("documents.rename")?;
         hidden.put()?;
-        File::open(&documents)?.sync_all()?;
-        File::open(folder)?.sync_all()
+        sync_folder(&documents)?;
+        sync_folder(folder)
     };
     keep().map_err(|cause| FolderError { path, cause })
 }

@@ -15,6 +15,7 @@
 use std::fs::File;
 use std::io;
 use std::ops::Range;
+#[cfg(unix)]
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
@@ -44,6 +45,27 @@ fn checksum(length: [u8; 4], kind: [u8; 4], payload: &[u8]) -> u32 {
     crc.update(&kind);
     crc.update(payload);
     crc.finalize()
+}
+
+/// What Unix has under this name, for Windows: there a read moves the place where the file stands, on which nothing here hangs.
+#[cfg(windows)]
+trait FileExt {
+    fn read_exact_at(&self, to: &mut [u8], at: u64) -> io::Result<()>;
+}
+
+#[cfg(windows)]
+impl FileExt for File {
+    fn read_exact_at(&self, mut to: &mut [u8], mut at: u64) -> io::Result<()> {
+        while !to.is_empty() {
+            match std::os::windows::fs::FileExt::seek_read(self, to, at) {
+                Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
+                Ok(read) => (to, at) = (&mut to[read..], at + read as u64),
+                Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
+                Err(cause) => return Err(cause),
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The head of a frame, as far as it can be judged without its payload.

@@ -158,11 +158,10 @@ impl JournalError {
 
 /// The machine's name, as the system tells it.
 pub fn host() -> String {
-    let told = rustix::system::uname();
-    let name = told.nodename().to_string_lossy();
-    if name.is_empty() {
-        "unknown".to_owned()
-    } else {
-        name.into_owned()
-    }
+    #[cfg(unix)]
+    let name = rustix::system::uname().nodename().to_string_lossy().into_owned();
+    // Windows tells it every process in its environment
+    #[cfg(not(unix))]
+    let name = std::env::var("COMPUTERNAME").unwrap_or_default();
+    if name.is_empty() { "unknown".to_owned() } else { name }
 }

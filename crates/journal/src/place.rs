@@ -156,8 +156,7 @@ impl Folder {
     /// # Errors
     /// [`FolderError`].
     pub fn sync(&self) -> Result<(), FolderError> {
-        let synced = File::open(&self.path).and_then(|folder| folder.sync_all());
-        synced.map_err(|cause| FolderError {
+        sync_folder(&self.path).map_err(|cause| FolderError {
             path: self.path.clone(),
             cause,
         })
@@ -229,9 +228,22 @@ impl Partial {
             fault::at("tables.rename")?;
             hidden.put()?;
             fault::at("tables.renamed")?;
-            File::open(folder)?.sync_all()
+            sync_folder(folder)
         });
         placed.map_err(|cause| error(&path, &failure, cause))
+    }
+}
+
+/// Brings the names in a folder to the disk: of files that were made, renamed or removed there.
+///
+/// # Errors
+/// What the system says. Where a system opens no folder as a file, as Windows does not, nothing is done: such names are then
+/// as lasting as the file system makes them by itself.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) {
+        File::open(folder)?.sync_all()
+    } else {
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@
 //! Knows that what is written reaches the disk within a second, by a thread of its own, and that after a failed write or sync
 //! nothing more is written. Does not know what is read back.
 
+use super::place::sync_folder;
 use super::progress::{self, Counts};
 use super::{
     Binding, EXTENSION, FOLDER, JournalError, PreparationKey, RecordKey, Session, SessionEnd, fault, frame, kind,
@@ -222,8 +223,8 @@ impl Begun {
         let begun = fault::write_all("journal.begin", &file, &bytes)
             .and_then(|()| fault::at("journal.begin.sync"))
             .and_then(|()| file.sync_all())
-            .and_then(|()| File::open(&journal)?.sync_all())
-            .and_then(|()| File::open(folder)?.sync_all())
+            .and_then(|()| sync_folder(&journal))
+            .and_then(|()| sync_folder(folder))
             .and_then(|()| fault::at("journal.begun"));
         begun.map_err(|cause| JournalError::io(&path, cause))?;
         Ok(Self {

@@ -2,10 +2,13 @@
 //!
 //! Knows how files are gathered beside it under a hidden name, synced, and put in its place at once, and what of an older
 //! folder may be replaced. Does not know what a file holds.
+//!
+//! On Windows no folder can be held by a lock: what a process left that died stays there under its hidden name, and with it
+//! the old folder where it died between two steps of putting the new one in its place.
 
 use super::ExportError;
 use pontoon_journal::fault::{self, Watched};
-use pontoon_journal::place::FolderError;
+use pontoon_journal::place::{FolderError, sync_folder};
 use pontoon_plan::input::{Refusal, pretty};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -27,7 +30,7 @@ pub(super) struct WholeFolder {
     place: PathBuf,
     gathered: PathBuf,
     /// Held as long as this lives, so that what a process left that died is known by it.
-    _lock: File,
+    _held: Option<File>,
     files: BTreeSet<String>,
     placed: bool,
 }
@@ -54,15 +57,13 @@ impl WholeFolder {
         let gathered = parent.join(format!(".{name}.{}.{PARTIAL}", std::process::id()));
         let begin = || {
             fs::create_dir(&gathered)?;
-            let lock = File::open(&gathered)?;
-            lock.lock()?;
-            Ok(lock)
+            hold(&gathered)
         };
-        let lock = begin().map_err(|cause| error(to, cause))?;
+        let held = begin().map_err(|cause| error(to, cause))?;
         Ok(Self {
             place,
             gathered,
-            _lock: lock,
+            _held: held,
             files: BTreeSet::new(),
             placed: false,
         })
@@ -119,7 +120,7 @@ impl WholeFolder {
     }
 
     fn swap(&mut self) -> io::Result<()> {
-        File::open(&self.gathered)?.sync_all()?;
+        sync_folder(&self.gathered)?;
         fault::at("export.rename")?;
         let replaces = self.place.exists();
         if replaces {
@@ -144,7 +145,7 @@ impl WholeFolder {
     fn synced(&self) -> io::Result<()> {
         fault::at("export.renamed")?;
         let parent = self.place.parent().filter(|parent| !parent.as_os_str().is_empty());
-        File::open(parent.unwrap_or(Path::new(".")))?.sync_all()
+        sync_folder(parent.unwrap_or(Path::new(".")))
     }
 }
 
@@ -164,8 +165,7 @@ fn exchange(new: &Path, old: &Path) -> io::Result<()> {
 /// [`remove_dead`] finds it.
 fn take_turns(new: &Path, old: &Path) -> io::Result<()> {
     // held as long as the steps last, so that nobody takes the old folder for a dead one's
-    let lock = File::open(old)?;
-    lock.lock()?;
+    let _held = hold(old)?;
     let aside = new.with_extension(ASIDE);
     fs::rename(old, &aside)?;
     if let Err(cause) = fs::rename(new, old) {
@@ -173,6 +173,21 @@ fn take_turns(new: &Path, old: &Path) -> io::Result<()> {
         return Err(cause);
     }
     fs::rename(&aside, new)
+}
+
+/// Holds a folder by a lock as long as the file lives; none where a system opens no folder as a file, as Windows does not.
+fn hold(folder: &Path) -> io::Result<Option<File>> {
+    if !cfg!(unix) {
+        return Ok(None);
+    }
+    let file = File::open(folder)?;
+    file.lock()?;
+    Ok(Some(file))
+}
+
+/// Whether a folder is one that its process died over: nobody holds it. Nobody can say where none can be held.
+fn is_dead(folder: &Path) -> bool {
+    cfg!(unix) && File::open(folder).is_ok_and(|folder| folder.try_lock().is_ok())
 }
 
 impl Drop for WholeFolder {
@@ -244,8 +259,7 @@ fn remove_dead(parent: &Path, name: &str) {
         if !numbered || ![PARTIAL, ASIDE].contains(&end) {
             continue;
         }
-        let dead = File::open(entry.path()).is_ok_and(|folder| folder.try_lock().is_ok());
-        if !dead {
+        if !is_dead(&entry.path()) {
             continue;
         }
         let place = here.join(name);
