@@ -18,7 +18,8 @@ built=$(cd "$root" && realpath -ms -- "${CARGO_TARGET_DIR:-target}")/$built
 # Sets PONTOON to the program under trial: the one that PONTOON names, else the one that this builds.
 program() {
   if [ -z "${PONTOON:-}" ]; then
-    (cd "$root" && cargo build --profile "$profile" --locked -p pontoon) || return
+    # of the whole workspace, as tests and lints are: a build of one package takes its libraries with other features, anew
+    (cd "$root" && cargo build --profile "$profile" --locked --workspace --bin pontoon) || return
     PONTOON=$built/pontoon
   fi
   PONTOON=$(realpath -- "$PONTOON") || return
@@ -27,7 +28,7 @@ program() {
 
 # Builds the extension of the Python package and puts it into the package, for tests that import it from there.
 python_extension() {
-  (cd "$root" && cargo build --profile "$profile" --locked -p pontoon-python) || return
+  (cd "$root" && cargo build --profile "$profile" --locked --workspace --lib) || return
   local file=$built/lib_engine.so
   [ -f "$file" ] || file=$built/lib_engine.dylib
   # a file in its place at once: a process that has the old one open keeps it
