@@ -82,8 +82,8 @@ fn below(member: &str, arrows: &[(String, Vec<String>)]) -> Vec<String> {
     known
 }
 
-const MEMBERS: [&str; 9] = [
-    "core", "plan", "journal", "results", "study", "judge", "view", "cli", "python",
+const MEMBERS: [&str; 10] = [
+    "core", "plan", "journal", "results", "study", "judge", "view", "water", "cli", "python",
 ];
 
 /// The compiler refuses circles of crates. It does not refuse an arrow that nobody drew.
@@ -117,6 +117,7 @@ fn libraries_are_known_where_they_belong() {
         ("resvg", &["view"]),
         ("anyhow", &["cli", "python"]),
         ("pyo3", &["python"]),
+        ("netcdf-reader", &["water"]),
         ("clap", &["cli"]),
     ] {
         for member in MEMBERS {

@@ -186,6 +186,14 @@ pub(crate) enum Command {
         after_help = "Examples:\n  pontoon export studies/bridges/fu2005.json --to vtk --load-n 230300 --load-position 7\n  pontoon export results/fu2005 --to vtk --job 20 --count 0 --stresses"
     )]
     Export(ExportArguments),
+    /// Reads added mass and radiation damping of a chain of modules from a file of a BEM code and checks them.
+    ///
+    /// Files of Capytaine (netCDF), WAMIT (.1, with .hst beside it) and NEMOH, and water files. What they do not hold has to be told.
+    /// Exit status 1 where a check refuses the water; it is not written then.
+    #[command(
+        after_help = "Examples:\n  pontoon water ribbon.nc --bridge studies/bridges/fu2005.json --out water.json\n  pontoon water chain.1 --bridge bridge.json --depth-m 4 --density-kg-m3 1000 --gravity-m-s2 9.81"
+    )]
+    Water(WaterArguments),
     /// The JSON Schema of a file, for an editor or a checker; the columns of tables.
     #[command(after_help = "Example:\n  pontoon schema study > study.schema.json")]
     Schema(SchemaArguments),
@@ -488,6 +496,56 @@ pub(crate) enum ConnectionArgument {
 
 /// What `schema` takes.
 #[derive(Debug, Args)]
+pub(crate) struct WaterArguments {
+    /// The file.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// The bridge that is to float in it: the water must have its modules, and its hull the bridge's water plane.
+    #[arg(long, value_name = "BRIDGE")]
+    pub bridge: Option<PathBuf>,
+    /// Where to write it as a water file.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Name of the water.
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// The hull in words.
+    #[arg(long, value_name = "TEXT")]
+    pub hull: Option<String>,
+    /// Length of each module; that of the bridge where one is given.
+    #[arg(long, value_name = "X")]
+    pub module_length_m: Option<f64>,
+    /// Breadth of the hull at the water line.
+    #[arg(long, value_name = "X")]
+    pub waterline_breadth_m: Option<f64>,
+    /// Draught of the hull.
+    #[arg(long, value_name = "X")]
+    pub draught_m: Option<f64>,
+    /// Depth of the water.
+    #[arg(long, value_name = "X", conflicts_with = "deep")]
+    pub depth_m: Option<f64>,
+    /// The water has no bottom that waves feel.
+    #[arg(long)]
+    pub deep: bool,
+    /// Density of the water.
+    #[arg(long, value_name = "X")]
+    pub density_kg_m3: Option<f64>,
+    /// Acceleration of gravity.
+    #[arg(long, value_name = "X")]
+    pub gravity_m_s2: Option<f64>,
+    /// Frequency up to which the coefficients are to be used.
+    #[arg(long, value_name = "W", default_value_t = 5.0)]
+    pub usable_to_rad_s: f64,
+    /// Modes of WAMIT or NEMOH, from 1, that are heave, pitch and roll of the first module, of the second, and so on: where the
+    /// modules are no bodies of six modes each.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = whole)]
+    pub modes: Vec<usize>,
+    /// The length by which WAMIT made its coefficients free of dimension (ULEN).
+    #[arg(long, value_name = "X", default_value_t = 1.0)]
+    pub length_scale_m: f64,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct SchemaArguments {
     /// Of which file.
     #[arg(value_enum)]
@@ -503,6 +561,8 @@ pub(crate) enum SchemaOf {
     Bridge,
     /// A vehicle file.
     Vehicle,
+    /// A water file.
+    Water,
     /// A reference file.
     Reference,
     /// A file of parameters for `calibrate`.

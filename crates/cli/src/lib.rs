@@ -121,6 +121,7 @@ fn command(arguments: Arguments, again: &[OsString]) -> anyhow::Result<ExitStatu
         Command::Compare(compare) => commands::compare::compare(&compare, common),
         Command::Report(report) => commands::report::report(&report, common),
         Command::Export(export) => commands::export::export(&export, common),
+        Command::Water(water) => commands::water::water(&water, common),
         Command::Schema(schema) => commands::schema::schema(&schema),
         Command::Completions(completions) => commands::completions::completions(&completions),
         Command::Man(man) => commands::man::man(&man, common),

@@ -32,3 +32,4 @@ mod shells;
 mod shown_places;
 mod terminal;
 mod traffic;
+mod water;
