@@ -146,7 +146,7 @@ fn fits(file: &Path, water: &WaterFile, design: &BridgeDesign) -> Result<(), Ref
     let ends_m: Vec<f64> = (1..=design.modules + 1).map(|end| design.position_x_m(end)).collect();
     for (module, ends) in ends_m.windows(2).enumerate() {
         let (own_m, length_m) = (ends[1] - ends[0], water.module_length_m.of(module).unwrap_or(f64::NAN));
-        if !((length_m - own_m).abs() <= EQUAL_LENGTHS_M) {
+        if length_m.is_nan() || (length_m - own_m).abs() > EQUAL_LENGTHS_M {
             let found = FoundValue::from(length_m).which(format!("the length of module {}", module + 1));
             return Err(Refusal::new(
                 file,
