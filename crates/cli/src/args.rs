@@ -2,6 +2,7 @@
 //!
 //! Knows flags and their help. Does not know what they lead to.
 
+use crate::water_arguments::WaterArguments;
 use clap::{Arg, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::ModelSpec;
@@ -495,56 +496,6 @@ pub(crate) enum ConnectionArgument {
 }
 
 /// What `schema` takes.
-#[derive(Debug, Args)]
-pub(crate) struct WaterArguments {
-    /// The file.
-    #[arg(value_name = "FILE")]
-    pub file: PathBuf,
-    /// The bridge that is to float in it: the water must have its modules, and its hull the bridge's water plane.
-    #[arg(long, value_name = "BRIDGE")]
-    pub bridge: Option<PathBuf>,
-    /// Where to write it as a water file.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Name of the water.
-    #[arg(long, value_name = "NAME")]
-    pub name: Option<String>,
-    /// The hull in words.
-    #[arg(long, value_name = "TEXT")]
-    pub hull: Option<String>,
-    /// Length of each module; that of the bridge where one is given.
-    #[arg(long, value_name = "X")]
-    pub module_length_m: Option<f64>,
-    /// Breadth of the hull at the water line.
-    #[arg(long, value_name = "X")]
-    pub waterline_breadth_m: Option<f64>,
-    /// Draught of the hull.
-    #[arg(long, value_name = "X")]
-    pub draught_m: Option<f64>,
-    /// Depth of the water.
-    #[arg(long, value_name = "X", conflicts_with = "deep")]
-    pub depth_m: Option<f64>,
-    /// The water has no bottom that waves feel.
-    #[arg(long)]
-    pub deep: bool,
-    /// Density of the water.
-    #[arg(long, value_name = "X")]
-    pub density_kg_m3: Option<f64>,
-    /// Acceleration of gravity.
-    #[arg(long, value_name = "X")]
-    pub gravity_m_s2: Option<f64>,
-    /// Frequency up to which the coefficients are to be used.
-    #[arg(long, value_name = "W", default_value_t = 5.0)]
-    pub usable_to_rad_s: f64,
-    /// Modes of WAMIT or NEMOH, from 1, that are heave, pitch and roll of the first module, of the second, and so on: where the
-    /// modules are no bodies of six modes each.
-    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = whole)]
-    pub modes: Vec<usize>,
-    /// The length by which WAMIT made its coefficients free of dimension (ULEN).
-    #[arg(long, value_name = "X", default_value_t = 1.0)]
-    pub length_scale_m: f64,
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArguments {
     /// Of which file.

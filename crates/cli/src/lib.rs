@@ -13,6 +13,7 @@
 //! | `excerpt` | the place of a file that a refusal is about, with its line and a mark under it |
 //! | `signals` | interrupts and questions from outside |
 //! | `progress` | a bar on a terminal, plain lines otherwise |
+//! | `water_arguments` | the words of `pontoon water` |
 //! | `watching` | what is told of a sweep |
 //! | `summary` | what a run ends with: its summary as a person looks at it |
 //! | `terminal` | what the place is like where something is written: its width, whether it shows colours |
@@ -36,6 +37,7 @@ mod summary;
 mod terminal;
 mod text;
 mod watching;
+mod water_arguments;
 
 use args::{Arguments, Command, Format};
 use clap::{CommandFactory, FromArgMatches, error::ErrorKind};

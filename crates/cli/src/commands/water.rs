@@ -1,8 +1,9 @@
 //! `pontoon water`: added mass and radiation damping read, checked and written as a water file.
 
-use crate::args::{Common, Format, WaterArguments};
+use crate::args::{Common, Format};
 use crate::exit_status::ExitStatus;
 use crate::text;
+use crate::water_arguments::WaterArguments;
 use anyhow::Result;
 use pontoon_journal::place::Folder;
 use pontoon_plan::input::{Cell, Document, Refusal};
@@ -64,7 +65,7 @@ fn options(arguments: &WaterArguments, bridge: Option<&BridgeFile>) -> Options {
         usable_to_rad_s: arguments.usable_to_rad_s,
         modes: match arguments.modes.as_slice() {
             [] => BemModes::Bodies,
-            listed => BemModes::Listed(listed.to_vec()),
+            listed => BemModes::Listed(listed.iter().map(|&mode| usize::from(mode)).collect()),
         },
         length_scale_m: arguments.length_scale_m,
     }
