@@ -114,7 +114,15 @@ fn fish_completes_words_where_a_word_is_due_and_files_where_a_file_is() {
     for (line, mut expected) in [
         (
             "pontoon schema ",
-            vec!["study", "bridge", "reference", "parameters", "tables", "vehicle"],
+            vec![
+                "study",
+                "bridge",
+                "reference",
+                "parameters",
+                "tables",
+                "vehicle",
+                "water",
+            ],
         ),
         (
             "pontoon completions ",
@@ -203,7 +211,15 @@ fn zsh_completes_words_where_a_word_is_due() {
         ("pontoon comp", vec!["compare", "completions"]),
         (
             "pontoon schema ",
-            vec!["bridge", "parameters", "reference", "study", "tables", "vehicle"],
+            vec![
+                "bridge",
+                "parameters",
+                "reference",
+                "study",
+                "tables",
+                "vehicle",
+                "water",
+            ],
         ),
         (
             "pontoon completions ",
