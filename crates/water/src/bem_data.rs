@@ -45,6 +45,20 @@ pub struct Asymmetry {
 }
 
 impl BemData {
+    /// Nothing yet of a program's file of so many modes, of which those at some places are the modules' freedoms.
+    pub(crate) fn begin(program: &'static str, places: &[usize], modes: usize) -> Self {
+        let left = modes.saturating_sub(places.len());
+        Self {
+            program,
+            modules: places.len() / FREEDOMS.len(),
+            notes: match left {
+                0 => Vec::new(),
+                _ => vec![format!("{left} of {modes} modes are none of the modules' freedoms")],
+            },
+            ..Self::default()
+        }
+    }
+
     /// The neutral form, how far the matrices were from symmetric, and what is to be said of it.
     ///
     /// # Errors

@@ -7,7 +7,6 @@
 use crate::bem_data::{AtFrequency, BemData};
 use crate::numbers::{Words, check_last_line, line_place, whole};
 use crate::options::Options;
-use crate::water_file::FREEDOMS;
 use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -220,16 +219,7 @@ fn check_frequency(file: &Path, line: usize, omega: f64, elsewhere: f64) -> Resu
 /// The modules' freedoms of whole matrices of all modes.
 fn data(file: &Path, count: usize, rows: Vec<(f64, Vec<[f64; 2]>)>, options: &Options) -> Result<BemData, Refusal> {
     let places = options.modes.places(file, count)?;
-    let mut data = BemData {
-        program: "NEMOH",
-        modules: places.len() / FREEDOMS.len(),
-        ..BemData::default()
-    };
-    if places.len() < count {
-        let left = count - places.len();
-        data.notes
-            .push(format!("{left} of {count} modes are none of the modules' freedoms"));
-    }
+    let mut data = BemData::begin("NEMOH", &places, count);
     for (omega_rad_s, entries) in rows {
         let matrix = |which: usize| {
             let pairs = places.iter().flat_map(|&i| places.iter().map(move |&j| i * count + j));

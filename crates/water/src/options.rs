@@ -197,7 +197,7 @@ fn agreed<T>(
 ) -> Result<Option<T>, Refusal> {
     match (own, told) {
         (Some(own), Some(told)) if !same(&own, &told) => {
-            let allowed = format!("what the reader was told: {}", found(&told).text());
+            let allowed = format!("{}, as told beside the file", found(&told).text());
             Err(Refusal::new(file, key, found(&own), allowed).because(RefusalKind::Conflict))
         }
         (Some(own), _) => Ok(Some(own)),
@@ -252,7 +252,7 @@ mod tests {
         };
         assert_eq!(
             told(other).unwrap_err().to_string(),
-            "w.nc: density_kg_m3: found 1000, allowed: what the reader was told: 1025"
+            "w.nc: density_kg_m3: found 1000, allowed: 1025, as told beside the file"
         );
         let other = WaterFacts {
             depth: Some(WaterDepth::Metres(4.0)),

@@ -71,16 +71,7 @@ pub(crate) fn read(
     let places = options.modes.places(file, count)?;
     check_scale(file, options)?;
     let density = needed(file, "density_kg_m3", options.facts.density_kg_m3)?;
-    let mut data = BemData {
-        program: "WAMIT",
-        modules: places.len() / FREEDOMS.len(),
-        ..BemData::default()
-    };
-    if places.len() < count {
-        let left = count - places.len();
-        data.notes
-            .push(format!("{left} of {count} modes are none of the modules' freedoms"));
-    }
+    let mut data = BemData::begin("WAMIT", &places, count);
     check_counts(file, &periods)?;
     for at in &periods {
         let absent = places

@@ -15,6 +15,9 @@ use pontoon_water::{
 use serde_json::json;
 use std::path::Path;
 
+/// Lengths that differ by no more are equal `[m]`: rounding of the places of ends.
+const EQUAL_LENGTHS_M: f64 = 1e-9;
+
 /// Reads, checks, prints and, where asked, writes.
 pub(crate) fn water(arguments: &WaterArguments, common: Common) -> Result<ExitStatus> {
     let bridge = arguments.bridge.as_deref().map(read_bridge).transpose()?;
@@ -43,7 +46,15 @@ fn options(arguments: &WaterArguments, bridge: Option<&BridgeFile>) -> Options {
     let of_bridge = bridge.map(|bridge| {
         let design = &bridge.design;
         let ends_m: Vec<f64> = (1..=design.modules + 1).map(|end| design.position_x_m(end)).collect();
-        ModuleLengths::Each(ends_m.windows(2).map(|ends| ends[1] - ends[0]).collect())
+        let lengths_m: Vec<f64> = ends_m.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let only_m = design.module.length_m;
+        match lengths_m
+            .iter()
+            .all(|length_m| (length_m - only_m).abs() < EQUAL_LENGTHS_M)
+        {
+            true => ModuleLengths::Same(only_m),
+            false => ModuleLengths::Each(lengths_m),
+        }
     });
     let depth = match (arguments.deep, arguments.depth_m) {
         (true, _) => Some(WaterDepth::Deep),
