@@ -6,11 +6,10 @@ use crate::bridge::BridgeDocument;
 use crate::errors::{failed, refused};
 use crate::table::EngineTable;
 use crate::waiting::{Watched, wait};
-use pontoon_plan::design::NAMED_AXES;
 use pontoon_plan::input::{Document, Refusal};
 use pontoon_plan::job::{Job, Jobs, PointJobs};
 use pontoon_plan::study_file::{BridgeFile, Study};
-use pontoon_results::{ArrowTable, COLUMNS, CellKind, MemoryTables, STATIC_PEAK_COLUMNS, TableName};
+use pontoon_results::{ArrowTable, MemoryTables, STATIC_PEAK_COLUMNS, TableName};
 use pontoon_study::run::{Cache, SessionError, SessionSetting, SolveSession};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -174,19 +173,4 @@ fn exception(py: Python<'_>, unsolved: Unsolved) -> PyErr {
         Unsolved::Session(error) => failed(py, &error),
         Unsolved::Tables(error) => failed(py, &error),
     }
-}
-
-/// The axes with a name of their own.
-#[pyfunction]
-pub(crate) fn axes() -> Vec<&'static str> {
-    NAMED_AXES.iter().map(|axis| axis.name).collect()
-}
-
-/// The columns of the table of jobs that hold numbers: name, unit and what it is.
-#[pyfunction]
-pub(crate) fn columns() -> Vec<(&'static str, &'static str, &'static str)> {
-    let of_jobs = COLUMNS.iter().filter(|column| column.table == TableName::Jobs);
-    let numeric =
-        of_jobs.filter(|column| matches!(column.cells, CellKind::Numbers | CellKind::Counts | CellKind::Flags));
-    numeric.map(|column| (column.name, column.unit, column.text)).collect()
 }
