@@ -36,7 +36,7 @@ pub struct SolveSession {
 pub struct SessionSetting {
     /// Threads; 0: as many as the machine has.
     pub threads: usize,
-    /// Whether the static peaks of crossings are asked for: they take about as long as a crossing.
+    /// Whether the static peaks of crossings are asked for, which take about as long as a crossing.
     pub static_peaks: bool,
 }
 
