@@ -5,6 +5,7 @@
 use crate::errors::failed;
 use pontoon_study::run::{CancelToken, Progress, Tally, Why};
 use pyo3::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
@@ -54,16 +55,21 @@ pub(crate) fn wait<T: Send>(
 ) -> PyResult<T> {
     let watched = Arc::new(Watched::default());
     let mut raised: Option<PyErr> = None;
+    // a thread that has done its work is not finished yet when it wakes the other
+    let is_done = AtomicBool::new(false);
     let done = thread::scope(|scope| {
-        let (own, waiting) = (Arc::clone(&watched), thread::current());
+        let (own, waiting, is_done) = (Arc::clone(&watched), thread::current(), &is_done);
         let worker = scope.spawn(move || {
             let result = work(&own);
+            is_done.store(true, Ordering::Release);
             waiting.unpark();
             result
         });
-        while !worker.is_finished() {
+        // one that panics does not wake
+        let has_ended = || is_done.load(Ordering::Acquire) || worker.is_finished();
+        while !has_ended() {
             py.detach(|| thread::park_timeout(BETWEEN_LOOKS));
-            if raised.is_some() || worker.is_finished() {
+            if raised.is_some() || has_ended() {
                 continue;
             }
             if let Err(exception) = py.check_signals().and_then(|()| tell(told, &watched.so_far())) {
