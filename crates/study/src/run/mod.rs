@@ -2,7 +2,7 @@
 //!
 //! | module | charter |
 //! |---|---|
-//! | `shared_models`, `cache` | what jobs share, prepared once; operators on disk |
+//! | `shared_models`, `made_once`, `cache` | what jobs share, prepared once; operators on disk |
 //! | `cut`, `batch`, `pool` | which jobs are solved together, and on which threads |
 //! | `crossing`, `statics`, `modes`, `rating`, `retry` | a job to its record, by its kind; when a crossing is solved once more |
 //! | `demands` | what a crossing asks of limits |
@@ -29,6 +29,7 @@ mod failure;
 mod finer;
 mod guard;
 mod joint_rows;
+mod made_once;
 mod model_keys;
 mod modes;
 mod monitor;

@@ -7,6 +7,7 @@ use super::cancel::CancelToken;
 use super::failure::JobFailure;
 use super::finer::finer_analysis;
 use super::guard::guarded;
+use super::made_once::{SharedResult, each, not_prepared, shared};
 use super::model_keys::{
     BridgeKey, CreepingKey, CrossingKey, DampingKey, DeadKey, LaneBatchKey, ModuleKey, OperatorKey, bridge_key,
     creeping_key, crossing_key, damping_key, dead_key, model, module_keys, operator_key, word,
@@ -22,14 +23,11 @@ use pontoon_core::response::DeadState;
 use pontoon_core::stop::Stop;
 use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_plan::study_file::CrossingAnalysis;
-use pontoon_results::{BridgeReport, Failure, FailureKind, OperatorCounts, Preparation};
+use pontoon_results::{BridgeReport, OperatorCounts, Preparation};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// A thing that jobs share, or why it could not be made.
-type SharedResult<T> = Result<Arc<T>, JobFailure>;
 
 /// Damping and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -539,52 +537,4 @@ pub(super) fn static_case(job: &Job, load_x_m: f64, dead: Option<Arc<DeadState>>
 /// Whether the bridge of a job has static cases.
 fn is_held(job: &Job) -> bool {
     job.bridge.design.check_held().is_ok()
-}
-
-/// Makes one thing for each distinct key that is not known, in parallel; the first job with a key stands for the others.
-fn each<J: Sync, K: Ord + Send, T: Send + Sync>(
-    cancel: &CancelToken,
-    jobs: &[J],
-    known: &BTreeMap<K, SharedResult<T>>,
-    key: impl Fn(&J) -> Option<K>,
-    make: impl Fn(&J) -> Result<T, JobFailure> + Sync,
-) -> BTreeMap<K, SharedResult<T>> {
-    let mut first: BTreeMap<K, &J> = BTreeMap::new();
-    for job in jobs {
-        if let Some(key) = key(job) {
-            first.entry(key).or_insert(job);
-        }
-    }
-    let (mut list, mut made) = (Vec::new(), BTreeMap::new());
-    for (key, job) in first {
-        match known.get(&key) {
-            Some(old) => {
-                made.insert(key, old.clone());
-            }
-            None => list.push((key, job)),
-        }
-    }
-    let new: Vec<(K, SharedResult<T>)> = list
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|(key, job)| {
-            let stopped = || Failure::new(FailureKind::Stopped, "not prepared: the run was stopped").into();
-            let made = match cancel.is_asked() {
-                true => Err(stopped()),
-                // what is under way gives up at a stop
-                false => guarded(|| make(job)).map_err(|failure| if cancel.is_asked() { stopped() } else { failure }),
-            };
-            (key, made.map(Arc::new))
-        })
-        .collect();
-    made.extend(new);
-    made
-}
-
-fn shared<K: Ord, T>(map: &BTreeMap<K, SharedResult<T>>, key: &K) -> SharedResult<T> {
-    map.get(key).cloned().unwrap_or_else(|| Err(not_prepared()))
-}
-
-fn not_prepared() -> JobFailure {
-    JobFailure::of_program("not prepared")
 }
