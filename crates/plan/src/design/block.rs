@@ -139,6 +139,56 @@ impl Block {
         })
     }
 
+    /// The zip with other values of its first axes: of each axis a list.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a block that is no zip of so many axes or has conditions, of an empty list, and of lists of unequal
+    /// lengths or more points than a study may have.
+    pub fn with_lists(&self, file: &Path, lists: &[Vec<f64>]) -> Result<Self, Refusal> {
+        let mut values = match &self.source {
+            PointSource::Zip(values) if lists.len() <= values.len() && self.tests.is_empty() => values.clone(),
+            _ => {
+                let allowed = format!("a zip of at least {} axes, without conditions", lists.len());
+                return Err(Refusal::new(file, &self.key, "another design", allowed));
+            }
+        };
+        for ((axis, own), list) in self.axes.iter().zip(&mut values).zip(lists) {
+            let cells = list.iter().map(|number| Cell::Number(*number));
+            *own = Values::listed(file, &format!("{}.{}", self.key, axis.name), cells)?;
+        }
+        let block = Self::new(file, self.key.clone(), self.axes.clone(), PointSource::Zip(values))?;
+        block.check_even(file)?;
+        check_size(file, std::iter::once(&block))?;
+        Ok(Self {
+            searched: self.searched.clone(),
+            ..block
+        })
+    }
+
+    /// Refuses axes of a zip that have unequal numbers of values.
+    fn check_even(&self, file: &Path) -> Result<(), Refusal> {
+        let PointSource::Zip(values) = &self.source else {
+            return Ok(());
+        };
+        let mut several = self.axes.iter().zip(values).filter(|(_, values)| values.len() > 1);
+        let Some((first, of_first)) = several.next() else {
+            return Ok(());
+        };
+        match several.find(|(_, values)| values.len() != of_first.len()) {
+            None => Ok(()),
+            Some((axis, values)) => {
+                let found = format!("{} values", values.len());
+                let allowed = format!("{} values, as many as {} has, or one", of_first.len(), first.name);
+                Err(Refusal::new(
+                    file,
+                    format!("{}.{}", self.key, axis.name),
+                    found,
+                    allowed,
+                ))
+            }
+        }
+    }
+
     /// A point made again from its number and values.
     pub fn point<'a>(&'a self, number: usize, values: &'a [Cell<'a>]) -> DesignPoint<'a> {
         DesignPoint {
@@ -291,7 +341,7 @@ impl DesignReader<'_> {
             Form::Grid(map) => Ok(vec![self.listed(format!("{key}.grid"), map, PointSource::Grid)?]),
             Form::Zip(map) => {
                 let block = self.listed(format!("{key}.zip"), map, PointSource::Zip)?;
-                self.check_even(&block)?;
+                block.check_even(self.file)?;
                 Ok(vec![block])
             }
             Form::Cases(cases) => self.cases(&format!("{key}.cases"), cases),
@@ -329,25 +379,6 @@ impl DesignReader<'_> {
         let read = map.0.iter().map(axis).collect::<Result<Vec<_>, _>>()?;
         let (axes, values) = read.into_iter().unzip();
         Block::new(self.file, key, axes, source(values))
-    }
-
-    /// Refuses axes of a zip that have unequal numbers of values.
-    fn check_even(&self, block: &Block) -> Result<(), Refusal> {
-        let PointSource::Zip(values) = &block.source else {
-            return Ok(());
-        };
-        let mut several = block.axes.iter().zip(values).filter(|(_, values)| values.len() > 1);
-        let Some((first, of_first)) = several.next() else {
-            return Ok(());
-        };
-        match several.find(|(_, values)| values.len() != of_first.len()) {
-            None => Ok(()),
-            Some((axis, values)) => {
-                let found = format!("{} values", values.len());
-                let allowed = format!("{} values, as many as {} has, or one", of_first.len(), first.name);
-                self.refuse(format!("{}.{}", block.key, axis.name), found, allowed)
-            }
-        }
     }
 
     fn cases(&self, key: &str, cases: &Cases) -> Result<Vec<Block>, Refusal> {

@@ -39,10 +39,7 @@ impl Values {
     /// Reads the values of an axis.
     pub(super) fn read(file: &Path, key: &str, written: &Value) -> Result<Self, Refusal> {
         match written {
-            Value::Array(list) if list.is_empty() => {
-                Err(Refusal::new(file, key, "an empty list", "at least one value"))
-            }
-            Value::Array(list) => Ok(Self::Listed(list.iter().map(Cell::from).collect())),
+            Value::Array(list) => Self::listed(file, key, list.iter().map(Cell::from)),
             Value::Number(_) | Value::String(_) | Value::Bool(_) => {
                 Ok(Self::Listed(std::iter::once(Cell::from(written)).collect()))
             }
@@ -63,6 +60,18 @@ impl Values {
             },
             Value::Null => Err(Refusal::new(file, key, written, FORMS)),
         }
+    }
+
+    /// Values in a list.
+    pub(super) fn listed(
+        file: &Path,
+        key: &str,
+        cells: impl ExactSizeIterator<Item = Cell<'static>>,
+    ) -> Result<Self, Refusal> {
+        if cells.len() == 0 {
+            return Err(Refusal::new(file, key, "an empty list", "at least one value"));
+        }
+        Ok(Self::Listed(cells.collect()))
     }
 
     /// Number of values.

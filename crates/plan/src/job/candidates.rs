@@ -3,7 +3,7 @@
 //! Knows how to make a job again from its point. Does not know which values are tried or what passes.
 
 use super::Job;
-use super::jobs::Jobs;
+use super::jobs::{JobParts, Jobs};
 use crate::input::Refusal;
 use crate::study_file::Study;
 
@@ -18,7 +18,7 @@ impl<'a> Candidates<'a> {
     pub fn new(study: &'a Study) -> Self {
         Self {
             study,
-            jobs: Jobs::of_no_point(study),
+            jobs: Jobs::of_no_point(study, JobParts::default()),
         }
     }
 

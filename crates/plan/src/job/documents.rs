@@ -99,7 +99,7 @@ impl TrafficEntry {
 }
 
 /// The documents read so far.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Documents {
     /// Roads by their documents and ways.
     roads: HashMap<String, Arc<Road>>,
@@ -119,6 +119,16 @@ struct Interned<T> {
     last: Option<(DocumentRequest, Arc<T>)>,
     asked: HashMap<DocumentRequest, Arc<T>>,
     distinct: HashMap<String, Arc<T>>,
+}
+
+impl<T> Clone for Interned<T> {
+    fn clone(&self) -> Self {
+        Self {
+            last: self.last.clone(),
+            asked: self.asked.clone(),
+            distinct: self.distinct.clone(),
+        }
+    }
 }
 
 impl<T> Default for Interned<T> {

@@ -21,8 +21,14 @@ use std::sync::Arc;
 pub struct Jobs<'a> {
     study: &'a Study,
     points: Box<dyn Iterator<Item = DesignPoint<'a>> + 'a>,
-    documents: Documents,
+    parts: JobParts,
     seen: SeenJobs,
+}
+
+/// What the jobs of a study share, made so far.
+#[derive(Debug, Clone, Default)]
+pub(super) struct JobParts {
+    documents: Documents,
     /// Bridges whose size was checked, with their model.
     sized: HashSet<(usize, ModelSpec)>,
     /// Limits by the bridge that has them.
@@ -36,23 +42,24 @@ impl<'a> Jobs<'a> {
         Self {
             study,
             points,
-            documents: Documents::default(),
+            parts: JobParts::default(),
             seen: SeenJobs::with_room_for(study.points()),
-            sized: HashSet::new(),
-            limits: HashMap::new(),
         }
     }
 
-    /// Of a study, to make jobs of points that are given.
-    pub(super) fn of_no_point(study: &'a Study) -> Self {
+    /// Of a study, to make jobs of points that are given; `parts` were made for the study before.
+    pub(super) fn of_no_point(study: &'a Study, parts: JobParts) -> Self {
         Self {
             study,
             points: Box::new(std::iter::empty()),
-            documents: Documents::default(),
+            parts,
             seen: SeenJobs::with_room_for(0),
-            sized: HashSet::new(),
-            limits: HashMap::new(),
         }
+    }
+
+    /// What was made for the jobs so far.
+    pub(super) fn into_parts(self) -> JobParts {
+        self.parts
     }
 }
 
@@ -105,27 +112,27 @@ impl Jobs<'_> {
         let Some(spec) = &self.study.limits else {
             return Ok(Arc::from([]));
         };
-        if let Some(known) = self.limits.get(&bridge.id) {
+        if let Some(known) = self.parts.limits.get(&bridge.id) {
             return Ok(Arc::clone(known));
         }
         let limits = spec.of(&bridge.design);
         let limits: Arc<[Allowed]> = limits.map_err(|e| Refusal::of(&self.study.file, "limits", e))?.into();
-        self.limits.insert(bridge.id, Arc::clone(&limits));
+        self.parts.limits.insert(bridge.id, Arc::clone(&limits));
         Ok(limits)
     }
 
     /// The job of a point.
     pub(super) fn job(&mut self, point: &DesignPoint<'_>) -> Result<Job, Refusal> {
-        let bridge = self.documents.bridge(self.study, point)?;
-        let vehicle = self.documents.vehicle(self.study, point, &bridge)?;
-        let analysis = self.documents.analysis(self.study, point)?;
+        let bridge = self.parts.documents.bridge(self.study, point)?;
+        let vehicle = self.parts.documents.vehicle(self.study, point, &bridge)?;
+        let analysis = self.parts.documents.analysis(self.study, point)?;
         self.study.record.check(&self.study.file, &bridge.design)?;
         let short = Short {
             study: self.study,
             point,
         };
         let model = analysis.analysis.model();
-        if self.sized.insert((bridge.id, model)) {
+        if self.parts.sized.insert((bridge.id, model)) {
             let size = bridge.design.check_size(model.into());
             size.map_err(|refused| short.of_bridge(refused))?;
         }
@@ -137,7 +144,10 @@ impl Jobs<'_> {
                 let mut said = short.said()?;
                 said[1] = crossing_type.and_then(CrossingType::speed_m_s).or(said[1]);
                 let asked = (said, crossing_type);
-                traffic = self.documents.traffic(self.study, point, (&bridge, &vehicle), asked)?;
+                traffic = self
+                    .parts
+                    .documents
+                    .traffic(self.study, point, (&bridge, &vehicle), asked)?;
                 let (load_n, speed_m_s) = match &traffic {
                     Some(entry) => {
                         let most = |of: fn(&Driven) -> f64| entry.traffic.vehicles.iter().map(of).fold(0.0, f64::max);
@@ -163,7 +173,7 @@ impl Jobs<'_> {
             }
         };
         let limits = self.limits(&bridge)?;
-        let worn = self.documents.wear(self.study, point)?;
+        let worn = self.parts.documents.wear(self.study, point)?;
         let worn = short.worn(worn, connection, &bridge)?;
         let job = Job {
             number: self.seen.len(),

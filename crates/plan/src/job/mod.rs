@@ -9,6 +9,7 @@
 //! | `rating_point` | the point of a design that a rating is of |
 //! | `candidates` | the crossings that a rating tries |
 //! | `point_jobs` | the job of each point |
+//! | `point_study` | a study that is asked at points call after call |
 //! | `seen` | which jobs were there before |
 //! | `key` | what a job is known by from run to run |
 //! | `springs` | what of a crossing rides on springs |
@@ -25,6 +26,7 @@ mod jobs;
 mod key;
 mod plan;
 mod point_jobs;
+mod point_study;
 mod rating_point;
 mod seen;
 mod shard;
@@ -38,6 +40,7 @@ pub use jobs::Jobs;
 pub use key::JobKey;
 pub use plan::{Plan, Share, Work, module_steps};
 pub use point_jobs::PointJobs;
+pub use point_study::{AskedPoints, PointStudy};
 pub use rating_point::RatingPoint;
 pub use shard::{NoShard, Shard};
 pub use springs::{BODY_QUANTITIES, SpringWheelPlace, body_word, has_springs, on_springs};

@@ -4,7 +4,7 @@
 //! together.
 
 use super::Job;
-use super::jobs::Jobs;
+use super::jobs::{JobParts, Jobs};
 use super::seen::fingerprint;
 use crate::design::DesignPoint;
 use crate::input::Refusal;
@@ -22,8 +22,13 @@ pub struct PointJobs<'a> {
 impl<'a> PointJobs<'a> {
     /// Of a study.
     pub fn new(study: &'a Study) -> Self {
+        Self::after(study, JobParts::default())
+    }
+
+    /// Of a study for which some parts were made before.
+    pub(super) fn after(study: &'a Study, parts: JobParts) -> Self {
         Self {
-            jobs: Jobs::of_no_point(study),
+            jobs: Jobs::of_no_point(study, parts),
             points: Box::new(study.blocks.iter().flat_map(|block| block.points())),
             numbers: HashMap::new(),
         }

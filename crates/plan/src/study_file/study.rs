@@ -260,6 +260,22 @@ impl Study {
         })
     }
 
+    /// The study with other values of the first axes of its one design, a zip: of each axis a list. Its document stays as it
+    /// was read.
+    ///
+    /// # Errors
+    /// [`Refusal`] of another design, and of lists that make no points.
+    pub fn with_lists(&self, lists: &[Vec<f64>]) -> Result<Self, Refusal> {
+        let [block] = &self.blocks[..] else {
+            let found = format!("{} designs", self.blocks.len());
+            return Err(Refusal::new(&self.file, "design", found, "one"));
+        };
+        Ok(Self {
+            blocks: vec![block.with_lists(&self.file, lists)?],
+            ..self.clone()
+        })
+    }
+
     /// Whether an axis sets a number or word of the job.
     fn varies(&self, of: JobAxis) -> bool {
         let mut axes = self.blocks.iter().flat_map(|block| &block.axes);
