@@ -6,8 +6,8 @@ use pontoon_plan::input::Cell;
 use pontoon_plan::job::{Job, Jobs};
 use pontoon_plan::study_file::{Kind, Study};
 use pontoon_results::{
-    Failure, FailureKind, JobRecord, Manifest, ModeRow, Moment, Outcome, Results, Table, TableName, TableProvenance,
-    TableWriter,
+    Failure, FailureKind, JobNumbers, JobRecord, Manifest, MemoryTables, ModeRow, Moment, Outcome, Results, Table,
+    TableName, TableProvenance, TableWriter,
 };
 use pontoon_study::run::{Batch, CancelToken, Setting, Silent, run};
 use serde_json::{Value, json};
@@ -128,6 +128,39 @@ fn summary_csv(study: &Study, jobs: &[Job], records: &[JobRecord]) -> String {
         }
     }
     text
+}
+
+#[test]
+fn numbers_of_jobs_are_those_of_their_table() {
+    let places = json!([{ "grid": { "load_position": [1, 2, 3], "load_n": [1e5, 2e5] } }]);
+    for of in [crossings(), study("static", places)] {
+        let (study, jobs) = (&of.0, &of.1);
+        let (records, _) = records(study, jobs);
+        let mut tables = MemoryTables::begin(study, jobs).unwrap();
+        tables.append(jobs, &records).unwrap();
+        let table = tables.finish().remove(&TableName::Jobs).unwrap();
+        let names = table.names().filter(|name| table.numbers(name).is_some());
+        let mut names: Vec<String> = names.map(str::to_owned).collect();
+        let known = names.clone();
+        // in any order, and twice
+        names.reverse();
+        names.push("job".to_owned());
+        let mut numbers = JobNumbers::begin(study, jobs, &names).unwrap();
+        for (jobs, records) in jobs.chunks(2).zip(records.chunks(2)) {
+            numbers.append(jobs, records);
+        }
+        for (name, found) in names.iter().zip(&numbers.numbers) {
+            let bits = |of: &[f64]| of.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+            assert_eq!(bits(found), bits(&table.numbers(name).unwrap()), "{name}");
+        }
+        assert_eq!(numbers.failures, [(jobs.len() - 2, "why".to_owned())].into());
+        for (place, name) in [(1, "status"), (0, "reason"), (1, "peak_deflection")] {
+            let mut asked = vec!["steps".to_owned(), "job".to_owned()];
+            asked[place] = name.to_owned();
+            let none = JobNumbers::begin(study, jobs, &asked).unwrap_err();
+            assert_eq!((none.place, &none.known), (place, &known), "{name}");
+        }
+    }
 }
 
 #[test]

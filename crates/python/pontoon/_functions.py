@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from ._bridges import Bridge
+    from ._engine import FunctionStudy
 
 _CALL = "function()"
 
@@ -25,7 +26,7 @@ class Function:
     """``Y = f(X)``: a row of ``X`` is a point, a column an input; a column of ``Y`` is an output.
 
     A row of ``Y`` is nan where the crossing failed. A single point may be given by itself: ``f([15, 0.02])`` gives one
-    row. Points outside of the bounds are refused.
+    row. Points outside of the bounds are refused. Files that it names are read at the first call.
 
     >>> import pontoon as pt
     >>> bridge = pt.Bridge("studies/bridges/smoke.json")
@@ -58,6 +59,7 @@ class Function:
             raise refused(_CALL, "on_failure", repr(on_failure), ", ".join(_ON_FAILURE))
         self._on_failure = on_failure
         self._last = threading.local()
+        self._engine: Optional[FunctionStudy] = None
         if not self._inputs:
             raise refused(_CALL, "inputs", "none", "at least one axis with its bounds")
         both = next((name for name in self._inputs if name in self._fixed), None)
@@ -132,22 +134,26 @@ class Function:
         self._last.failures = {}
         if len(points) == 0:
             return numpy.empty((0, len(self._outputs)))
-        columns = {name: points[:, at].tolist() for at, name in enumerate(self._inputs)}
-        study = {**self._study, "design": [{"zip": {**columns, **self._fixed}}]}
+        study, lists = self._of_points(points[0]), points.T.tolist()
         with Progress(progress) as told:
-            text = to_json(_CALL, study)
-            solved = _SESSION.solve_points(text, _CALL, self._bridge._engine, self._outputs, self._threads, told)
-        jobs, rows, self._last.solved_s = solved
-        numbers = [numpy.frombuffer(jobs.numbers(output) or b"") for output in self._outputs]
-        failed = jobs.failures()
-        if failed:
-            failures = {point: failed[job] for point, job in enumerate(rows) if job in failed}
-            self._last.failures = failures
-            if self._on_failure == "raise":
-                first, reason = next(iter(failures.items()))
-                raise EngineError(f"{len(failures)} of {len(points)} crossings failed; row {first}: {reason}")
-        result = numpy.stack(numbers, axis=1)[rows]
+            solved = _SESSION.solve_points(study, lists, self._outputs, self._threads, told)
+        numbers, failures, self._last.solved_s = solved
+        self._last.failures = failures
+        if failures and self._on_failure == "raise":
+            first, reason = next(iter(failures.items()))
+            raise EngineError(f"{len(failures)} of {len(points)} crossings failed; row {first}: {reason}")
+        result = numpy.frombuffer(numbers).reshape(-1, len(self._outputs)).copy()
         return result[0] if single else result
+
+    def _of_points(self, first: npt.NDArray[np.float64]) -> FunctionStudy:
+        """The engine's study, read at the first call; two threads that read it at once read the same."""
+        from ._engine import FunctionStudy
+
+        if self._engine is None:
+            axes = dict(zip(self._inputs, first.tolist()))
+            text = to_json(_CALL, {**self._study, "design": [{"zip": {**axes, **self._fixed}}]})
+            self._engine = FunctionStudy(text, _CALL, self._bridge._engine)
+        return self._engine
 
     def _points(self, X: Any) -> Tuple[npt.NDArray[np.float64], bool]:
         import numpy

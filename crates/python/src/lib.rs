@@ -34,7 +34,7 @@ mod _engine {
     #[pymodule_export]
     use super::folder::{read_table, table_names, table_of_rows};
     #[pymodule_export]
-    use super::session::Session;
+    use super::session::{FunctionStudy, Session};
     #[pymodule_export]
     use super::table::EngineTable;
 

@@ -1,17 +1,19 @@
 //! Studies that a Python program asks without a file.
 //!
-//! Knows how a study in JSON becomes tables in memory. Does not know its keys, nor how it is solved.
+//! Knows how a study in JSON becomes tables in memory, and how points become numbers. Does not know its keys, nor how it is
+//! solved.
 
 use crate::bridge::BridgeDocument;
 use crate::errors::{failed, refused};
 use crate::table::EngineTable;
 use crate::waiting::{Watched, wait};
 use pontoon_plan::input::{Document, Refusal};
-use pontoon_plan::job::{Job, Jobs, PointJobs};
+use pontoon_plan::job::{AskedPoints, Job, Jobs, PointStudy};
 use pontoon_plan::study_file::{BridgeFile, Study};
-use pontoon_results::{ArrowTable, MemoryTables, STATIC_PEAK_COLUMNS, TableName};
+use pontoon_results::{ArrowTable, JobNumbers, JobRecord, MemoryTables, STATIC_PEAK_COLUMNS, TableName};
 use pontoon_study::run::{Cache, SessionError, SessionSetting, SolveSession};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,20 +25,39 @@ pub(crate) struct Session {
     session: SolveSession,
 }
 
-/// Why a study left no tables.
+/// The study of a function: its points come with each call.
+#[pyclass(frozen, module = "pontoon._engine")]
+pub(crate) struct FunctionStudy {
+    study: PointStudy,
+}
+
+/// Why a study left nothing.
 enum Unsolved {
     Refused(Refusal),
     Session(SessionError),
     Tables(io::Error),
 }
 
-/// What a study left.
-struct Solved {
-    tables: BTreeMap<TableName, ArrowTable>,
-    /// The row of each point, where those were asked for.
-    rows: Option<Vec<usize>>,
+/// What points came to.
+struct PointNumbers {
+    /// Point by point the number of each output, as bytes.
+    bytes: Vec<u8>,
+    /// Why points failed, by their number.
+    failures: BTreeMap<usize, String>,
     /// Seconds in which jobs were solved.
     solved_s: f64,
+}
+
+#[pymethods]
+impl FunctionStudy {
+    /// The study of a JSON text, whose design is one zip with the inputs first; `name` stands for its file in messages.
+    #[new]
+    fn new(py: Python<'_>, study: &str, name: PathBuf, bridge: &BridgeDocument) -> PyResult<Self> {
+        let study = opened(study, &name, &bridge.bridge).map_err(|refusal| refused(py, &refusal))?;
+        Ok(Self {
+            study: PointStudy::new(study),
+        })
+    }
 }
 
 #[pymethods]
@@ -60,111 +81,111 @@ impl Session {
         threads: usize,
         told: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<BTreeMap<&'static str, EngineTable>> {
-        let asked = Asked {
-            study,
-            name,
-            bridge: &bridge.bridge,
-            threads,
-            outputs: None,
-        };
-        let solved = wait(py, told, |watched| self.tables(&asked, watched))?;
-        let Solved { tables, .. } = solved.map_err(|unsolved| exception(py, unsolved))?;
+        let solved = wait(py, told, |watched| {
+            let study = opened(study, &name, &bridge.bridge).map_err(Unsolved::Refused)?;
+            self.tables(&study, threads, watched)
+        })?;
+        let tables = solved.map_err(|unsolved| exception(py, unsolved))?;
         let named = |(name, table): (TableName, _)| (name.word(), EngineTable::from(table));
         Ok(tables.into_iter().map(named).collect())
     }
 
-    /// Solves a study for some columns of its table of jobs alone: that table, the row of each point, and the seconds in which
-    /// jobs were solved.
-    #[pyo3(signature = (study, name, bridge, outputs, threads, told))]
-    #[allow(clippy::too_many_arguments, reason = "a call from Python")]
-    fn solve_points(
+    /// Solves the study of a function at points, each list being the values of an input: point by point the numbers of columns
+    /// of the table of jobs as bytes, why points failed by their number, and the seconds in which jobs were solved.
+    #[pyo3(signature = (study, lists, outputs, threads, told))]
+    fn solve_points<'py>(
         &self,
-        py: Python<'_>,
-        study: &str,
-        name: PathBuf,
-        bridge: &BridgeDocument,
+        py: Python<'py>,
+        study: &FunctionStudy,
+        lists: Vec<Vec<f64>>,
         outputs: Vec<String>,
         threads: usize,
         told: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<(EngineTable, Vec<usize>, f64)> {
-        let asked = Asked {
-            study,
-            name,
-            bridge: &bridge.bridge,
-            threads,
-            outputs: Some(&outputs),
-        };
-        let solved = wait(py, told, |watched| self.tables(&asked, watched))?;
-        let mut solved = solved.map_err(|unsolved| exception(py, unsolved))?;
-        match (solved.tables.remove(&TableName::Jobs), solved.rows) {
-            (Some(jobs), Some(rows)) => Ok((jobs.into(), rows, solved.solved_s)),
-            _ => Err(failed(py, &"program error: no table of jobs")),
-        }
+    ) -> PyResult<(Bound<'py, PyBytes>, BTreeMap<usize, String>, f64)> {
+        let solved = wait(py, told, |watched| {
+            let asked = study.study.at(&lists).map_err(Unsolved::Refused)?;
+            self.numbers(&asked, &outputs, threads, watched)
+        })?;
+        let numbers = solved.map_err(|unsolved| exception(py, unsolved))?;
+        Ok((PyBytes::new(py, &numbers.bytes), numbers.failures, numbers.solved_s))
     }
-}
-
-/// A study that is asked.
-struct Asked<'a> {
-    study: &'a str,
-    name: PathBuf,
-    bridge: &'a BridgeFile,
-    threads: usize,
-    /// The columns of the table of jobs that are asked for; all tables where none are named.
-    outputs: Option<&'a [String]>,
 }
 
 impl Session {
-    fn tables(&self, asked: &Asked<'_>, watched: &Arc<Watched>) -> Result<Solved, Unsolved> {
-        let document = Document::parse(&asked.name, asked.study).map_err(Unsolved::Refused)?;
-        let study = Study::of_values(&asked.name, document, asked.bridge).map_err(Unsolved::Refused)?;
-        let jobs = Jobs::new(&study).collect::<Result<Vec<Job>, Refusal>>();
+    fn tables(
+        &self,
+        study: &Study,
+        threads: usize,
+        watched: &Arc<Watched>,
+    ) -> Result<BTreeMap<TableName, ArrowTable>, Unsolved> {
+        let jobs = Jobs::new(study).collect::<Result<Vec<Job>, Refusal>>();
         let jobs = jobs.map_err(Unsolved::Refused)?;
-        let rows = asked.outputs.map(|_| rows(&study, &jobs)).transpose()?;
         let setting = SessionSetting {
-            threads: asked.threads,
-            static_peaks: asked
-                .outputs
-                .is_none_or(|outputs| outputs.iter().any(|name| STATIC_PEAK_COLUMNS.contains(&name.as_str()))),
+            threads,
+            static_peaks: true,
         };
-        let only = asked.outputs.map(|_| &[TableName::Jobs][..]);
-        let mut tables = MemoryTables::begin(&study, &jobs, only).map_err(Unsolved::Tables)?;
-        for (number, output) in asked.outputs.iter().flat_map(|outputs| outputs.iter().enumerate()) {
-            check_output(&asked.name, number, output, tables.table(TableName::Jobs)).map_err(Unsolved::Refused)?;
-        }
+        let mut tables = MemoryTables::begin(study, &jobs).map_err(Unsolved::Tables)?;
         let mut taken = Ok(());
-        let watch = (&*watched.stop, &**watched as &dyn pontoon_study::run::Progress);
-        let solved = self.session.solve(&study, &jobs, setting, watch, |batch, records| {
+        self.records(study, &jobs, setting, watched, |batch, records| {
             if taken.is_ok() {
                 taken = tables.append(batch, &records);
             }
-        });
-        let solved_s = solved.map_err(Unsolved::Session)?;
+        })?;
         taken.map_err(Unsolved::Tables)?;
-        Ok(Solved {
-            tables: tables.finish(),
-            rows,
+        Ok(tables.finish())
+    }
+
+    fn numbers(
+        &self,
+        asked: &AskedPoints,
+        outputs: &[String],
+        threads: usize,
+        watched: &Arc<Watched>,
+    ) -> Result<PointNumbers, Unsolved> {
+        let AskedPoints { study, jobs, rows } = asked;
+        let setting = SessionSetting {
+            threads,
+            static_peaks: outputs.iter().any(|name| STATIC_PEAK_COLUMNS.contains(&name.as_str())),
+        };
+        let mut of_jobs = JobNumbers::begin(study, jobs, outputs).map_err(|none| {
+            let path = format!("outputs[{}]", none.place);
+            Unsolved::Refused(Refusal::unknown(&study.file, path, &outputs[none.place], &none.known))
+        })?;
+        let solved_s = self.records(study, jobs, setting, watched, |batch, records| {
+            of_jobs.append(batch, &records)
+        })?;
+        let numbers = rows
+            .iter()
+            .flat_map(|&row| of_jobs.numbers.iter().map(move |of| of[row]));
+        let failed = rows
+            .iter()
+            .enumerate()
+            .filter_map(|(point, row)| Some((point, of_jobs.failures.get(row)?.clone())));
+        Ok(PointNumbers {
+            bytes: numbers.flat_map(f64::to_ne_bytes).collect(),
+            failures: failed.collect(),
             solved_s,
         })
     }
-}
 
-/// Refuses an output that is no number of the table of jobs.
-fn check_output(name: &Path, number: usize, output: &str, jobs: Option<&ArrowTable>) -> Result<(), Refusal> {
-    let Some(jobs) = jobs.filter(|jobs| jobs.numbers(output).is_none()) else {
-        return Ok(());
-    };
-    let numeric = jobs.names().filter(|name| jobs.numbers(name).is_some());
-    let known: Vec<String> = numeric.map(str::to_owned).collect();
-    Err(Refusal::unknown(name, format!("outputs[{number}]"), output, &known))
-}
-
-/// The row of each point in the table of jobs.
-fn rows(study: &Study, jobs: &[Job]) -> Result<Vec<usize>, Unsolved> {
-    if study.points() == jobs.len() {
-        return Ok((0..jobs.len()).collect());
+    /// Solves jobs and hands their records on: the seconds in which they were solved.
+    fn records(
+        &self,
+        study: &Study,
+        jobs: &[Job],
+        setting: SessionSetting,
+        watched: &Arc<Watched>,
+        take: impl FnMut(&[Job], Vec<JobRecord>) + Send,
+    ) -> Result<f64, Unsolved> {
+        let watch = (&*watched.stop, &**watched as &dyn pontoon_study::run::Progress);
+        let solved_s = self.session.solve(study, jobs, setting, watch, take);
+        solved_s.map_err(Unsolved::Session)
     }
-    let number = |job: Result<Job, Refusal>| Ok(job.map_err(Unsolved::Refused)?.number);
-    PointJobs::new(study).map(number).collect()
+}
+
+/// The study of a JSON text.
+fn opened(text: &str, name: &Path, bridge: &BridgeFile) -> Result<Study, Refusal> {
+    Study::of_values(name, Document::parse(name, text)?, bridge)
 }
 
 fn exception(py: Python<'_>, unsolved: Unsolved) -> PyErr {

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pickle
+import re
 import shutil
 import signal
 import subprocess
@@ -85,6 +86,45 @@ def test_a_function_gives_the_numbers_of_the_table(bridge):
     assert np.array_equal(alone(points), found[:, :2])
     assert np.array_equal(alone(points[0]), found[0, :2])
     assert alone(np.empty((0, 2))).shape == (0, 2)
+
+
+def test_a_function_is_read_once_and_mixes_with_no_other(bridge):
+    """Calls of several functions in turn, with one point or more, have the bits of functions that are called once."""
+    path = "bridge.connectors.stiffness_n_m"
+    names = ["peak_deflection_m", "peak_compression_n", "steps", "gap_tension_m"]
+    other = bridge.with_(connectors={"gap_tension_m": 0.05, "stiffness_n_m": 2e8})
+    words = [
+        (bridge, {"speed_m_s": (2, 20), "gap_tension_m": (0, 0.04)}, {"load_n": 1e5}),
+        (bridge, {"speed_m_s": (5, 30), "gap_tension_m": (0, 0.02)}, {"load_n": 2e5}),
+        (bridge, {"gap_tension_m": (0, 0.04), "speed_m_s": (2, 20)}, {"load_n": 1e5}),
+        (other, {"speed_m_s": (2, 20), "gap_tension_m": (0, 0.04)}, {"load_n": 1e5}),
+        (bridge, {path: (1e8, 1e9), "speed_m_s": (2, 20)}, {"load_n": 1e5}),
+        (bridge, {"vehicle.track_y_m[0]": (-2, -1), "speed_m_s": (2, 20)}, {"load_n": 1e5, "connection": "linear"}),
+        (bridge, {"speed_m_s": (2, 20), "load_n": (1e4, 2e5)}, {"analysis": {"time_step_s": 0.02}}),
+    ]
+    rng = np.random.default_rng(1)
+    functions, points = [], []
+    for of, inputs, more in words:
+        fixed = {"vehicle": {"track_y_m": [-1.4, 1.4]}, **more}
+        functions.append(lambda of=of, inputs=inputs, fixed=fixed: of.function(inputs, names, **fixed))
+        low, high = np.array(list(inputs.values())).T
+        points.append(low + (high - low) * rng.random((4, 2)))
+    expected = [[function()(point) for point in of] for function, of in zip(functions, points)]
+    kept = [function() for function in functions]
+    for row in (0, 3, 1, 2, 0):
+        for f, of, single in zip(kept, points, expected):
+            assert np.array_equal(f(of[row]), single[row], equal_nan=True)
+            assert np.array_equal(f(of[[row, 1, row]]), np.array(single)[[row, 1, row]], equal_nan=True)
+    assert len({single[0].tobytes() for single in expected}) == len(expected)
+
+
+def test_a_point_that_is_refused_spoils_no_later_one(bridge):
+    f = bridge.function({"speed_m_s": (-20, 20)}, ["peak_deflection_m"], load_n=1e5)
+    refused = re.escape("function(): design[0].zip.speed_m_s: found -5, allowed: a finite number above 0")
+    for wrong in ([-5], [[5], [-5]], [-5]):
+        with pytest.raises(pt.InputError, match=refused):
+            f(wrong)
+        assert f([5]) == bridge.cross(speed_m_s=5, load_n=1e5)["peak_deflection_m"][0]
 
 
 def test_points_that_make_one_crossing_have_its_numbers(bridge):
@@ -211,8 +251,10 @@ def resident_bytes():
 def test_memory_stays_flat_over_many_calls(bridge):
     def call(number):
         speeds = np.linspace(8 + 0.001 * number, 20, 40)
+        f([1e-4 * number, 1e5 + number])
         return bridge.cross(speed_m_s=speeds, load_n=1e5 + number, gap_tension_m=1e-4 * number)
 
+    f = bridge.function({"gap_tension_m": (0, 0.04), "load_n": (1e5, 2e5)}, ["peak_deflection_m"], speed_m_s=20)
     kept = [call(number) for number in range(40)]
     del kept
     before = resident_bytes()

@@ -91,6 +91,19 @@ impl<'a> ColumnBuilder<'a> {
         }
     }
 
+    /// The cells as numbers, no number as nan, yes as 1 and no as 0; none of words.
+    pub(super) fn numbers(&self) -> Option<Vec<f64>> {
+        fn of<T: Copy>(cells: &[Option<T>], number: fn(T) -> f64) -> Option<Vec<f64>> {
+            Some(cells.iter().map(|cell| cell.map_or(f64::NAN, number)).collect())
+        }
+        match self {
+            Self::Numbers(numbers) => of(numbers, |x| x),
+            Self::Counts(counts) => of(counts, |x| x as f64),
+            Self::Flags(flags) => of(flags, f64::from),
+            Self::Words(_) | Self::Values(_) => None,
+        }
+    }
+
     fn array(&self) -> Box<dyn Array> {
         let array: Box<dyn Array> = match self {
             Self::Numbers(numbers) => Box::new(PrimitiveArray::<f64>::from(numbers.as_slice())),

@@ -136,18 +136,15 @@ pub struct MemoryTables {
 }
 
 impl MemoryTables {
-    /// The tables of a study with all its jobs; of `only` those alone.
+    /// The tables of a study with all its jobs.
     ///
     /// # Errors
     /// None, as columns are made of equal length.
-    pub fn begin(study: &Study, jobs: &[Job], only: Option<&[TableName]>) -> io::Result<Self> {
+    pub fn begin(study: &Study, jobs: &[Job]) -> io::Result<Self> {
         let layout = Layout::new(study, jobs);
-        let wanted = layout
-            .tables()
-            .filter(|name| only.is_none_or(|only| only.contains(name)));
         let empty = |name| Ok((name, ArrowTable::new(layout.frame(name, &[], &[])?, Vec::new())));
         Ok(Self {
-            tables: wanted.map(empty).collect::<io::Result<_>>()?,
+            tables: layout.tables().map(empty).collect::<io::Result<_>>()?,
             layout,
         })
     }
@@ -164,11 +161,6 @@ impl MemoryTables {
             }
         }
         Ok(())
-    }
-
-    /// A table as far as it has come.
-    pub fn table(&self, name: TableName) -> Option<&ArrowTable> {
-        self.tables.get(&name)
     }
 
     /// The tables.

@@ -116,9 +116,21 @@ impl Layout {
     }
 
     fn columns<'a>(&self, table: TableName, jobs: &'a [Job], records: &'a [JobRecord]) -> Columns<'a> {
+        self.some_columns(table, jobs, records, &|_| true)
+    }
+
+    /// The rows of some jobs in those columns of a table that are `wanted` by their names.
+    pub(super) fn some_columns<'a>(
+        &self,
+        table: TableName,
+        jobs: &'a [Job],
+        records: &'a [JobRecord],
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Columns<'a> {
         let mut columns = Columns::default();
         for column in Column::of_table(table).filter(|column| self.has(column)) {
             match column.source {
+                _ if !wanted(column.name) => {}
                 ColumnSource::Job(of) => columns.push(column.name, column.cells, records.iter().map(of)),
                 ColumnSource::Position(of) => push(&mut columns, column, rows(records, |record| &record.positions), of),
                 ColumnSource::Connector(of) => {
@@ -147,7 +159,7 @@ impl Layout {
                 }
             }
             if table == TableName::Jobs && column.name == BEFORE_AXES {
-                for AxisColumn { name, cells, axis } in &self.axes {
+                for AxisColumn { name, cells, axis } in self.axes.iter().filter(|axis| wanted(&axis.name)) {
                     let of_jobs = jobs.iter().map(|job| cell_of(job, axis.as_ref()));
                     columns.push(name, *cells, of_jobs);
                 }

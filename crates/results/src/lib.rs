@@ -12,6 +12,7 @@
 //! | `layout` | which tables a study leaves, and their rows from records |
 //! | `arrays` | the few types of columns, filled one after the other |
 //! | `arrow` | tables as arrays in memory |
+//! | `job_numbers` | numbers of some columns of the table of jobs |
 //! | `frame` | rows as arrays of the table library, to Parquet and back |
 //! | `parquet`, `writer`, `summary` | tables under way; the summary |
 //! | `exceedance` | which share of jobs exceeds each limit |
@@ -35,6 +36,7 @@ mod failure;
 mod files;
 mod frame;
 mod indices;
+mod job_numbers;
 pub mod labels;
 mod layout;
 mod limit_rows;
@@ -68,6 +70,7 @@ pub use extreme::Extreme;
 pub use failure::{Failure, FailureKind};
 pub use files::{OwnFiles, PAGE, replaceable};
 pub use indices::{DesignIndices, FactorIndex, FactorIndices, FactorPair, Indices, OutputIndices};
+pub use job_numbers::{JobNumbers, NoNumbers};
 pub use limit_rows::{LimitRow, governing};
 pub use manifest::{DocumentPlace, Manifest, SessionNote, check_own};
 pub use memory::too_large;
