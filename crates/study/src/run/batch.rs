@@ -54,19 +54,33 @@ pub(super) fn solve(
         .into_par_iter()
         .with_max_len(1)
         .flat_map_iter(|lane_batch| {
-            let of_batch: Vec<&Job> = lane_batch.iter().map(|&place| jobs[place].1).collect();
-            let records = if told.begin(&of_batch) {
-                let records = records(jobs, &lane_batch, models);
-                told.end(&of_batch, &records);
-                records
-            } else {
-                Vec::new()
-            };
+            let records = solve_together(jobs, &lane_batch, models, told);
             lane_batch.into_iter().zip(records).collect::<Vec<_>>()
         });
     let mut solved: Vec<(usize, JobRecord)> = solved.collect();
     solved.sort_by_key(|(place, _)| *place);
     solved.into_iter().map(|(_, record)| record).collect()
+}
+
+/// Solves one job on the thread that calls, for which `models` suffice, as [`solve`] does.
+pub(super) fn solve_one(study: &Study, job: &Job, models: &SharedModels, told: &dyn JobObserver) -> Vec<JobRecord> {
+    solve_together(&[(study, job)], &[0], models, told)
+}
+
+/// The records of the jobs at some places, which are solved together; none where they might not begin.
+fn solve_together(
+    jobs: &[(&Study, &Job)],
+    places: &[usize],
+    models: &SharedModels,
+    told: &dyn JobObserver,
+) -> Vec<JobRecord> {
+    let together: Vec<&Job> = places.iter().map(|&place| jobs[place].1).collect();
+    if !told.begin(&together) {
+        return Vec::new();
+    }
+    let records = records(jobs, places, models);
+    told.end(&together, &records);
+    records
 }
 
 /// Places of jobs that are solved together: crossings that share a solver, the long ones first so that the lanes of a batch

@@ -62,7 +62,7 @@ impl SolveSession {
     pub fn new(cache: Option<Cache>) -> Self {
         Self {
             cache,
-            kept: Mutex::default(),
+            kept: Mutex::new(Arc::new(SharedModels::without_static_peaks())),
             proven: OnceLock::new(),
         }
     }
@@ -84,51 +84,66 @@ impl SolveSession {
             self_test::run()?;
             self.proven.get_or_init(|| ());
         }
-        on_threads(setting.threads, || {
-            let observer = SessionObserver {
-                cancel,
-                progress,
-                total: jobs.len(),
-                done: AtomicUsize::new(0),
-                failed: AtomicUsize::new(0),
-            };
-            let solvable: Vec<&Job> = jobs.iter().filter(|job| too_long(job).is_none()).collect();
-            let models = self.prepare(&solvable, setting.static_peaks, (cancel, progress));
-            progress.stage("running jobs");
-            progress.jobs(observer.tally());
-            let mut solved_s = 0.0;
-            for batch in cut::cut(study, jobs, Batch::default()) {
-                let began = Instant::now();
-                let records = solve_batch(study, batch, &models, &observer);
-                solved_s += began.elapsed().as_secs_f64();
-                if cancel.is_asked() {
-                    break;
-                }
+        let observer = SessionObserver {
+            cancel,
+            progress,
+            total: jobs.len(),
+            done: AtomicUsize::new(0),
+            failed: AtomicUsize::new(0),
+        };
+        let mut solved_s = 0.0;
+        let mut solve_next = |batch: &[Job], solve: &dyn Fn() -> Vec<JobRecord>| {
+            let began = Instant::now();
+            let records = solve();
+            solved_s += began.elapsed().as_secs_f64();
+            if !cancel.is_asked() {
                 take(batch, records);
             }
-            match cancel.is_asked() {
-                true => Err(SessionError::Stopped {
-                    tally: observer.tally(),
-                }),
-                false => Ok(solved_s),
+        };
+        let kept = self.kept();
+        match jobs {
+            // threads take longer to start than such a job needs beside its solution
+            [job] if !setting.static_peaks && too_long(job).is_none() && kept.suffice(job) => {
+                observer.start();
+                solve_next(jobs, &|| batch::solve_one(study, job, &kept, &observer));
             }
-        })?
+            _ => on_threads(setting.threads, || {
+                let solvable: Vec<&Job> = jobs.iter().filter(|job| too_long(job).is_none()).collect();
+                let models = self.prepare(&solvable, &kept, setting.static_peaks, (cancel, progress));
+                observer.start();
+                for batch in cut::cut(study, jobs, Batch::default()) {
+                    solve_next(batch, &|| solve_batch(study, batch, &models, &observer));
+                    if cancel.is_asked() {
+                        break;
+                    }
+                }
+            })?,
+        }
+        match cancel.is_asked() {
+            true => Err(SessionError::Stopped {
+                tally: observer.tally(),
+            }),
+            false => Ok(solved_s),
+        }
+    }
+
+    /// What is kept at the moment.
+    fn kept(&self) -> Arc<SharedModels> {
+        Arc::clone(&self.kept.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Prepares what jobs share beyond what is kept, and keeps it. No lock is held meanwhile.
     fn prepare(
         &self,
         jobs: &[&Job],
+        before: &SharedModels,
         static_peaks: bool,
         (cancel, progress): (&CancelToken, &dyn Progress),
     ) -> SharedModels {
-        let before = Arc::clone(&self.kept.lock().unwrap_or_else(PoisonError::into_inner));
         let cache = self.cache.as_ref();
-        let prepare =
-            |before: &SharedModels| SharedModels::prepare_after(jobs, before, static_peaks, (cache, cancel), progress);
-        let models = prepare(&before);
+        let models = SharedModels::prepare_after(jobs, before, static_peaks, (cache, cancel), progress);
         if !cancel.is_asked() {
-            let mut kept = SharedModels::default();
+            let mut kept = SharedModels::without_static_peaks();
             kept.keep(&models);
             let mut latest = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
             if kept.large_parts() + latest.large_parts() <= MOST_KEPT {
@@ -167,6 +182,12 @@ struct SessionObserver<'a> {
 }
 
 impl SessionObserver<'_> {
+    /// Tells that jobs begin.
+    fn start(&self) {
+        self.progress.stage("running jobs");
+        self.progress.jobs(self.tally());
+    }
+
     fn tally(&self) -> Tally {
         let done = self.done.load(Ordering::Relaxed);
         Tally {

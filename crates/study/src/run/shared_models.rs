@@ -108,6 +108,14 @@ impl SharedModels {
         }
     }
 
+    /// None yet, and never static peaks.
+    pub(super) fn without_static_peaks() -> Self {
+        Self {
+            no_static_peaks: true,
+            ..Self::default()
+        }
+    }
+
     /// Takes over what another has and this has not, but for what failed there, and the static peaks and dead states, which
     /// are those of single loads and gaps.
     pub(super) fn keep(&mut self, other: &Self) {
@@ -466,6 +474,16 @@ impl SharedModels {
             None => self.crossings.contains_key(&crossing_key(crossing)),
         };
         solver && (!crossing.job.bridge.design.has_dead_load() || self.dead.contains_key(&dead_key(crossing.job)))
+    }
+
+    /// Whether a job can be solved with what is there, on one thread: a crossing by the operator at a stated time step, which
+    /// nobody judges and of which no static peak is asked.
+    pub(super) fn suffice(&self, job: &Job) -> bool {
+        let holds = |crossing: &CrossingJob<'_>| {
+            let is_plain = crossing.verify().is_none() && crossing.analysis.time_step.tolerance().is_none();
+            is_plain && crossing.operator_tolerance().is_some() && self.holds(crossing)
+        };
+        self.no_static_peaks && job.rating.is_none() && job.as_crossing().as_ref().is_some_and(holds)
     }
 
     /// The modules, for a later run.

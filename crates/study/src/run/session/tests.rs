@@ -5,6 +5,7 @@ use super::*;
 use pontoon_plan::input::Document;
 use pontoon_plan::job::Jobs;
 use pontoon_plan::study_file::{BridgeFile, bridge_of, read_bridge};
+use pontoon_results::FailureKind;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -83,7 +84,7 @@ fn a_session_prepares_once_what_studies_share() {
     let condensed = |of: &(Study, Vec<Job>)| {
         let jobs: Vec<&Job> = of.1.iter().collect();
         session
-            .prepare(&jobs, true, (&CancelToken::default(), &Silent))
+            .prepare(&jobs, &session.kept(), true, (&CancelToken::default(), &Silent))
             .condensations()
     };
     assert_eq!((condensed(&of), condensed(&of)), (1, 0));
@@ -125,6 +126,46 @@ fn static_peaks_that_nobody_asks_for_are_left_out_and_change_nothing_else() {
         }
         assert_eq!(with, without);
     }
+}
+
+#[test]
+fn a_crossing_for_which_all_is_there_takes_no_preparation_and_has_the_same_record() {
+    let session = SolveSession::new(None);
+    let grid = |speed: Value, gap_m: f64| json!({ "speed_m_s": speed, "gap_tension_m": gap_m, "load_n": 1e5 });
+    let of = |speed: f64, gap_m: f64| study(&smoke(), &grid(speed.into(), gap_m));
+    assert!(!session.kept().suffice(&of(8.0, 0.0).1[0]));
+    let both = study(&smoke(), &grid(json!([8, 12]), 0.0));
+    let expected = solved(&session, &both, by(false));
+    let kept = session.kept();
+    for (speed, place) in [(12.0, 1), (8.0, 0), (12.0, 1)] {
+        let one = of(speed, 0.0);
+        assert!(kept.suffice(&one.1[0]));
+        let mut records = solved(&session, &one, by(false));
+        records[0].job = place;
+        assert_eq!(records, expected[place..=place]);
+    }
+    // nothing new is kept
+    assert!(Arc::ptr_eq(&kept, &session.kept()));
+    // gaps are no part of what is kept; another bridge is, and so is the step
+    assert!(kept.suffice(&of(9.0, 0.02).1[0]));
+    assert!(!kept.suffice(&study(&with_stiffness(2e8), &grid(8.into(), 0.0)).1[0]));
+    for (path, value) in [
+        ("analysis.time_step_s", json!("auto")),
+        ("analysis.verify.share", json!(1.0)),
+        ("analysis.solver", json!("reference")),
+    ] {
+        let mut axes = grid(8.into(), 0.0);
+        axes[path] = value;
+        assert!(!kept.suffice(&study(&smoke(), &axes).1[0]), "{path}");
+    }
+    // too many steps are a failure here too
+    let failed = solved(&session, &of(1.0, 0.0), by(false)).remove(0).failure.unwrap();
+    assert_eq!(failed.kind, FailureKind::TooManySteps);
+    let stop = CancelToken::default();
+    stop.ask(Why::Interrupted);
+    let (study, jobs) = of(8.0, 0.0);
+    let stopped = session.solve(&study, &jobs, by(false), (&stop, &Silent), |_, _| panic!("records"));
+    assert!(matches!(stopped, Err(SessionError::Stopped { tally }) if tally.done == 0 && tally.total == 1));
 }
 
 #[test]
