@@ -89,10 +89,7 @@ impl Wave {
         let module = BeamModule::slender(10.0, 20, self.ei, self.mass_kg_m, 1e4);
         let d = module.design(24, self.k_n_m2, self.added_mass_kg_m, module.continuous_n_m(1e9));
         let ready = module.ready(&d, Model::Full);
-        let damping = Rayleigh {
-            a: 0.0,
-            b: self.damping_1_s,
-        };
+        let damping = Rayleigh::new(0.0, self.damping_1_s);
         let solver = ready.crossings(
             &module.axle(0.0, 1, Inertia::None),
             &settings(damping, 0.25 / self.speed_m_s, 1.0),

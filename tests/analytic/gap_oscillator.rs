@@ -52,7 +52,7 @@ const PAIR: Pair = Pair {
     dashpots_n_s_m: 0.0,
     gap_tension_m: 0.02,
     gap_compression_m: 0.0055,
-    rayleigh: Rayleigh { a: 0.02, b: 0.12 },
+    rayleigh: Rayleigh::new(0.02, 0.12),
     load_n: 1e5,
     speed_m_s: 5.0,
     tail_s: 3.0,

@@ -91,10 +91,7 @@ fn crossed(span: Span, elements: usize, steps: usize) -> (Vec<f64>, Vec<f64>) {
     let module = BeamModule::slender(0.5 * SPAN_M, elements, span.ei, span.mass_kg_m, 1e4);
     let ready = module.ready(&module.design(2, 1e-3, 0.0, module.continuous_n_m(1e9)), Model::Full);
     let h = SPAN_M / speed_m_s() / steps as f64;
-    let damping = Rayleigh {
-        a: 0.0,
-        b: span.damping_1_s,
-    };
+    let damping = Rayleigh::new(0.0, span.damping_1_s);
     let vehicle = module.axle(0.0, 1, Inertia::None);
     let mut crossing = ready.crossing(Connection::Linear, LOAD_N, speed_m_s());
     (crossing.tail_s, crossing.record) = (

@@ -136,7 +136,7 @@ fn crossed(inertia: Inertia, elements: usize, h: f64) -> Vec<f64> {
     );
     let solver = ready.crossings(
         &module.axle(PATCH_M, POINTS, inertia),
-        &settings(Rayleigh { a: 0.0, b: 0.0 }, h, 1.0),
+        &settings(Rayleigh::new(0.0, 0.0), h, 1.0),
     );
     let r = solver.solve(&crossing).expect("solved");
     let start = r

@@ -78,7 +78,7 @@ impl Case {
         Self {
             ei: 3.5e10 * 1.3901,
             mass_kg_m: 18_358.0,
-            rayleigh: Rayleigh { a: 0.0, b: 0.0 },
+            rayleigh: Rayleigh::new(0.0, 0.0),
             vehicle: sprung(5750.0, 1.595e6, 0.0),
             speed_m_s: 25.0,
             acceleration_m_s2: 0.0,
@@ -254,7 +254,7 @@ fn expected() -> [Expected; 6] {
             case: Case {
                 ei: 2.87e9 * 0.29,
                 mass_kg_m: 230.3,
-                rayleigh: Rayleigh { a: 0.001, b: 0.01 },
+                rayleigh: Rayleigh::new(0.001, 0.01),
                 vehicle: two_masses(),
                 ..Case::classical()
             },

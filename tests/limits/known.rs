@@ -308,7 +308,7 @@ struct Rigid {
 impl Rigid {
     /// Time derivative of heave, pitch and their velocities.
     fn rate(&self, t: f64, y: [f64; 4]) -> [f64; 4] {
-        let Rayleigh { a, b } = self.rayleigh;
+        let Rayleigh { a, b, .. } = self.rayleigh;
         let damped = |i: usize| -self.k[i] * y[i] - (a * self.k[i] + b * self.m[i]) * y[i + 2];
         let (mut m, mut f) = ([[self.m[0], 0.0], [0.0, self.m[1]]], [damped(0), damped(1)]);
         for &(ahead, weight) in &self.points {
@@ -380,7 +380,7 @@ fn rigid_module_follows_two_equations_of_motion() {
     // the pitching mass is taken from the pitching frequency, the rest is by hand
     let pitch = d.p_b() * b * l.powi(3) / 12.0;
     let omega = 2.0 * std::f64::consts::PI * frequency_hz(&ready.modes(8), "pitch");
-    let damping = Rayleigh { a: 0.05, b: 0.3 };
+    let damping = Rayleigh::new(0.05, 0.3);
     for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
         let list = [(0.1, 0.4, 0.1), (2.1, 0.6, 0.1)];
         let vehicle = match inertia {

@@ -398,7 +398,7 @@ fn guys_under_preload_are_springs() {
     };
     let vehicle = footprint(&[-1.4, 1.4], Inertia::Local);
     // the damping of springs in K is not that of links
-    let settings = settings(Rayleigh { a: 0.0, b: 0.2 }, 0.01, 0.9);
+    let settings = settings(Rayleigh::new(0.0, 0.2), 0.01, 0.9);
     // reactions beyond those at rest: standing, then moving by both solvers
     let solve = |design: &BridgeDesign| -> [Vec<f64>; 3] {
         let ready = Ready::new(design, Model::SuperElement);

@@ -55,7 +55,7 @@ fn balance_closes_for_every_inertia_and_connection() {
 #[test]
 fn trapezoidal_rule_conserves_energy() {
     for inertia in INERTIAS {
-        for rayleigh in [Rayleigh { a: 0.0, b: 0.0 }, smoke().rayleigh()] {
+        for rayleigh in [Rayleigh::new(0.0, 0.0), smoke().rayleigh()] {
             let numerical = |rho: f64| {
                 cross(inertia, Connection::Linear, rayleigh, 0.01, rho)
                     .energy

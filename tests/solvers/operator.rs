@@ -144,7 +144,7 @@ fn vehicles(inertia: Inertia) -> [(&'static str, Vehicle); 5] {
 
 /// Spectral radii and dampings.
 fn schemes() -> [(f64, Rayleigh); 3] {
-    let undamped = Rayleigh { a: 0.0, b: 0.0 };
+    let undamped = Rayleigh::new(0.0, 0.0);
     let damped = smoke().right.rayleigh();
     [(0.9, damped), (1.0, damped), (1.0, undamped)]
 }

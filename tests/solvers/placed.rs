@@ -165,7 +165,7 @@ fn a_creeping_load_trims_a_module_as_by_hand() {
     let ready = Ready::new(&d, Model::SuperElement);
     let (l, b, y_m) = (d.module.length_m, d.module.breadth_m, 1.5);
     let (speed_m_s, h) = (0.002, 0.5);
-    let settings = settings(Rayleigh { a: 4.0, b: 0.0 }, h, 0.9);
+    let settings = settings(Rayleigh::new(4.0, 0.0), h, 0.9);
     let free = Ready {
         bridge: Arc::clone(&ready.free),
         ..ready

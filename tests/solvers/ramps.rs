@@ -114,7 +114,7 @@ fn ramps_lie_on_their_banks() {
 fn both_solvers_cross_dry_ramps() {
     let dry =
         json!({ "wet_from_m": 0.0, "wet_to_m": 0.0, "hydrostatic_stiffness_pa_m": null, "added_mass_kg_m": null });
-    let settings = settings(Rayleigh { a: 0.02, b: 0.1 }, 0.01, 0.9);
+    let settings = settings(Rayleigh::new(0.02, 0.1), 0.01, 0.9);
     let vehicle = footprint(&[-1.4, 1.4], Inertia::Local);
     let solve = |bank_n_m: f64| {
         let ready = Ready::new(&with_ramps(&dry, bank_n_m), Model::SuperElement);

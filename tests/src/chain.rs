@@ -134,10 +134,10 @@ impl Chain {
             joint_stiffness_n_m: number(&all["connectors"], "stiffness_of_a_joint_n_m"),
             gap_tension_m: number(&all["connectors"], "gap_tension_m"),
             gap_compression_m: number(&all["connectors"], "gap_compression_m"),
-            rayleigh: Rayleigh {
-                a: number(&all["rayleigh"], "stiffness_s"),
-                b: number(&all["rayleigh"], "mass_1_s"),
-            },
+            rayleigh: Rayleigh::new(
+                number(&all["rayleigh"], "stiffness_s"),
+                number(&all["rayleigh"], "mass_1_s"),
+            ),
             weight_n: number(load, "weight_n"),
             footprint_length_m: number(load, "footprint_length_m"),
             points: count(load, "points"),

@@ -159,11 +159,36 @@ impl<A: Arithmetic> Newmark<A> {
     }
 }
 
-/// Rayleigh coefficients of `C = a K + b M`.
+/// Coefficients of proportional damping: Rayleigh's `C = a K + b M`, or that of the structure alone, `C = a (K - K_w) + b M` with the
+/// water's springs K_w.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rayleigh {
     /// Stiffness-proportional part `[s]`.
     pub a: f64,
     /// Mass-proportional part `[1/s]`.
     pub b: f64,
+    /// Stiffness-proportional part that the water's springs have, a or 0 `[s]`.
+    pub a_water: f64,
+}
+
+impl Rayleigh {
+    /// `C = a K + b M`.
+    pub const fn new(a: f64, b: f64) -> Self {
+        Self { a, b, a_water: a }
+    }
+
+    /// Damping of the structure by `ratio` at `at_hz`, in proportion to the frequency: `C = a (K - K_w)`, `a = 2 ratio / (2 pi at_hz)`.
+    /// Equation (T6).
+    pub fn of_structure(ratio: f64, at_hz: f64) -> Self {
+        Self {
+            a: 2.0 * ratio / (2.0 * std::f64::consts::PI * at_hz),
+            b: 0.0,
+            a_water: 0.0,
+        }
+    }
+
+    /// What `a K` has more of the water's springs than there is damping `[s]`.
+    pub(crate) fn beyond_water(&self) -> f64 {
+        self.a - self.a_water
+    }
 }

@@ -144,6 +144,15 @@ impl SuperElement {
 }
 
 impl SuperElement {
+    /// `T^T A T` of a matrix of the full module.
+    ///
+    /// # Errors
+    /// [`FemError::OutOfMemory`].
+    pub(crate) fn congruent(&self, a: &SymmetricMatrix) -> Result<SymmetricMatrix, FemError> {
+        let congruent = congruence(a, self.transformation.as_ref());
+        SymmetricMatrix::from_entries(congruent.ncols(), &dense_entries(congruent.as_ref()))
+    }
+
     /// What a load moves beyond T by every dof of the full module, at rest and with the masters held:
     /// `(k22^-1 - Phi Lambda^-1 Phi^T) f_2`. `k` is the stiffness that was condensed.
     ///

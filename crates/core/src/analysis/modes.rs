@@ -2,6 +2,8 @@
 //!
 //! Knows how a shape is told from another by where its kinetic energy is. Does not know how the bridge was built.
 
+mod wet;
+
 use super::AnalysisError;
 use crate::bridge::{Bridge, ModulePlace};
 use crate::fem::{EigenPairs, SparseRow, SymmetricMatrix, lowest_modes_unless};
@@ -18,6 +20,8 @@ pub struct Mode {
     /// Name of the shape: `heave`, `pitch`, `roll`, `surge`, `sway`, `yaw`, or `vertical bending n`, `torsion n`,
     /// `horizontal bending n`, `axial n`, `local n`, numbered by frequency within their family.
     pub name: String,
+    /// Damping by radiated waves at this frequency as a share of critical damping; none in water without memory.
+    pub radiation_ratio: Option<f64>,
     /// Share of the kinetic energy in the sections' vertical motion.
     pub vertical_share: f64,
     /// Share in the sections' roll.
@@ -44,6 +48,9 @@ const LOCAL_BELOW: f64 = 0.5;
 /// Share of a profile that must be rigid for the shape to be called rigid.
 const RIGID_SHARE: f64 = 0.95;
 
+/// The same in water with memory, whose mass is less at the ends: what heaves bends there.
+const RIGID_SHARE_IN_WAVES: f64 = 0.6;
+
 /// The lowest `count` modes with the linear connection (both trusses of a connector at work), and their shapes.
 ///
 /// # Errors
@@ -54,28 +61,49 @@ pub fn modes(bridge: &Bridge, count: usize) -> Result<(Vec<Mode>, EigenPairs), A
 
 fn modes_unless(bridge: &Bridge, count: usize, stop: Stop<'_>) -> Result<(Vec<Mode>, EigenPairs), AnalysisError> {
     // fewer would be mixtures of the motions that nothing restores
-    let searched = count.max(UNRESTORED + 1);
+    let searched = match &bridge.waves {
+        None => count.max(UNRESTORED + 1),
+        Some(_) => (count + wet::MORE).min(bridge.dofs()),
+    };
     let mut pairs = lowest_modes_unless(&linear_stiffness(bridge)?, &bridge.m, searched, SHIFT, stop)?;
     name_unrestored(bridge, &mut pairs);
+    let mut names = ShapeNames {
+        count: BTreeMap::new(),
+        rigid_share: if bridge.waves.is_some() {
+            RIGID_SHARE_IN_WAVES
+        } else {
+            RIGID_SHARE
+        },
+    };
+    let named = (0..pairs.lambda.len()).map(|j| {
+        let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
+        let frequency_hz = pairs.lambda[j].max(0.0).sqrt() / (2.0 * PI);
+        let motion = ShapeMotion::of(bridge, &shape);
+        Mode {
+            frequency_hz,
+            name: names.next(&motion, frequency_hz < RIGID_BELOW_HZ),
+            radiation_ratio: None,
+            vertical_share: motion.vertical.share,
+            torsion_share: motion.torsion.share,
+            horizontal_share: motion.horizontal.share,
+            axial_share: motion.axial.share,
+        }
+    });
+    let mut modes: Vec<Mode> = named.collect();
+    if let Some(waves) = &bridge.waves {
+        // a mode keeps its name while its frequency is taken anew
+        let found = wet::in_waves(waves, &mut pairs);
+        let of = |wet: &wet::WetMode| Mode {
+            frequency_hz: wet.frequency_hz,
+            radiation_ratio: Some(wet.radiation_ratio),
+            ..modes[wet.from].clone()
+        };
+        modes = found.iter().map(of).collect();
+    }
+    modes.truncate(count);
     pairs.lambda.truncate(count);
     let kept = pairs.lambda.len();
     pairs.shapes = pairs.shapes.subcols(0, kept).to_owned();
-    let mut names = ShapeNames::default();
-    let modes = (0..pairs.lambda.len())
-        .map(|j| {
-            let shape: Vec<f64> = pairs.shapes.col(j).iter().copied().collect();
-            let frequency_hz = pairs.lambda[j].max(0.0).sqrt() / (2.0 * PI);
-            let motion = ShapeMotion::of(bridge, &shape);
-            Mode {
-                frequency_hz,
-                name: names.next(&motion, frequency_hz < RIGID_BELOW_HZ),
-                vertical_share: motion.vertical.share,
-                torsion_share: motion.torsion.share,
-                horizontal_share: motion.horizontal.share,
-                axial_share: motion.axial.share,
-            }
-        })
-        .collect();
     Ok((modes, pairs))
 }
 
@@ -157,7 +185,7 @@ pub(super) fn linear_stiffness(bridge: &Bridge) -> Result<SymmetricMatrix, Analy
 pub fn rayleigh(ratio: f64, frequencies_hz: [f64; 2]) -> Rayleigh {
     let [w1, w2] = frequencies_hz.map(|f| 2.0 * PI * f);
     let a = 2.0 * ratio / (w1 + w2);
-    Rayleigh { a, b: a * w1 * w2 }
+    Rayleigh::new(a, a * w1 * w2)
 }
 
 /// How many of the lowest modes are searched for the bending modes, in turn: plates of a fine mesh may have many shapes of
@@ -189,9 +217,10 @@ pub fn bending_frequencies_hz(free: &Bridge, stop: Stop<'_>) -> Result<[f64; 2],
 }
 
 /// Names in order of frequency.
-#[derive(Default)]
 struct ShapeNames {
     count: BTreeMap<&'static str, usize>,
+    /// Share of a profile that must be rigid for the shape to be called rigid.
+    rigid_share: f64,
 }
 
 impl ShapeNames {
@@ -213,11 +242,11 @@ impl ShapeNames {
             return self.number("local");
         }
         if let Some((even, odd)) = rigid {
-            if profile.even > RIGID_SHARE || (unrestored && profile.even >= profile.odd) {
+            if profile.even > self.rigid_share || (unrestored && profile.even >= profile.odd) {
                 return even.to_owned();
             }
             let tilts = family != "torsion" && family != "axial";
-            if tilts && (profile.even + profile.odd > RIGID_SHARE || unrestored) {
+            if tilts && (profile.even + profile.odd > self.rigid_share || unrestored) {
                 return odd.to_owned();
             }
         }

@@ -3,7 +3,7 @@
 //! Knows what moves, what the connectors do and with which force each wheel point stands on the deck. Does not know which
 //! solver found it, nor where nodes are.
 
-use crate::bridge::{Bridge, Load, PinRow, Rider, Track};
+use crate::bridge::{Acting, Bridge, Load, PinRow, Rider, Track};
 use crate::connector::State;
 use crate::fem::SparseRow;
 use crate::response::DeadState;
@@ -19,6 +19,10 @@ pub struct Snapshot {
     pub u: Vec<f64>,
     /// What the stiffness acts on, `u + a u'` with the damping's a.
     pub elastic: Vec<f64>,
+    /// What the water's springs do not feel of it, where damping is the structure's alone.
+    pub beyond_water: Option<Vec<f64>>,
+    /// Forces of water with memory on heave, pitch and roll of each module `[N, N m]`; none of other waters.
+    pub waves: Option<Vec<f64>>,
     /// What the mass acts on, `u'' + b u'`; none of a static case.
     pub inertial: Option<Vec<f64>>,
     /// The connectors in the bridge's order.
@@ -45,7 +49,14 @@ impl Snapshot {
                 .zip(&dead.displacements)
                 .for_each(|(u, at_rest)| *u -= at_rest);
         }
-        let row = |row: &PinRow| row.force_n(&elastic, self.inertial.as_deref(), &down);
+        let acting = Acting {
+            elastic: &elastic,
+            beyond_water: self.beyond_water.as_deref(),
+            inertial: self.inertial.as_deref(),
+            waves: self.waves.as_deref(),
+            down: &down,
+        };
+        let row = |row: &PinRow| row.force_n(&acting);
         let moved = bridge.pins.iter().map(|pin| pin.rows.each_ref().map(row));
         match &self.dead {
             None => moved.collect(),

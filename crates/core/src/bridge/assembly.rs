@@ -11,9 +11,10 @@ use super::pins::{PinPlace, pins};
 use super::prepared::{PreparedModule, Side, X, Y, Z};
 use super::product::ModuleProduct;
 use super::row::{HeldDof, Row};
+use super::waves::BridgeWaves;
 use super::{BridgeDesign, BridgeError, Direction, Ends, Model};
 use crate::fem::{NodeId, SparseRow, SymmetricMatrix};
-use crate::input::SAME_PLACE_M;
+use crate::input::{InvalidInput, SAME_PLACE_M};
 use crate::module::Grid;
 use crate::response::{BankPart, BankSource, DeadState};
 use std::borrow::Borrow;
@@ -26,10 +27,16 @@ pub struct Bridge {
     model: Model,
     pub(crate) k: SymmetricMatrix,
     pub(crate) m: SymmetricMatrix,
+    /// What the water's springs have of `k`.
+    pub(crate) k_water: SymmetricMatrix,
     /// Products with `k`, module by module.
     pub(crate) times_k: ModuleProduct,
     /// Products with `m`.
     pub(crate) times_m: ModuleProduct,
+    /// Products with `k_water`.
+    pub(crate) times_k_water: ModuleProduct,
+    /// Water with memory, where the bridge has it; its mass is part of `m`.
+    pub(crate) waves: Option<BridgeWaves>,
     /// Connectors, joint after joint, each joint's in the design's order.
     pub(crate) links: Vec<LinkRow>,
     /// How many of these are connectors of joints; springs of banks stand behind them.
@@ -97,6 +104,10 @@ impl Bridge {
         prepared: &[M],
         ends: Ends,
     ) -> Result<Self, BridgeError> {
+        if design.water.as_ref().is_some_and(|water| water.radiation.is_none()) {
+            let allowed = "a water file that is there: what moves in water with memory needs it";
+            return Err(InvalidInput::new("water.file", "a water that was not read", allowed).into());
+        }
         let modules = Modules::new(design, prepared)?;
         let row = Row::number(design, &modules, ends);
         let places = Places {
@@ -130,6 +141,13 @@ impl Bridge {
                 m.extend(row.0.iter().map(|&(j, b)| (i, j, mass_kg * a * b)));
             }
         }
+        let radiation = design.water.as_ref().and_then(|water| water.radiation.as_ref());
+        let waves = radiation.map(|radiation| BridgeWaves::new(radiation, &modules, &row));
+        let mut times_m = ModuleProduct::new(&modules, &row, |module| &module.m).with(masses);
+        if let Some(waves) = &waves {
+            m.extend(waves.entries(waves.radiation.infinite()));
+            times_m = times_m.coupled(&waves.motions, waves.radiation.infinite());
+        }
         let in_k = springs
             .iter()
             .map(|spring| (spring.stiffness_n_m, spring.row.clone()))
@@ -140,7 +158,9 @@ impl Bridge {
             k: SymmetricMatrix::from_entries(row.dofs, &k)?,
             m: SymmetricMatrix::from_entries(row.dofs, &m)?,
             times_k: ModuleProduct::new(&modules, &row, |module| &module.k).with(in_k),
-            times_m: ModuleProduct::new(&modules, &row, |module| &module.m).with(masses),
+            times_m,
+            k_water: SymmetricMatrix::from_entries(row.dofs, &row.entries(|module| &module.k_water))?,
+            times_k_water: ModuleProduct::new(&modules, &row, |module| &module.k_water),
             links,
             joint_connectors,
             springs,
@@ -160,11 +180,12 @@ impl Bridge {
             dead_resultants: dead.resultants,
             risen_water: dead.risen_water,
             dry_water: dead.dry_water,
-            pins: pins(design, &modules, &row, &places.deck_z(), &dead),
+            pins: pins(design, &modules, &row, &places.deck_z(), (&dead, waves.as_ref())),
+            waves,
             horizontal_rigid: row.horizontal_rigid(),
             deck_z: places.deck_z(),
             lines_y: modules.lines_y().to_vec(),
-            modules: places.modules(),
+            modules: ModulePlace::all(design, &modules),
         })
     }
 
@@ -559,27 +580,6 @@ impl Places<'_> {
             let node = |ix: usize, iy: usize| self.row.direct(j, grid.deck(ix, iy), Z);
             let line = |ix: usize| (0..grid.y.len()).map(|iy| node(ix, iy)).collect();
             (0..grid.x.len()).map(line).collect()
-        };
-        (0..self.modules.len()).map(of_module).collect()
-    }
-
-    /// Lists what stands at each place of the row.
-    fn modules(&self) -> Vec<ModulePlace> {
-        let of_module = |j: usize| {
-            let (module, design) = (self.modules.module(j), self.modules.design(j));
-            let length_m = design.module.length_m;
-            ModulePlace {
-                left_m: self.modules.left_m(j),
-                length_m,
-                depths_m: design.module.outline().depths_m(),
-                lines_x: module.grid.x.clone(),
-                structural_mass_kg_m: module.structural_mass_kg() / length_m,
-                added_mass_kg_m: design.m_a(),
-                wet_m: design.is_dry_in_part().then(|| design.wet_m()),
-                roll_inertia_kg_m: module.roll_inertia_kg_m2() / length_m,
-                draft_m: design.draft_m,
-                freeboard_m: design.freeboard_m,
-            }
         };
         (0..self.modules.len()).map(of_module).collect()
     }

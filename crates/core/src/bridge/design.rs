@@ -12,6 +12,7 @@ use super::buoyancy::{DraftBuoyancy, Todd};
 use super::joints::{Connectors, Hinges, JointGaps, Joints, places};
 use super::kinds::{ModuleKind, ModuleRow, key_of, wet_m};
 use super::supports::{Direction, Supports};
+use super::water_spec::WaterSpec;
 use super::{Model, Provenance};
 use crate::connector::{Connection, OwnLaws};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M, positive, within};
@@ -51,6 +52,8 @@ pub struct BridgeDesign {
     pub wet_to_m: Option<f64>,
     /// How both waters are shared among the nodes of the wetted bottom.
     pub water_distribution: WaterDistribution,
+    /// Water with memory, in place of the added mass.
+    pub water: Option<WaterSpec>,
     /// Hinges at the bottom of every joint.
     pub hinges: Hinges,
     /// Connectors at the deck of every joint.
@@ -585,12 +588,12 @@ impl BridgeDesign {
         }
     }
 
-    /// m_a per metre of the wet part `[kg/m]`, from the value or Todd's formula; 0 of a dry module.
+    /// m_a per metre of the wet part `[kg/m]`, from the value or Todd's formula; 0 of a dry module, and in water with memory.
     pub fn m_a(&self) -> f64 {
         match (self.added_mass_kg_m, &self.todd) {
             (Some(m_a), _) => m_a,
             (None, Some(todd)) => todd.added_mass_kg_m(self.module.breadth_m),
-            (None, None) if self.is_dry() => 0.0,
+            (None, None) if self.is_dry() || self.water.is_some() => 0.0,
             (None, None) => f64::NAN,
         }
     }

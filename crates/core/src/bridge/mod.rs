@@ -28,6 +28,8 @@ mod row;
 mod stresses;
 mod supports;
 mod track;
+mod water_spec;
+mod waves;
 
 pub use assembly::Bridge;
 pub use ballast::{BallastSpec, DeadSpec};
@@ -43,7 +45,7 @@ pub use meshed::{BeamCell, Link, MeshedBridge, ShellCell};
 pub(crate) use module_place::ModulePlace;
 #[cfg(test)]
 pub(crate) use pins::ModuleForces;
-pub(crate) use pins::{PinPlace, PinRow, joint_parts};
+pub(crate) use pins::{Acting, PinPlace, PinRow, joint_parts};
 pub(crate) use placement::{Heading, VehiclePlacement};
 pub use prepared::PreparedModule;
 #[cfg(test)]
@@ -54,6 +56,8 @@ pub use stresses::{BridgeStresses, StressRecovery};
 pub use supports::{Direction, Supports};
 use thiserror::Error;
 pub use track::Track;
+pub use water_spec::WaterSpec;
+pub(crate) use waves::BridgeWaves;
 
 /// Which matrices a module contributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -7,7 +7,9 @@ use super::dead::DeadLoads;
 use super::modules::Modules;
 use super::prepared::{Side, X, Y, Z};
 use super::row::Row;
+use super::waves::BridgeWaves;
 use crate::fem::{SparseRow, SymmetricMatrix};
+use crate::radiation::FREEDOMS_PER_MODULE;
 use crate::response::JointParts;
 
 /// A hinge place of a joint, by the module left of it.
@@ -24,20 +26,37 @@ pub(crate) struct PinPlace {
 /// The rows of one direction of a pin.
 #[derive(Debug, Clone)]
 pub(crate) struct PinRow {
-    /// Stiffness and mass of the module in the tied freedom, by the bridge's dofs.
+    /// Stiffness and mass of the module in the tied freedom, by the bridge's dofs, and what of the stiffness the water has.
     pub stiffness: SparseRow,
     pub mass: SparseRow,
+    pub water: SparseRow,
+    /// Share of the forces of water with memory that act on the module there, by their freedoms.
+    pub waves: SparseRow,
     /// Columns of the track that lie on the tied freedom and belong to this module, where the deck ends in the hinges.
     pub columns: Vec<usize>,
     /// Dead load on the module there, in the direction `[N]`: what lies on it, and of water that has risen by 1 m.
     pub dead_n: [f64; 2],
 }
 
+/// What acts on a bridge where a balance holds.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Acting<'a> {
+    /// `u + a u'`, on which the stiffness acts.
+    pub elastic: &'a [f64],
+    /// `(a - a_w) u'`, which the water's springs do not feel of it; none where they feel all.
+    pub beyond_water: Option<&'a [f64]>,
+    /// `u'' + b u'`, on which the mass acts; none at rest.
+    pub inertial: Option<&'a [f64]>,
+    /// Forces of water with memory `[N, N m]`; none where there is none.
+    pub waves: Option<&'a [f64]>,
+    /// What presses on each column of the track `[N]`.
+    pub down: &'a [SparseRow],
+}
+
 impl PinRow {
-    /// Force of the pin on the module `[N]`: what moves it, less what acts on it from elsewhere. `elastic` is `u + a u'`,
-    /// `inertial` is `u'' + b u'` or nothing at rest, `down` what presses on each column of the track `[N]`.
+    /// Force of the pin on the module `[N]`: what moves it, less what acts on it from elsewhere.
     /// Equation (J6).
-    pub(crate) fn force_n(&self, elastic: &[f64], inertial: Option<&[f64]>, down: &[SparseRow]) -> f64 {
+    pub(crate) fn force_n(&self, acting: &Acting<'_>) -> f64 {
         let pressed = |row: &SparseRow| -> f64 {
             let here = row.0.iter().filter(|(column, _)| self.columns.contains(column));
             here.map(|(_, force)| force).sum()
@@ -45,9 +64,11 @@ impl PinRow {
         let pressed: f64 = if self.columns.is_empty() {
             0.0
         } else {
-            down.iter().map(pressed).sum()
+            acting.down.iter().map(pressed).sum()
         };
-        self.stiffness.dot(elastic) + inertial.map_or(0.0, |inertial| self.mass.dot(inertial)) + pressed
+        let on = |row: &SparseRow, what: Option<&[f64]>| what.map_or(0.0, |what| row.dot(what));
+        let dynamic = on(&self.mass, acting.inertial) - on(&self.water, acting.beyond_water);
+        self.stiffness.dot(acting.elastic) + (dynamic - on(&self.waves, acting.waves)) + pressed
     }
 }
 
@@ -58,7 +79,7 @@ pub(super) fn pins(
     modules: &Modules<'_>,
     row: &Row<'_>,
     deck_z: &[Vec<Vec<usize>>],
-    dead: &DeadLoads,
+    (dead, waves): (&DeadLoads, Option<&BridgeWaves>),
 ) -> Vec<PinPlace> {
     let (lines, stations) = (modules.lines_y().len(), deck_z.iter().map(Vec::len).sum::<usize>());
     let columns = |j: usize, dof: usize| -> Vec<usize> {
@@ -72,9 +93,17 @@ pub(super) fn pins(
         let pin = |direction: usize| {
             let dof = module.end_dof(Side::Right, y_m, direction)?;
             let of = |matrix: &SymmetricMatrix| row.global(j, &SparseRow(matrix.column(dof).collect()));
+            let own = module.motions.iter().enumerate().flat_map(|(freedom, motion)| {
+                let here = motion.0.iter().filter(|(of, _)| *of == dof);
+                here.map(move |(_, g)| (FREEDOMS_PER_MODULE * j + freedom, *g))
+            });
+            let on_module = SparseRow(own.filter(|(_, g)| waves.is_some() && *g != 0.0).collect());
+            let in_waves = waves.map_or_else(SparseRow::default, |waves| waves.mass_row(&on_module));
             Some(PinRow {
                 stiffness: of(&module.k),
-                mass: SparseRow::combine(&[(1.0, &of(&module.m)), (1.0, &dead.mass_row(j, dof))]),
+                mass: SparseRow::combine(&[(1.0, &of(&module.m)), (1.0, &dead.mass_row(j, dof)), (1.0, &in_waves)]),
+                water: of(&module.k_water),
+                waves: on_module,
                 dead_n: dead.at(j, dof),
                 columns: match (direction, row.map[j][dof]) {
                     (Z, Some(tied)) => columns(j, tied),

@@ -8,8 +8,9 @@ use super::{BridgeDesign, BridgeError, Model};
 use crate::fem::{FemError, MassKind, Mesh, NodeId, SparseRow, SymmetricMatrix, assemble};
 use crate::module::{Grid, ModuleMesh};
 use crate::superelement::SuperElement;
-use crate::water::spread;
+use crate::water::{WaterDistribution, spread};
 use faer::{Mat, MatRef};
+use nalgebra::Matrix3;
 use std::collections::BTreeSet;
 
 /// Translation along the bridge, across it, and up, as directions of a node's dofs.
@@ -34,8 +35,12 @@ pub struct PreparedModule {
     pub(super) mesh: Mesh,
     /// Structure and water.
     pub(super) k: SymmetricMatrix,
-    /// Structure and water.
+    /// Structure and water, but for water with memory.
     pub(super) m: SymmetricMatrix,
+    /// What the water's springs have of `k`.
+    pub(super) k_water: SymmetricMatrix,
+    /// Heave, pitch and roll of its wet bottom about the middle of its length, by the dofs.
+    pub(super) motions: [SparseRow; 3],
     /// For each dof of the full module its place among the dofs of `k`, where it is one.
     direct: Vec<Option<usize>>,
     condensed: Option<SuperElement>,
@@ -109,6 +114,8 @@ impl PreparedModule {
             Model::SuperElement => Reduced::to_masters(design, &grid, &k, &m)?,
         };
         let full_dofs = mesh.dofs();
+        let k_water = reduced.matrix(&water.k)?;
+        let motions = wet_motions(design, &grid, &mesh).map(|motion| reduced.force(motion));
         let totals = water.resultants(&mesh);
         let water = totals.clone().map(|total| reduced.force(total));
         let afloat = reduced.afloat(&heave, &water[0]);
@@ -136,6 +143,8 @@ impl PreparedModule {
             mesh,
             k,
             m,
+            k_water,
+            motions,
             direct,
             condensed,
             water,
@@ -334,6 +343,14 @@ impl Reduced {
         })
     }
 
+    /// Takes a matrix of the full module over to the dofs that are kept, `T^T A T`.
+    fn matrix(&self, a: &SymmetricMatrix) -> Result<SymmetricMatrix, FemError> {
+        match &self.condensed {
+            None => Ok(a.clone()),
+            Some(condensed) => condensed.congruent(a),
+        }
+    }
+
     /// Takes a force by the dofs of the full module over to those that are kept.
     fn force(&self, total: Vec<f64>) -> SparseRow {
         match &self.condensed {
@@ -374,6 +391,33 @@ impl Reduced {
         }
         own
     }
+}
+
+/// Rows that read heave, pitch and roll off the z of a module's wet bottom, `(Phi^T S Phi)^-1 Phi^T S`: the rigid motion nearest to
+/// it, by the area's consistent matrix S. Phi is 1, `x_c - x` and y, about the middle of the length x_c. A module that is dry has none.
+/// Equation (W4).
+fn wet_motions(design: &BridgeDesign, grid: &Grid, mesh: &Mesh) -> [Vec<f64>; 3] {
+    let middle_m = 0.5 * design.module.length_m;
+    let shape = |node: NodeId| [1.0, middle_m - mesh.nodes[node.0].x, mesh.nodes[node.0].y];
+    let area = spread(grid, design.wet_m(), 1.0, WaterDistribution::Consistent);
+    let mut phi_s = [(); 3].map(|()| vec![0.0; mesh.dofs()]);
+    let mut among = Matrix3::<f64>::zeros();
+    for &(a, b, s) in &area {
+        let (of_a, of_b) = (shape(a), shape(b));
+        for i in 0..3 {
+            phi_s[i][b.dof(Z)] += of_a[i] * s;
+            for j in 0..3 {
+                among[(i, j)] += of_a[i] * s * of_b[j];
+            }
+        }
+    }
+    let Some(inverse) = among.try_inverse() else {
+        return [(); 3].map(|()| vec![0.0; mesh.dofs()]);
+    };
+    [0, 1, 2].map(|i| {
+        let of_dof = |dof: usize| (0..3).map(|j| inverse[(i, j)] * phi_s[j][dof]).sum();
+        (0..mesh.dofs()).map(of_dof).collect()
+    })
 }
 
 /// Gives a unit heave of all nodes.

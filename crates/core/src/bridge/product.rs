@@ -8,6 +8,7 @@ use super::prepared::PreparedModule;
 use super::row::Row;
 use crate::fem::{SparseRow, SymmetricMatrix};
 use faer::{Accum, Mat, Par, linalg::matmul::matmul};
+use nalgebra::{DMatrix, DVector};
 
 /// `y = sum over modules of P_j^T A_j P_j x`.
 #[derive(Debug)]
@@ -17,6 +18,8 @@ pub(crate) struct ModuleProduct {
     groups: Vec<Group>,
     /// Springs or masses beside the modules: stiffness or mass, and row.
     beside: Vec<(f64, SparseRow)>,
+    /// What couples all modules: rows G and a matrix X of `G^T X G`.
+    coupled: Option<(Vec<SparseRow>, DMatrix<f64>)>,
 }
 
 /// Modules of one matrix.
@@ -68,12 +71,21 @@ impl ModuleProduct {
             dofs,
             groups: modules.variants.iter().enumerate().map(group).collect(),
             beside: Vec::new(),
+            coupled: None,
         }
     }
 
     /// With springs or masses beside the modules: stiffness or mass, and row of each.
     pub(super) fn with(self, beside: Vec<(f64, SparseRow)>) -> Self {
         Self { beside, ..self }
+    }
+
+    /// With `G^T X G` of rows G beside the modules.
+    pub(super) fn coupled(self, rows: &[SparseRow], x: &DMatrix<f64>) -> Self {
+        Self {
+            coupled: Some((rows.to_vec(), x.clone())),
+            ..self
+        }
     }
 
     /// `y = A x` of the bridge.
@@ -84,6 +96,12 @@ impl ModuleProduct {
         }
         for (factor, row) in &self.beside {
             row.add_to(factor * row.dot(x), y);
+        }
+        if let Some((rows, matrix)) = &self.coupled {
+            let moved = DVector::from_iterator(rows.len(), rows.iter().map(|row| row.dot(x)));
+            for (row, force) in rows.iter().zip((matrix * moved).iter()) {
+                row.add_to(*force, y);
+            }
         }
     }
 }

@@ -4,11 +4,12 @@
 
 use super::columns::{ColumnSolver, SOLVED_AT_ONCE};
 use super::cutoff::{Cutoff, CutoffJudge};
-use super::persist::{NumberReader, OperatorParts};
-use super::pin_rows::{PinRows, pin_places, pin_rows};
+use super::pin_rows::{PinRows, pin_rows};
 use super::residual_rows::{ResidualRows, dot, residual_of_deck};
+use super::waves::{OperatorWaves, WaveStates};
 use crate::bridge::{Bridge, ModulePlace, Track};
 use crate::fem::{EigenPairs, Factor, FemError, ModeSearch, ONE_SEARCH, SparseRow, SymmetricMatrix};
+use crate::radiation::RealisationError;
 use crate::stop::Stop;
 use faer::Mat;
 use nalgebra::DMatrix;
@@ -30,6 +31,9 @@ pub enum OperatorError {
     /// The bridge's matrices could not be factorised.
     #[error(transparent)]
     Factor(#[from] FemError),
+    /// The water's memory has no states that could be used.
+    #[error("water: {0}")]
+    Waves(#[from] RealisationError),
 }
 
 /// What an operator follows beside positions, joints and corners.
@@ -112,8 +116,9 @@ pub struct BridgeOperator {
     pub(super) sizes: Sizes,
     pub(super) rows: Observed,
     pub(super) cutoff: Cutoff,
-    /// omega^2 of each mode.
+    /// omega^2 of each mode, and what the water's springs have of it.
     pub(super) omega2: Vec<f64>,
+    pub(super) omega2_water: Vec<f64>,
     /// `B Phi`, connectors x modes.
     pub(super) b: DMatrix<f64>,
     /// `R_BB`, symmetric to the last bit.
@@ -132,6 +137,8 @@ pub struct BridgeOperator {
     pub(super) of_modules: Vec<OperatedModule>,
     /// The pins, where they are followed.
     pub(super) pins: PinRows,
+    /// Water with memory, where the bridge has it.
+    pub(super) waves: Option<OperatorWaves>,
     /// For each track column its influence: `phi`, `R_BL`, `R_VL`, residual at the edges inside modules, at the pins.
     pub(super) deck: Vec<f64>,
     /// Residual flexibility of the deck's nodes among each other, for each track column every line at the stations not
@@ -180,10 +187,10 @@ impl BridgeOperator {
                 dot(&judged[i], &pairs.shapes, k)
             });
             match judge.fewest(pairs, SHIFT, tolerance) {
-                Ok(cutoff) => return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), followed, stop)?),
+                Ok(cutoff) => return Self::of(bridge, track, &solver, (pairs, cutoff), followed, stop),
                 // every mode there is: nothing is left out but rounding
                 Err(cutoff) if pairs.lambda.len() >= bridge.dofs() => {
-                    return Ok(Self::of(bridge, track, &solver, (pairs, cutoff), followed, stop)?);
+                    return Self::of(bridge, track, &solver, (pairs, cutoff), followed, stop);
                 }
                 Err(_) => search.extend()?,
             }
@@ -198,7 +205,7 @@ impl BridgeOperator {
         (pairs, cutoff): (&EigenPairs, Cutoff),
         followed: &Followed,
         stop: Stop<'_>,
-    ) -> Result<Self, FemError> {
+    ) -> Result<Self, OperatorError> {
         let (m, design, shapes) = (cutoff.modes, bridge.design(), &pairs.shapes);
         let lambda = &pairs.lambda[..m];
         let connectors: Vec<SparseRow> = bridge.links.iter().map(|c| c.row.clone()).collect();
@@ -232,6 +239,10 @@ impl BridgeOperator {
             deck = beside(&deck, width, &of_deck, sizes.pins);
             pins = rows;
         }
+        let waves = match &bridge.waves {
+            Some(waves) => Some(OperatorWaves::new(bridge, waves, (shapes, m), followed.pins)?),
+            None => None,
+        };
         let near = track.most_stations();
         let r_bb = all.among(0, nc, 0, nc);
         Ok(Self {
@@ -239,6 +250,8 @@ impl BridgeOperator {
             rows,
             cutoff,
             omega2: lambda.to_vec(),
+            omega2_water: water_of_modes(bridge, shapes, m),
+            waves,
             r_bb: DMatrix::from_fn(nc, nc, |i, j| r_bb[(i.min(j), i.max(j))]),
             r_vb: all.among(nc, nv, 0, nc),
             r_inside_b: all.among(nc + nv, ni, 0, nc),
@@ -261,6 +274,11 @@ impl BridgeOperator {
         self.cutoff
     }
 
+    /// The states of water with memory; none of other waters.
+    pub fn wave_states(&self) -> Option<WaveStates> {
+        self.waves.as_ref().map(OperatorWaves::told)
+    }
+
     /// Number of connectors.
     pub(crate) fn connectors(&self) -> usize {
         self.sizes.connectors
@@ -281,160 +299,17 @@ impl BridgeOperator {
         let width = self.sizes.influence();
         &self.deck[column * width..][..width]
     }
-
-    /// Its numbers, for keeping.
-    pub fn parts(&self) -> OperatorParts {
-        let (s, r) = (&self.sizes, &self.rows);
-        let counts = [
-            s.modes,
-            s.connectors,
-            s.observed,
-            s.inside,
-            s.modules,
-            r.positions,
-            r.corners,
-            r.bottom_corners,
-            self.near,
-            s.pins,
-            r.places,
-            r.springs,
-        ];
-        let cutoff = [
-            self.cutoff.frequency_hz,
-            self.cutoff.tolerance,
-            self.cutoff.error,
-            self.breadth_m,
-        ];
-        let lists: [&[f64]; 13] = [
-            &cutoff,
-            &self.omega2,
-            self.b.as_slice(),
-            self.r_bb.as_slice(),
-            self.v.as_slice(),
-            self.r_vb.as_slice(),
-            self.inside.as_slice(),
-            self.r_inside_b.as_slice(),
-            &self.deck,
-            &self.r_deck,
-            self.pins.stiffness.as_slice(),
-            self.pins.mass.as_slice(),
-            self.pins.connectors.as_slice(),
-        ];
-        let bounds = self.inside_bounds.iter().flatten().copied();
-        OperatorParts {
-            counts: counts.map(|n| n as u64).to_vec(),
-            numbers: lists.concat().into_iter().chain(bounds).collect(),
-        }
-    }
-
-    /// The operator of `bridge` from its numbers; none where they do not fit the bridge.
-    pub fn from_parts(bridge: &Bridge, parts: &OperatorParts) -> Option<Self> {
-        let (mut sizes, rows, near) = counts(parts)?;
-        sizes.joint_connectors = bridge.joint_connectors;
-        let track = Track::new(bridge);
-        let of_modules = operated_modules(bridge);
-        let inside = of_modules.last().map_or(0, |module| module.inside.end);
-        if !fits(bridge, &sizes, &rows) || near != track.most_stations() || sizes.inside != inside {
-            return None;
-        }
-        let Sizes {
-            modes,
-            connectors,
-            observed,
-            ..
-        } = sizes;
-        let nodes = track.lines() * track.stations();
-        let mut r = NumberReader::new(&parts.numbers);
-        let &[frequency_hz, tolerance, error, breadth_m] = &r.list(4)?[..] else {
-            return None;
-        };
-        let operator = Self {
-            sizes,
-            rows,
-            cutoff: Cutoff {
-                modes,
-                frequency_hz,
-                tolerance,
-                error,
-            },
-            omega2: r.list(modes)?,
-            b: r.matrix(connectors, modes)?,
-            r_bb: r.matrix(connectors, connectors)?,
-            v: r.matrix(observed, modes)?,
-            r_vb: r.matrix(observed, connectors)?,
-            inside: r.matrix(inside, modes)?,
-            r_inside_b: r.matrix(inside, connectors)?,
-            of_modules,
-            deck: r.list(nodes * sizes.influence())?,
-            r_deck: r.list(nodes * track.lines() * (2 * near + 1))?,
-            pins: PinRows {
-                places: if sizes.pins == 0 {
-                    Vec::new()
-                } else {
-                    pin_places(bridge)
-                },
-                stiffness: r.matrix(sizes.pins, modes)?,
-                mass: r.matrix(sizes.pins, modes)?,
-                connectors: r.matrix(sizes.pins, connectors)?,
-            },
-            inside_bounds: r.list(3 * sizes.modules)?.as_chunks().0.to_vec(),
-            near,
-            track,
-            breadth_m,
-        };
-        r.is_empty().then_some(operator)
-    }
 }
 
-/// The counts of an operator's numbers, and how many stations are near.
-fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize)> {
-    let counts = parts.counts.iter().map(|&n| usize::try_from(n).ok());
-    let counts: Vec<usize> = counts.collect::<Option<_>>()?;
-    let &[
-        modes,
-        connectors,
-        observed,
-        inside,
-        modules,
-        positions,
-        corners,
-        bottom_corners,
-        near,
-        pins,
-        places,
-        springs,
-    ] = &counts[..]
-    else {
-        return None;
+/// What the water's springs have of omega^2 of the first `modes`, `phi^T K_w phi`.
+fn water_of_modes(bridge: &Bridge, shapes: &Mat<f64>, modes: usize) -> Vec<f64> {
+    let mut pressed = vec![0.0; bridge.dofs()];
+    let of_mode = |k: usize| {
+        let shape: Vec<f64> = shapes.col(k).iter().copied().collect();
+        bridge.times_k_water.multiply(&shape, &mut pressed);
+        shape.iter().zip(&pressed).map(|(u, f)| u * f).sum()
     };
-    let sizes = Sizes {
-        modes,
-        connectors,
-        joint_connectors: connectors,
-        observed,
-        inside,
-        modules,
-        pins,
-    };
-    let rows = Observed {
-        positions,
-        corners,
-        bottom_corners,
-        places,
-        springs,
-    };
-    Some((sizes, rows, near))
-}
-
-/// Whether counts are those of a bridge.
-fn fits(bridge: &Bridge, sizes: &Sizes, rows: &Observed) -> bool {
-    sizes.modules == bridge.design().modules
-        && sizes.connectors == bridge.links.len()
-        && rows.positions == bridge.positions.len()
-        && rows.corners == bridge.deck_corners.len()
-        && sizes.observed == rows.positions + rows.corners + rows.bottom_corners + rows.places + rows.springs
-        && sizes.modes <= bridge.dofs()
-        && (sizes.pins == 0 || sizes.pins == 3 * bridge.pins.len())
+    (0..modes).map(of_mode).collect()
 }
 
 /// Two tables side by side, of so many columns each.
@@ -532,7 +407,7 @@ fn judged_rows(bridge: &Bridge, track: &Track) -> Vec<SparseRow> {
 }
 
 /// Where the rows of each module stand, and what it has beyond other modules.
-fn operated_modules(bridge: &Bridge) -> Vec<OperatedModule> {
+pub(super) fn operated_modules(bridge: &Bridge) -> Vec<OperatedModule> {
     let (draft_m, freeboard_m) = (bridge.least_draft_m(), bridge.least_freeboard_m());
     let beyond =
         |own: Option<f64>, least: Option<f64>| own.zip(least).map_or(f64::INFINITY, |(own, least)| own - least);

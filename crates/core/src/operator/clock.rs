@@ -9,6 +9,8 @@ pub enum StepPart {
     Loads,
     /// Modes: prediction and correction, products with connectors included.
     Modes,
+    /// Water with memory: its states and its forces on the modes.
+    Waves,
     /// What the modes leave out: prediction and correction.
     Residual,
     /// Reading a lane's numbers from between the others', and writing them back.
@@ -25,9 +27,10 @@ pub enum StepPart {
 
 impl StepPart {
     /// All parts.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Loads,
         Self::Modes,
+        Self::Waves,
         Self::Residual,
         Self::GatherAndScatter,
         Self::RidingMasses,

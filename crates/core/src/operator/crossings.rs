@@ -10,6 +10,7 @@ use super::energy::{Energy, Terms};
 use super::envelope::{Envelope, LanePeaks, MOST_LANES};
 use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
+use super::lane_waves::LaneWaves;
 use super::loads::{Loads, StationForce, apply_forces, sum_forces};
 use super::local_residual::LocalResidual;
 use super::modes::Modes;
@@ -38,6 +39,8 @@ pub(crate) struct Crossings {
     pub(super) energy: Energy,
     pub(super) envelope: Envelope,
     pub(super) pins: Pins,
+    /// Water with memory, where the bridge has it.
+    pub(super) waves: Option<LaneWaves>,
     pub(super) lanes: Vec<Lane>,
 }
 
@@ -74,6 +77,10 @@ impl Crossings {
             energy: Energy::new(width),
             envelope: Envelope::new(operator, width),
             pins: Pins::new(sizes, &operator.pins.places, width),
+            waves: operator
+                .waves
+                .as_ref()
+                .map(|waves| LaneWaves::new(waves, sizes.modes, width)),
             lanes: (0..width).map(|_| lane()).collect(),
         }
     }
@@ -88,7 +95,8 @@ impl Crossings {
         let motion = self.modes.carried().into_iter().chain(self.residual.carried());
         let forces = self.connectors.carried().into_iter().chain(self.loads.carried());
         let told = self.energy.carried().into_iter().chain(self.envelope.carried());
-        motion.chain(forces).chain(told).chain(self.pins.carried())
+        let waves = self.waves.iter_mut().flat_map(LaneWaves::carried);
+        motion.chain(forces).chain(told).chain(self.pins.carried()).chain(waves)
     }
 
     /// Begins a crossing at rest, the front of the vehicle where it is one step before the first one.
@@ -277,7 +285,8 @@ impl Crossings {
             }
         }
         let end_s = &end_s[..self.lanes.len()];
-        self.pins.update(o, constants, &self.modes, &self.connectors, end_s);
+        let motion = (&self.modes, self.waves.as_ref(), &self.connectors);
+        self.pins.update(o, constants, motion, end_s);
     }
 
     /// Whether anything rides along in any lane.
@@ -371,10 +380,16 @@ impl Crossings {
             self.pins.keep(&self.modes);
         }
         self.connectors.apply(o, constants, &mut self.modes.contact_now);
-        self.modes.correct(o, operator, constants, &self.loads, &mut terms);
+        let waves = self.waves.as_ref().map(|waves| &waves.modal);
+        self.modes
+            .correct(o, operator, constants, (&self.loads, waves), &mut terms);
         clock.lap(StepPart::Modes, || {
             self.modes.flop_of_correction() + self.connectors.flop_of_application(self.modes.count())
         });
+        if let Some(waves) = &mut self.waves {
+            waves.follow(o, constants, self.modes.motion()[1]); // (W7)
+            clock.lap(StepPart::Waves, || waves.flop(constants));
+        }
         self.residual
             .correct(o, constants, &self.loads, &self.connectors, &mut terms);
         self.connectors.correct(o, constants, &mut terms);

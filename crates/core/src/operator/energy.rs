@@ -18,6 +18,8 @@ pub(super) struct Terms<S: Simd> {
     stiffness: S::f64s,
     damping_m: S::f64s,
     damping_k: S::f64s,
+    undamped: S::f64s,
+    radiated: S::f64s,
     work: S::f64s,
     springs: S::f64s,
     dashpots: S::f64s,
@@ -39,6 +41,8 @@ impl<S: Simd> Terms<S> {
             stiffness: zero,
             damping_m: zero,
             damping_k: zero,
+            undamped: zero,
+            radiated: zero,
             work: zero,
             springs: zero,
             dashpots: zero,
@@ -68,6 +72,18 @@ impl<S: Simd> Terms<S> {
         self.damping_m = o.fma(d, v_alpha, self.damping_m);
         self.damping_k = o.fma(w2_d, v_alpha, self.damping_k);
         self.work = o.less(self.work, d, down);
+    }
+
+    /// A mode that changes by `d` under the force `waves` of water with memory at alpha, upward.
+    #[inline(always)]
+    pub(super) fn take_waves(&mut self, o: Ops<S>, d: S::f64s, waves: S::f64s) {
+        self.radiated = o.less(self.radiated, d, waves);
+    }
+
+    /// What damping in proportion to all of the stiffness would take more of a mode that changes by `d`.
+    #[inline(always)]
+    pub(super) fn take_undamped(&mut self, o: Ops<S>, undamped: S::f64s, d: S::f64s, v_alpha: S::f64s) {
+        self.undamped = o.fma(o.mul(undamped, d), v_alpha, self.undamped);
     }
 
     /// All modes were taken.
@@ -129,6 +145,8 @@ pub(super) struct Energy {
     any_ride: bool,
     /// Rayleigh damping and dashpots, numerical dissipation, work; largest work, largest gap of the balance, largest numerical dissipation.
     sums: LaneArray,
+    /// What waves have taken since the crossing began, and the least of it.
+    radiated: LaneArray,
     /// `sum of omega^2 q^2`, `s^T R s`.
     pub(super) modal_strain: LaneArray,
     pub(super) residual_strain: LaneArray,
@@ -145,19 +163,21 @@ impl Energy {
             ridden: zeros(3),
             any_ride: false,
             sums: zeros(6),
+            radiated: zeros(2),
             modal_strain: zeros(1),
             residual_strain: zeros(1),
         }
     }
 
     /// What a lane carries from step to step.
-    pub(super) fn carried(&mut self) -> [&mut LaneArray; 5] {
+    pub(super) fn carried(&mut self) -> [&mut LaneArray; 6] {
         [
             &mut self.kinetic,
             &mut self.strain,
             &mut self.springs,
             &mut self.vehicles,
             &mut self.sums,
+            &mut self.radiated,
         ]
     }
 
@@ -204,6 +224,10 @@ impl Energy {
             terms.damping_k,
             o.mul(o.splat(constants.rayleigh.b), terms.damping_m),
         );
+        let rayleigh = match constants.undamped {
+            None => rayleigh,
+            Some(_) => o.sub(rayleigh, terms.undamped),
+        };
         self.kinetic.vectors_mut::<S>()[0] = kinetic;
         self.strain.vectors_mut::<S>()[0] = strain;
         self.springs.vectors_mut::<S>()[0] = springs;
@@ -221,6 +245,12 @@ impl Energy {
             }
             stored = o.add(stored, self.vehicles.vectors::<S>()[0]);
         }
+        if constants.waves.is_some() {
+            let radiated = self.radiated.vectors_mut::<S>();
+            radiated[0] = o.add(radiated[0], terms.radiated);
+            radiated[1] = o.neg(o.max(o.neg(radiated[1]), o.neg(radiated[0])));
+            stored = o.add(stored, radiated[0]);
+        }
         let gap = o.sub(o.add(stored, o.add(sums[0], sums[1])), sums[2]);
         sums[3] = o.max(sums[3], o.abs(sums[2]));
         sums[4] = o.max(sums[4], o.abs(gap));
@@ -234,6 +264,8 @@ impl Energy {
         EnergySummary {
             energy_residual: per_work(self.sums.at(4, lane)),
             numerical_dissipation: per_work(self.sums.at(5, lane)),
+            radiated_j: self.radiated.at(0, lane),
+            least_radiated_j: self.radiated.at(1, lane),
         }
     }
 }

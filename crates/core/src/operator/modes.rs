@@ -69,7 +69,13 @@ impl Modes {
 
     /// The step without new connector and inertia forces (O6): d, and where masses ride along the motion that it leads to.
     #[inline(always)]
-    pub(super) fn predict<S: Simd>(&mut self, o: Ops<S>, constants: &StepConstants, loads: &Loads, masses: bool) {
+    pub(super) fn predict<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        constants: &StepConstants,
+        (loads, waves): (&Loads, Option<&LaneArray>),
+        masses: bool,
+    ) {
         let s = &constants.scheme;
         let m = constants.c.len();
         let f = Mean::<S>::of(o, s.alpha_f);
@@ -96,6 +102,12 @@ impl Modes {
             let motion = o.fma(o.splat(on_q[k]), q[k], o.fma(o.splat(on_v[k]), v[k], from_a));
             d[k] = o.less(motion, o.splat(c[k]), force);
         }
+        if let Some(waves) = waves {
+            let waves = &waves.vectors::<S>()[..m];
+            for k in 0..m {
+                d[k] = o.fma(o.splat(c[k]), waves[k], d[k]);
+            }
+        }
         if masses {
             let newmark = Newmark::of(o, s);
             let [free_q, free_v, free_a] = &mut self.free;
@@ -115,7 +127,7 @@ impl Modes {
         o: Ops<S>,
         operator: &BridgeOperator,
         constants: &StepConstants,
-        loads: &Loads,
+        (loads, waves): (&Loads, Option<&LaneArray>),
         terms: &mut Terms<S>,
     ) {
         let s = &constants.scheme;
@@ -138,6 +150,8 @@ impl Modes {
         let v = &mut self.v.vectors_mut::<S>()[..m];
         let a = &mut self.a.vectors_mut::<S>()[..m];
         let (contact, d_free) = (&self.contact_now.vectors::<S>()[..m], &self.d.vectors::<S>()[..m]);
+        let waves = waves.map(|waves| &waves.vectors::<S>()[..m]);
+        let undamped = constants.undamped.as_deref().map(|undamped| &undamped[..m]);
         for k in 0..m {
             let force = o.fma(f.new, contact[k], o.mul(by_m.new, i_now[k]));
             let d = o.less(d_free[k], o.splat(c[k]), force);
@@ -145,6 +159,12 @@ impl Modes {
             let new = newmark.advance(o, d, old);
             let down = o.add(f.at(o, w_now[k], w_old[k]), by_m.at(o, i_now[k], i_old[k]));
             terms.take_mode(o, o.splat(omega2[k]), d, [old, new], [f, by_m], down);
+            if let Some(waves) = waves {
+                terms.take_waves(o, d, waves[k]);
+            }
+            if let Some(undamped) = undamped {
+                terms.take_undamped(o, o.splat(undamped[k]), d, f.at(o, new[1], old[1]));
+            }
             [q[k], v[k], a[k]] = new;
         }
         terms.end_of_modes();

@@ -19,6 +19,8 @@ pub(super) struct PinRows {
     /// Stiffness and mass of the modules on the modes, rows x modes.
     pub(super) stiffness: DMatrix<f64>,
     pub(super) mass: DMatrix<f64>,
+    /// What of the stiffness the water has, rows x modes.
+    pub(super) water: DMatrix<f64>,
     /// What they see of the connectors beside the modes, rows x connectors.
     pub(super) connectors: DMatrix<f64>,
 }
@@ -37,6 +39,7 @@ pub(super) fn pin_rows(
     let stiffness: Vec<SparseRow> = each().map(|row| row.stiffness.clone()).collect();
     let count = stiffness.len();
     let mass: Vec<&SparseRow> = each().map(|row| &row.mass).collect();
+    let water: Vec<&SparseRow> = each().map(|row| &row.water).collect();
     let all = ResidualRows::new(solver, stiffness, (lambda, shift), shapes, stop)?;
     let mut deck: Vec<f64> = Vec::with_capacity(track.columns() * count);
     for influence in all.deck(track)?.chunks_exact((m + count).max(1)) {
@@ -49,6 +52,7 @@ pub(super) fn pin_rows(
     let rows = PinRows {
         places: pin_places(bridge),
         mass: DMatrix::from_fn(count, m, |i, k| dot(mass[i], shapes, k)),
+        water: DMatrix::from_fn(count, m, |i, k| dot(water[i], shapes, k)),
         connectors: all.seen_by(connectors, nc),
         stiffness: all.phi,
     };

@@ -5,6 +5,7 @@
 use super::basis::Sizes;
 use super::connectors::Connectors;
 use super::lane_array::LaneArray;
+use super::lane_waves::LaneWaves;
 use super::modes::Modes;
 use super::step_constants::StepConstants;
 use super::vector::{Mean, Ops};
@@ -30,6 +31,9 @@ pub(super) struct Pins {
     /// Motion of the modes and forces of the connectors at the balance, and the forces of the pins there.
     balance: LaneArray,
     forces: LaneArray,
+    /// Velocity of the modes at the balance, and forces that are taken off.
+    velocity: LaneArray,
+    taken: LaneArray,
     /// Forces at rest, and whether there are any in a lane.
     rest: LaneArray,
     from_rest: Vec<bool>,
@@ -61,6 +65,8 @@ impl Pins {
             inertia_now: of(rows),
             balance: of(2 * modes + connectors),
             forces: of(rows),
+            velocity: of(modes),
+            taken: of(rows),
             rest: of(rows),
             from_rest: vec![false; lanes],
             time_s: of(1),
@@ -116,8 +122,7 @@ impl Pins {
         &mut self,
         o: Ops<S>,
         constants: &StepConstants,
-        modes: &Modes,
-        connectors: &Connectors,
+        (modes, waves, connectors): (&Modes, Option<&LaneWaves>, &Connectors),
         end_s: &[f64],
     ) {
         let s = &constants.scheme;
@@ -138,6 +143,20 @@ impl Pins {
         }
         let forces = self.forces.vectors_mut::<S>();
         constants.panels.pins.multiply(o, self.balance.vectors::<S>(), forces);
+        if let Some(undamped) = &constants.panels.pins_undamped {
+            let alpha = self.velocity.vectors_mut::<S>();
+            for k in 0..count {
+                alpha[k] = f.at(o, v[k], old_v[k]);
+            }
+            let taken = self.taken.vectors_mut::<S>();
+            undamped.multiply(o, alpha, taken);
+            for (force, taken) in forces.iter_mut().zip(&*taken) {
+                *force = o.sub(*force, *taken);
+            }
+        }
+        if let Some(waves) = waves {
+            waves.take_off_pins(o, constants, forces, self.taken.vectors_mut::<S>());
+        }
         let (w_now, w_old) = (self.weights_now.vectors::<S>(), self.weights.vectors::<S>());
         let (i_now, i_old) = (self.inertia_now.vectors::<S>(), self.inertia.vectors::<S>());
         for (i, force) in forces.iter_mut().enumerate() {

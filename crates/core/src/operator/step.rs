@@ -46,7 +46,13 @@ impl<C: StepClock> WithSimd for Step<'_, C> {
         clock.begin();
         c.place_loads(operator); // (V1)
         clock.lap(StepPart::Loads, || c.flop_of_loads());
-        c.modes.predict(o, constants, &c.loads, c.any_mass()); // (O6)
+        if let Some(waves) = &mut c.waves {
+            waves.predict(o, constants); // (W7)
+            clock.lap(StepPart::Waves, || 0.0);
+        }
+        let masses = c.any_mass();
+        let waves = c.waves.as_ref().map(|waves| &waves.modal);
+        c.modes.predict(o, constants, (&c.loads, waves), masses); // (O6)
         clock.lap(StepPart::Modes, || c.modes.flop_of_prediction());
         c.residual.predict(o, constants, &c.loads, &c.connectors); // (O7)
         c.connectors.predict(o, constants, &c.modes.d, c.residual.changes()); // (O4)

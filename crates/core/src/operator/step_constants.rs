@@ -4,6 +4,7 @@
 
 use super::basis::{BridgeOperator, OperatedModule};
 use super::panel::Panel;
+use super::waves::WaveConstants;
 use crate::riding::RidingStep;
 use crate::scheme::{Arithmetic, Rayleigh, Scheme};
 use crate::vehicle::Springs;
@@ -31,6 +32,10 @@ pub(crate) struct StepConstants {
     pub(super) connector_compliance: DMatrix<f64>,
     /// Products with lanes.
     pub(super) panels: Panels,
+    /// Water with memory, where the bridge has it.
+    pub(super) waves: Option<WaveConstants>,
+    /// What of `a omega^2` the water's springs have, one a mode; none where damping has all of it.
+    pub(super) undamped: Option<Vec<f64>>,
 }
 
 /// What the modes leave out follows a force without mass (O7).
@@ -70,27 +75,43 @@ pub(super) struct Panels {
     pub v: Panel,
     /// `[D Phi, -R_DB]` of the edges inside each module.
     pub inside: Vec<Panel>,
-    /// Of the pins.
+    /// Of the pins, and what of their stiffness damping has not.
     pub pins: Panel,
+    pub pins_undamped: Option<Panel>,
 }
 
 impl StepConstants {
     /// The constants of steps of length `time_step_s` with a spectral radius and damping.
     pub(crate) fn new(operator: &BridgeOperator, time_step_s: f64, spectral_radius: f64, rayleigh: Rayleigh) -> Self {
         let s = Scheme::new(time_step_s, spectral_radius);
-        let Rayleigh { a, b } = rayleigh;
+        let Rayleigh { a, b, .. } = rayleigh;
+        let beyond_water = rayleigh.beyond_water();
+        // of `a Phi^T K_w Phi` the diagonal
+        let undamped: Option<Vec<f64>> =
+            (beyond_water != 0.0).then(|| operator.omega2_water.iter().map(|w2| beyond_water * w2).collect());
+        let damping: Vec<f64> = match &undamped {
+            None => operator.omega2.iter().map(|w2| a * w2).collect(),
+            Some(undamped) => operator
+                .omega2
+                .iter()
+                .zip(undamped)
+                .map(|(w2, of_water)| a * w2 - of_water)
+                .collect(),
+        };
         let (c_m, c_c, c_k) = s.effective();
         // the balance at alpha without d: velocity y_v = at_v v + at_a a, acceleration with the weights of M
         let (at_v, at_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
         let m_v = (1.0 - s.alpha_m) * s.a_v + b * at_v;
         let m_a = (1.0 - s.alpha_m) * s.a_a + s.alpha_m + b * at_a;
-        let c: Vec<f64> = operator
-            .omega2
-            .iter()
-            .map(|w2| 1.0 / (c_m + c_c * (a * w2 + b) + c_k * w2))
+        let each_mode = || operator.omega2.iter().zip(&damping);
+        let c: Vec<f64> = each_mode()
+            .map(|(w2, damping)| 1.0 / (c_m + c_c * (damping + b) + c_k * w2))
             .collect();
-        let each = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            c.iter().zip(&operator.omega2).map(|(c, w2)| -c * of(*w2)).collect()
+        let each = |of: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+            c.iter()
+                .zip(each_mode())
+                .map(|(c, (w2, damping))| -c * of(*w2, *damping))
+                .collect()
         };
         let rho = 1.0 / (c_k + c_c * a);
         let nc = operator.sizes.connectors;
@@ -102,15 +123,20 @@ impl StepConstants {
         Self {
             scheme: s,
             rayleigh,
-            on_q: each(&|w2| w2),
-            on_v: each(&|w2| a * w2 * at_v + m_v),
-            on_a: each(&|w2| a * w2 * at_a + m_a),
+            on_q: each(&|w2, _| w2),
+            on_v: each(&|_, damping| damping * at_v + m_v),
+            on_a: each(&|_, damping| damping * at_a + m_a),
             rho,
             on_s1: a * at_v,
             on_s2: a * at_a,
             connector_compliance: &modal + rho * &operator.r_bb,
             c,
-            panels: Panels::new(operator),
+            panels: Panels::new(operator, beyond_water),
+            waves: operator
+                .waves
+                .as_ref()
+                .map(|waves| WaveConstants::new(waves, time_step_s)),
+            undamped,
         }
     }
 }
@@ -123,7 +149,7 @@ impl StepConstants {
 }
 
 impl Panels {
-    fn new(o: &BridgeOperator) -> Self {
+    fn new(o: &BridgeOperator, beyond_water: f64) -> Self {
         let (m, nc) = (o.sizes.modes, o.sizes.connectors);
         let with_residual = |phi: &DMatrix<f64>, r: &DMatrix<f64>, from: usize, rows: usize| {
             Panel::new(rows, m + nc, |i, k| {
@@ -145,6 +171,10 @@ impl Panels {
             v: with_residual(&o.v, &o.r_vb, 0, o.sizes.observed),
             inside: o.of_modules.iter().map(of_module).collect(),
             pins: o.pins.panel(),
+            pins_undamped: (beyond_water != 0.0).then(|| {
+                let (rows, columns) = o.pins.water.shape();
+                Panel::new(rows, columns, |i, k| beyond_water * o.pins.water[(i, k)])
+            }),
         }
     }
 }

@@ -67,6 +67,19 @@ pub enum Outcome {
 }
 
 impl CheckName {
+    /// All checks.
+    pub const ALL: [Self; 9] = [
+        Self::NotNumbers,
+        Self::LastUsed,
+        Self::AddedMassAsymmetry,
+        Self::DampingAsymmetry,
+        Self::Mirror,
+        Self::LeastDamping,
+        Self::KramersKronig,
+        Self::TotalHeaveInfinite,
+        Self::InfiniteOfTable,
+    ];
+
     /// The check's name in files and messages.
     pub fn as_str(self) -> &'static str {
         match self {

@@ -26,6 +26,11 @@ impl Exponentials {
         weighted(self, |s| exponential(s * t_s))
     }
 
+    /// Re K(i w).
+    pub(super) fn taking(&self, omega_rad_s: f64) -> DMatrix<f64> {
+        weighted(self, |s| middle(s, omega_rad_s))
+    }
+
     /// The exponentials that die away and are not too fast.
     pub(super) fn usable(&self) -> Self {
         let usable = |s: Complex<f64>| s.re.is_finite() && s.re < 0.0 && s.im < FASTEST_RAD_S;
@@ -60,12 +65,6 @@ impl Passivity {
         }
     }
 
-    /// The dashpot that makes the states passive at the frequencies sampled: |least|, on each scaled freedom `[N s/m]`; 0 where
-    /// they are passive.
-    pub fn dashpot_n_s_m(&self) -> f64 {
-        (-self.least_n_s_m).max(0.0)
-    }
-
     /// The bounds of no states.
     pub(super) fn of_none() -> Self {
         Self {
@@ -80,14 +79,8 @@ impl Passivity {
     /// A conjugate pair stands once, so that `Re (C e^(s t))` with C = c c^T has the transform
     /// `(C / (i w - s) + conj(C) / (i w - conj(s))) / 2`.
     pub(super) fn widen(&mut self, of: &Exponentials) {
-        let middle = |s: Complex<f64>, omega: f64| {
-            // Re of the transform is Re(C g) with g = (1/(i w - s) + 1/(-i w - s)) / 2
-            let (a, b) = (Complex::new(0.0, omega) - s, Complex::new(0.0, -omega) - s);
-            (a.inv() + b.inv()).scale(0.5)
-        };
-        let frequencies = (1_u32..).map(|i| f64::from(i) * STEP_RAD_S);
-        for omega_rad_s in frequencies.take_while(|omega| *omega < FASTEST_RAD_S - 0.5 * STEP_RAD_S) {
-            let eigenvalues = weighted(of, |s| middle(s, omega_rad_s)).symmetric_eigenvalues();
+        for omega_rad_s in sampled(1) {
+            let eigenvalues = of.taking(omega_rad_s).symmetric_eigenvalues();
             self.largest_n_s_m = self.largest_n_s_m.max(eigenvalues.max());
             if eigenvalues.min() < self.least_n_s_m {
                 self.least_n_s_m = eigenvalues.min();
@@ -95,6 +88,18 @@ impl Passivity {
             }
         }
     }
+}
+
+/// The frequencies at which passivity is sampled `[rad/s]`, every one of so many.
+pub(super) fn sampled(every: u32) -> impl Iterator<Item = f64> {
+    let frequencies = (1_u32..).map(move |i| f64::from(i * every) * STEP_RAD_S);
+    frequencies.take_while(|omega| *omega < FASTEST_RAD_S - 0.5 * STEP_RAD_S)
+}
+
+/// g with `Re K(i w) = Re sum_i c_i c_i^T g(s_i)`: `(1/(i w - s) + 1/(-i w - s)) / 2`.
+pub(super) fn middle(s: Complex<f64>, omega_rad_s: f64) -> Complex<f64> {
+    let (a, b) = (Complex::new(0.0, omega_rad_s) - s, Complex::new(0.0, -omega_rad_s) - s);
+    (a.inv() + b.inv()).scale(0.5)
 }
 
 /// `Re sum_i c_i c_i^T weight(s_i)`.
@@ -140,10 +145,7 @@ mod tests {
         // -e^(-t): Re K = -1/(1 + w^2)
         let taking = bounds(&one(Complex::new(-1.0, 0.0), Complex::new(0.0, 1.0)));
         assert!((taking.least_n_s_m + 1.0 / (1.0 + 0.0004)).abs() < 1e-12);
-        assert_eq!(
-            (taking.largest_n_s_m, taking.dashpot_n_s_m()),
-            (0.0, -taking.least_n_s_m)
-        );
+        assert_eq!(taking.largest_n_s_m, 0.0);
         assert_eq!(taking.least_over_largest(), taking.least_n_s_m);
     }
 

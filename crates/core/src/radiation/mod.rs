@@ -15,28 +15,34 @@
 //! understanding and prediction of ship motions (1964).
 
 mod checks;
+mod convolution;
 mod exponentials;
 mod hankel;
 mod kernel;
 mod kramers_kronig;
 mod motions;
+mod passive;
 mod realisation;
 mod scales;
 mod spline;
 mod state_step;
 mod table;
+mod water;
 mod window;
 
 pub use checks::{Check, CheckName, Limit, Outcome};
+pub(crate) use convolution::{Convolution, Remembered};
 pub use exponentials::Passivity;
 pub use hankel::HankelError;
 pub use kernel::{Band, Kernel};
 pub use kramers_kronig::{added_mass_infinite, kramers_kronig};
-pub use realisation::{Fit, Realisation, RealisationError};
+pub use passive::Filter;
+pub use realisation::{Fit, Realisation, RealisationError, StateGroup};
 pub use scales::{FREEDOMS_PER_MODULE, Scales};
 pub use spline::MatrixSpline;
 pub use state_step::StepCoefficients;
 pub use table::{FreedomMatrix, RadiationTable};
+pub use water::Radiation;
 pub use window::Window;
 
 #[cfg(test)]

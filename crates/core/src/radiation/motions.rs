@@ -5,13 +5,14 @@
 use super::{FREEDOMS_PER_MODULE, Scales};
 use nalgebra::DMatrix;
 
-/// Orthonormal bases of groups of motions, in [scaled](Scales) freedoms: a column a motion.
+/// Orthonormal bases of groups of motions, in [scaled](Scales) freedoms: a column a motion; each with whether its motions are
+/// rolls.
 ///
 /// The groups are heave with pitch, and roll: the hull is symmetric about y = 0. Heave and pitch are those of modules whose
 /// bottoms meet at the N + 1 joints, of heights h_j: `heave_m = (h_m + h_(m+1)) / 2`, `pitch_m = (h_m - h_(m+1)) / L_m`. What
 /// breaks the bottom line at a joint is not among them. Roll is each module's own. Where the lengths are mirror-equal each
 /// group is split into motions that the mirror x -> -x keeps and motions that it turns.
-pub(super) fn groups(scales: &Scales) -> Vec<DMatrix<f64>> {
+pub(super) fn groups(scales: &Scales) -> Vec<(bool, DMatrix<f64>)> {
     let modules = scales.length_m().len();
     let rms_m = scales.rms_m();
     let mut heights = DMatrix::zeros(scales.freedoms(), modules + 1);
@@ -24,16 +25,18 @@ pub(super) fn groups(scales: &Scales) -> Vec<DMatrix<f64>> {
         }
         rolls[(heave + 2, m)] = 1.0;
     }
-    let parts = [heights, rolls].into_iter().flat_map(|motions| {
-        if scales.mirror_equal() {
-            vec![paired(&motions, 1.0), paired(&motions, -1.0)]
-        } else {
-            vec![motions]
-        }
-    });
+    let parts = [(false, heights), (true, rolls)]
+        .into_iter()
+        .flat_map(|(rolls, motions)| {
+            if scales.mirror_equal() {
+                vec![(rolls, paired(&motions, 1.0)), (rolls, paired(&motions, -1.0))]
+            } else {
+                vec![(rolls, motions)]
+            }
+        });
     parts
-        .filter(|motions| motions.ncols() > 0)
-        .map(|motions| motions.qr().q())
+        .filter(|(_, motions)| motions.ncols() > 0)
+        .map(|(rolls, motions)| (rolls, motions.qr().q()))
         .collect()
 }
 
@@ -53,7 +56,7 @@ mod tests {
     #[test]
     fn groups_are_orthonormal_and_keep_or_turn_in_the_mirror() {
         let scales = Scales::new(&[4.0, 6.0, 6.0, 4.0], 3.0).unwrap();
-        let groups = groups(&scales);
+        let groups: Vec<_> = groups(&scales).into_iter().map(|(_, basis)| basis).collect();
         let sizes: Vec<usize> = groups.iter().map(DMatrix::ncols).collect();
         assert_eq!(sizes, [3, 2, 2, 2]);
         let all = DMatrix::from_fn(12, 9, |i, j| {
@@ -77,7 +80,7 @@ mod tests {
     #[test]
     fn rigid_heave_and_pitch_of_the_whole_chain_are_among_them() {
         let scales = Scales::new(&[4.0, 5.0, 3.0], 3.0).unwrap();
-        let groups = groups(&scales);
+        let groups: Vec<_> = groups(&scales).into_iter().map(|(_, basis)| basis).collect();
         assert_eq!(groups.iter().map(DMatrix::ncols).collect::<Vec<_>>(), [4, 3]);
         let centres = [2.0, 6.5, 10.5];
         // rotation about +y: z falls with x

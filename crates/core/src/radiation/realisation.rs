@@ -4,9 +4,10 @@
 
 use super::exponentials::Passivity;
 use super::hankel::{self, HankelError};
+use super::passive::{self, Filter};
 use super::{FREEDOMS_PER_MODULE, Kernel, Scales, Window, motions};
 use crate::input::{InvalidInput, positive};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 use thiserror::Error;
 
 /// The least eigenvalue of Re K(i w) over the largest below which a realisation is refused `[-]`.
@@ -24,10 +25,10 @@ pub struct Fit {
 }
 
 impl Default for Fit {
-    /// Tolerance 1e-2, samples of 0.1 s over 40 s.
+    /// Tolerance 4e-3, samples of 0.1 s over 40 s: crossings of a linear bridge are within 0.05 % of the convolution.
     fn default() -> Self {
         Self {
-            tolerance: 1e-2,
+            tolerance: 4e-3,
             dt_s: 0.1,
             window: Window::STATES,
         }
@@ -55,14 +56,38 @@ pub enum RealisationError {
     },
 }
 
-/// `k(t) = Re sum_i c_i c_i^T e^(s_i t)`; the force of the water is `F = -Re sum_i c_i x_i` with `x_i' = s_i x_i + c_i^T r'`.
+/// States of a group of motions that drives no other group: of its motions `z = W^T r` the kernel is
+/// `Re sum_i g_i g_i^T e^(s_i t)`, with what filters add, and their forces f act on the freedoms as `W f`.
+#[derive(Debug, Clone)]
+pub struct StateGroup {
+    /// W `[-, m/rad]`, a row for each freedom, a column for each motion; in scaled freedoms its columns are orthonormal.
+    pub motions: DMatrix<f64>,
+    /// Whether its motions are rolls.
+    pub rolls: bool,
+    /// The poles s_i `[1/s]`, with Im s >= 0: one of each conjugate pair.
+    pub poles_1_s: Vec<Complex<f64>>,
+    /// The shapes g_i `[(N/m)^(1/2)]`, a column for each pole, a row for each motion.
+    pub shapes: DMatrix<Complex<f64>>,
+    /// Filters on the motions that make the states take energy at every frequency.
+    pub filters: Vec<Filter>,
+}
+
+/// The force of the water is `F = -Re sum_i (W g_i) x_i` with `x_i' = s_i x_i + (W g_i)^T r'`, the poles in [groups](StateGroup).
 #[derive(Debug, Clone)]
 pub struct Realisation {
-    poles_1_s: Vec<Complex<f64>>,
-    shapes: DMatrix<Complex<f64>>,
+    groups: Vec<StateGroup>,
     kernel_error: f64,
     left_out: f64,
     passivity: Passivity,
+}
+
+impl StateGroup {
+    /// The number of its real states, those of filters among them: two for a pole with Im s > 0, one for a real one.
+    pub fn real_states(&self) -> usize {
+        let of = |s: &Complex<f64>| if s.im > 0.0 { 2 } else { 1 };
+        let filters: usize = self.filters.iter().map(|filter| of(&filter.pole_1_s)).sum();
+        self.poles_1_s.iter().map(of).sum::<usize>() + self.motions.ncols() * filters
+    }
 }
 
 impl Realisation {
@@ -72,8 +97,7 @@ impl Realisation {
     /// both split by the mirror where the lengths are mirror-equal. Poles with Re s < 0 and Im s < 12 rad/s are kept.
     ///
     /// # Errors
-    /// [`RealisationError`]. The least eigenvalue of Re K(i w) may be -2 % of the largest; a small one is left to
-    /// [`dashpot`](Self::dashpot).
+    /// [`RealisationError`]. The least eigenvalue of Re K(i w) may be -2 % of the largest; [filters](Filter) then lift it to 0.
     pub fn new(kernel: &Kernel, scales: &Scales, fit: Fit) -> Result<Self, RealisationError> {
         positive("tolerance", fit.tolerance)?;
         positive("dt_s", fit.dt_s)?;
@@ -93,20 +117,26 @@ impl Realisation {
         let whole: f64 = samples.iter().map(DMatrix::norm_squared).sum();
         let (mut within, mut error) = (0.0, 0.0);
         let mut passivity = Passivity::of_none();
-        let (mut poles_1_s, mut shapes) = (Vec::new(), Vec::new());
-        for basis in motions::groups(scales) {
+        let mut groups = Vec::new();
+        for (rolls, basis) in motions::groups(scales) {
             let samples: Vec<_> = samples.iter().map(|k| basis.transpose() * k * &basis).collect();
             let found = hankel::exponentials(&samples, fit.dt_s, fit.tolerance)?.usable();
+            let filters = passive::filters(&found);
             for (i, sample) in samples.iter().enumerate() {
                 within += sample.norm_squared();
-                error += (sample - found.at(i as f64 * fit.dt_s)).norm_squared();
+                let t_s = i as f64 * fit.dt_s;
+                let states = filters.iter().fold(found.at(t_s), |sum, filter| sum + filter.at(t_s));
+                error += (sample - states).norm_squared();
             }
             passivity.widen(&found);
-            for (i, &s) in found.poles_1_s.iter().enumerate() {
-                poles_1_s.push(s);
-                let c = basis.map(|x| Complex::new(x, 0.0)) * found.shapes.column(i);
-                shapes.extend(c.iter().zip(scales.rms_m()).map(|(c, rms_m)| c * *rms_m));
-            }
+            let scaled = |i: usize, j: usize| scales.rms_m()[i] * basis[(i, j)];
+            groups.push(StateGroup {
+                motions: DMatrix::from_fn(basis.nrows(), basis.ncols(), scaled),
+                rolls,
+                poles_1_s: found.poles_1_s,
+                shapes: found.shapes,
+                filters,
+            });
         }
         if passivity.least_over_largest() < PASSIVITY_REFUSES {
             return Err(RealisationError::NotPassive {
@@ -115,8 +145,7 @@ impl Realisation {
             });
         }
         Ok(Self {
-            shapes: DMatrix::from_vec(scales.freedoms(), poles_1_s.len(), shapes),
-            poles_1_s,
+            groups,
             kernel_error: if within > 0.0 { (error / within).sqrt() } else { 0.0 },
             left_out: if whole > 0.0 {
                 1.0 - (within / whole).sqrt()
@@ -127,19 +156,14 @@ impl Realisation {
         })
     }
 
-    /// The poles s_i `[1/s]`, with Im s >= 0: one of each conjugate pair.
-    pub fn poles_1_s(&self) -> &[Complex<f64>] {
-        &self.poles_1_s
-    }
-
-    /// The shapes c_i `[(N/m)^(1/2), m (N/m)^(1/2)]`, a column for each pole, a row for each freedom.
-    pub fn shapes(&self) -> &DMatrix<Complex<f64>> {
-        &self.shapes
+    /// The groups, of heave with pitch first.
+    pub fn groups(&self) -> &[StateGroup] {
+        &self.groups
     }
 
     /// The number of real states: two for a pole with Im s > 0, one for a real one.
     pub fn real_states(&self) -> usize {
-        self.poles_1_s.iter().map(|s| if s.im > 0.0 { 2 } else { 1 }).sum()
+        self.groups.iter().map(StateGroup::real_states).sum()
     }
 
     /// The rms error of the kernel over all samples and groups, as a share of the kernel's rms in those groups `[-]`; in scaled
@@ -154,18 +178,9 @@ impl Realisation {
         self.left_out
     }
 
-    /// The eigenvalues of Re K(i w) of the states.
+    /// The eigenvalues of Re K(i w) of the states without filters.
     pub fn passivity(&self) -> Passivity {
         self.passivity
-    }
-
-    /// The dashpot `|l_min| D^2` that makes the states passive, in the freedoms r `[N s/m, N s m]`: its diagonal.
-    pub fn dashpot(&self, scales: &Scales) -> DVector<f64> {
-        let diagonal = scales
-            .rms_m()
-            .iter()
-            .map(|rms_m| self.passivity.dashpot_n_s_m() * rms_m * rms_m);
-        DVector::from_iterator(scales.freedoms(), diagonal)
     }
 }
 
@@ -196,13 +211,17 @@ mod tests {
         assert!(fine.left_out() > 0.0 && fine.left_out() < 1.0);
         let groups = motions::groups(&made_up.scales);
         let error = |t: f64, factor: f64| {
-            let all = Exponentials {
-                poles_1_s: fine.poles_1_s().to_vec(),
-                shapes: fine.shapes().clone(),
-            };
-            let found = made_up.scales.scaled(&all.at(t));
+            let found = fine.groups().iter().map(|group| {
+                let of = Exponentials {
+                    poles_1_s: group.poles_1_s.clone(),
+                    shapes: group.shapes.clone(),
+                };
+                let kernel = group.filters.iter().fold(of.at(t), |sum, filter| sum + filter.at(t));
+                &group.motions * kernel * group.motions.transpose()
+            });
+            let found = made_up.scales.scaled(&found.fold(DMatrix::zeros(6, 6), |a, b| a + b));
             let expected = made_up.scales.scaled(&kernel.at(t)) * (factor * window.at(t));
-            let sum = groups.iter().map(|q| {
+            let sum = groups.iter().map(|(_, q)| {
                 let p = q * q.transpose();
                 &p * &expected * &p
             });
@@ -215,9 +234,6 @@ mod tests {
         assert!(error(0.0, 1.05) > 1e-2);
         let passivity = fine.passivity();
         assert!(passivity.least_over_largest() > -1e-2 && passivity.largest_n_s_m > 0.0);
-        let dashpot = fine.dashpot(&made_up.scales);
-        let of_pitch = passivity.dashpot_n_s_m() * made_up.scales.rms_m()[1].powi(2);
-        assert!(dashpot[1] > 0.0 && (dashpot[1] / of_pitch - 1.0).abs() < 1e-12);
     }
 
     #[test]
@@ -235,14 +251,7 @@ mod tests {
             },
         )
         .unwrap();
-        assert_eq!(
-            (
-                none.real_states(),
-                none.kernel_error(),
-                none.passivity().dashpot_n_s_m()
-            ),
-            (0, 0.0, 0.0)
-        );
+        assert_eq!((none.real_states(), none.kernel_error()), (0, 0.0));
     }
 
     #[test]

@@ -15,6 +15,8 @@ pub struct StepEnergies {
     pub vehicles: f64,
     /// Dissipated by Rayleigh damping over it.
     pub rayleigh: f64,
+    /// Taken by waves of water with memory over it; waves that come back give.
+    pub radiated: f64,
     /// Dissipated by dashpots of connectors and dampers of vehicles over it.
     pub dashpots: f64,
     /// Dissipated by the scheme over it.
@@ -23,14 +25,16 @@ pub struct StepEnergies {
     pub work: f64,
 }
 
-/// `kinetic + strain + connectors + vehicles + rayleigh + dashpots + numerical = work`, kept step by step: the dissipations and the work
-/// `integral of p du` are sums since the start.
+/// `kinetic + strain + connectors + vehicles + rayleigh + radiated + dashpots + numerical = work`, kept step by step: the dissipations,
+/// what waves take and the work `integral of p du` are sums since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBalance {
     rayleigh: f64,
+    radiated: f64,
     dashpots: f64,
     numerical: f64,
     work: f64,
+    least_radiated: f64,
     largest_work: f64,
     largest_gap: f64,
     largest_numerical: f64,
@@ -39,10 +43,14 @@ pub struct EnergyBalance {
 /// What a crossing reports of its balance.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergySummary {
-    /// Largest `|kinetic + strain + connectors + vehicles + rayleigh + dashpots + numerical - work|` over the largest `|work|`.
+    /// Largest `|kinetic + strain + connectors + vehicles + rayleigh + radiated + dashpots + numerical - work|` over the largest `|work|`.
     pub energy_residual: f64,
     /// Largest numerical dissipation over the largest `|work|`.
     pub numerical_dissipation: f64,
+    /// What waves of water with memory have taken at the end `[J]`; 0 of other waters.
+    pub radiated_j: f64,
+    /// The least of what they had taken at any time `[J]`, 0 or below.
+    pub least_radiated_j: f64,
 }
 
 impl EnergyBalance {
@@ -50,11 +58,13 @@ impl EnergyBalance {
     /// Equation (R1).
     pub fn take(&mut self, step: &StepEnergies) {
         self.rayleigh += step.rayleigh;
+        self.radiated += step.radiated;
+        self.least_radiated = self.least_radiated.min(self.radiated);
         self.dashpots += step.dashpots;
         self.numerical += step.numerical;
         self.work += step.work;
         let stored = step.kinetic + step.strain + step.connectors + step.vehicles;
-        let gap = stored + self.rayleigh + self.dashpots + self.numerical - self.work;
+        let gap = stored + self.rayleigh + self.radiated + self.dashpots + self.numerical - self.work;
         self.largest_gap = self.largest_gap.max(gap.abs());
         self.largest_work = self.largest_work.max(self.work.abs());
         self.largest_numerical = self.largest_numerical.max(self.numerical.abs());
@@ -68,6 +78,8 @@ impl EnergyBalance {
         EnergySummary {
             energy_residual: self.largest_gap / self.largest_work,
             numerical_dissipation: self.largest_numerical / self.largest_work,
+            radiated_j: self.radiated,
+            least_radiated_j: self.least_radiated,
         }
     }
 }

@@ -135,7 +135,7 @@ fn static_free_bodies_are_in_equilibrium() {
 fn moving_free_bodies_are_in_equilibrium() {
     let setup = setup(Model::SuperElement);
     let settings = CrossingSettings {
-        rayleigh: Rayleigh { a: 0.02, b: 0.1 },
+        rayleigh: Rayleigh::new(0.02, 0.1),
         time_step_s: 0.01,
         spectral_radius: 0.9,
         newton_limit: 60,
@@ -208,7 +208,7 @@ struct Balance<'a> {
 }
 
 impl<'a> Balance<'a> {
-    fn new(scheme: &'a Scheme, Rayleigh { a, b }: Rayleigh, old: &'a Snapshot, new: &'a Snapshot) -> Self {
+    fn new(scheme: &'a Scheme, Rayleigh { a, b, .. }: Rayleigh, old: &'a Snapshot, new: &'a Snapshot) -> Self {
         let v = |of: &Snapshot, i: usize| (of.elastic[i] - of.u[i]) / a;
         let acceleration = |of: &Snapshot, i: usize| of.inertial.as_ref().expect("a motion")[i] - b * v(of, i);
         let dofs = || 0..new.u.len();

@@ -19,6 +19,7 @@ use crate::connector::{Connection, OwnLaws};
 use crate::contact::{Dashpot, LinkLaw};
 use crate::fem::{FemError, SymmetricMatrix};
 use crate::flexibility::Flexibility;
+use crate::radiation::Convolution;
 use crate::response::{CrossingResponse, DeadState, Record};
 use crate::riding::RidingStep;
 use crate::scheme::Scheme;
@@ -87,6 +88,8 @@ pub struct CrossingSolver {
     settings: CrossingSettings,
     /// The step's matrix for each number of halvings, factorised when first needed.
     step_matrices: Vec<OnceLock<Result<StepMatrix, FemError>>>,
+    /// The memory of the water, where it has one.
+    convolution: Option<Convolution>,
 }
 
 /// One step length.
@@ -105,11 +108,13 @@ impl CrossingSolver {
     /// [`AnalysisError::Factor`].
     pub fn new(bridge: &Arc<Bridge>, settings: &CrossingSettings) -> Result<Self, AnalysisError> {
         let step_matrices = (0..=settings.bisection_limit).map(|_| OnceLock::new()).collect();
+        let waves = bridge.waves.as_ref();
         let solver = Self {
             bridge: Arc::clone(bridge),
             track: Track::new(bridge),
             settings: *settings,
             step_matrices,
+            convolution: waves.map(|waves| Convolution::new(&waves.radiation, settings.time_step_s)),
         };
         solver.step_matrix(0)?;
         Ok(solver)
@@ -150,6 +155,7 @@ impl CrossingSolver {
             pins: crossing.record.needs_pins(),
             dashpots: crossing.dashpots(),
             dead: crossing.dead.clone(),
+            convolution: self.convolution.as_ref(),
         };
         let span = StepSpan::new(length_m, traffic, self.settings.time_step_s, crossing.tail_s);
         let from_s = span.time_s(0, self.settings.time_step_s);
@@ -167,8 +173,21 @@ impl CrossingSolver {
             let h = self.time_step_s(halvings);
             let scheme = Scheme::new(h, self.settings.spectral_radius);
             let (c_m, c_c, c_k) = scheme.effective();
-            let Rayleigh { a, b } = self.settings.rayleigh;
-            let matrix = SymmetricMatrix::combine(&[(c_m + c_c * b, &self.bridge.m), (c_k + c_c * a, &self.bridge.k)])?;
+            let Rayleigh { a, b, .. } = self.settings.rayleigh;
+            let (bridge, beyond_water) = (&self.bridge, self.settings.rayleigh.beyond_water());
+            let mut terms = vec![(c_m + c_c * b, &bridge.m), (c_k + c_c * a, &bridge.k)];
+            if beyond_water != 0.0 {
+                terms.push((-c_c * beyond_water, &bridge.k_water));
+            }
+            let of_waves = match (&bridge.waves, &self.convolution) {
+                (Some(waves), Some(convolution)) => {
+                    let entries = waves.entries(&convolution.at_end(h));
+                    Some(SymmetricMatrix::from_entries(bridge.dofs(), &entries)?)
+                }
+                _ => None,
+            };
+            terms.extend(of_waves.iter().map(|of_waves| (c_c, of_waves)));
+            let matrix = SymmetricMatrix::combine(&terms)?;
             let flexibility = Flexibility::new("matrix of the time step", &matrix, &self.bridge)?;
             Ok(StepMatrix {
                 halvings,

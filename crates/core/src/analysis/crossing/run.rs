@@ -66,7 +66,8 @@ impl<'a> CrossingRun<'a> {
     /// The state after the last whole step, or the rest before the first.
     pub fn snapshot(&self) -> Snapshot {
         let (now, stepper) = (&self.now, &self.stepper);
-        let Rayleigh { a, b } = stepper.rayleigh;
+        let Rayleigh { a, b, .. } = stepper.rayleigh;
+        let beyond_water = stepper.rayleigh.beyond_water();
         let sum =
             |x: &[f64], factor: f64, y: &[f64]| -> Vec<f64> { x.iter().zip(y).map(|(x, y)| x + factor * y).collect() };
         let (mut u, mut elongations) = (now.u.clone(), now.elongations.clone());
@@ -78,7 +79,9 @@ impl<'a> CrossingRun<'a> {
             time_s: now.time_s,
             elastic: sum(&u, a, &now.v),
             u,
+            beyond_water: (beyond_water != 0.0).then(|| now.v.iter().map(|v| beyond_water * v).collect()),
             inertial: Some(sum(&now.a, b, &now.v)),
+            waves: stepper.convolution.map(|_| now.remembered.force.clone()),
             connectors: connectors(&now.states, now.connector_forces(), &elongations),
             wheels: {
                 let vehicles = stepper.traffic.vehicles.iter();

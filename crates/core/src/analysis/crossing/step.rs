@@ -6,10 +6,11 @@ use super::StepMatrix;
 use super::riders::{DeckMotion, MeasuredRider, Pressing, Riders};
 use crate::analysis::modes::Rayleigh;
 use crate::analysis::snapshot::RideNow;
-use crate::bridge::{Bridge, Heading, Load, PinPlace, Rider, Rides, Track};
+use crate::bridge::{Acting, Bridge, Heading, Load, PinPlace, Rider, Rides, Track};
 use crate::connector::State;
 use crate::contact::{ContactProblem, ContactSolution, Dashpot, DashpotTrail, LinkLaw, NotSettled, rest_force_n};
 use crate::fem::SparseRow;
+use crate::radiation::{Convolution, Remembered};
 use crate::response::{DeadState, StepEnergies};
 use crate::riding::{FreeRide, Ride, RideEnergies, RidingStep};
 use crate::scheme::{Newmark, Scalar};
@@ -41,6 +42,8 @@ pub(super) struct Motion {
     pub newton_iterations: usize,
     /// Energies of the step that led here.
     pub spent: StepEnergies,
+    /// What water with memory remembers; nothing of other waters.
+    pub remembered: Remembered,
     /// Forces where the balance of that step holds; none where nobody asks for pins.
     pub balance: Option<BalanceForces>,
 }
@@ -114,6 +117,8 @@ pub(super) struct Stepper<'a> {
     pub dashpots: Vec<Dashpot>,
     /// Whether forces of pins are wanted.
     pub pins: bool,
+    /// The memory of the water, where it has one.
+    pub convolution: Option<&'a Convolution>,
     /// The state at rest from which the motion counts; forces of links are whole, the structure feels what they are beyond it.
     pub dead: Option<Arc<DeadState>>,
 }
@@ -135,6 +140,7 @@ impl Stepper<'_> {
             forces: (0..connectors).map(|i| self.rest_n(i)).collect(),
             elongations: vec![0.0; connectors],
             rider_forces: vec![0.0; load.riders.len()],
+            remembered: self.convolution.map(Convolution::at_rest).unwrap_or_default(),
             load,
             ..Motion::zero(self.bridge.dofs())
         }
@@ -149,7 +155,10 @@ impl Stepper<'_> {
         newton_limit: usize,
     ) -> Result<Motion, NotSettled> {
         let load = self.load(time_s); // (V1)
-        let mut d = self.predict(matrix, old, &load); // (T3), (T4)
+        let known_waves = self
+            .convolution
+            .map(|memory| memory.known(&old.remembered, matrix.scheme.h)); // (W6)
+        let mut d = self.predict(matrix, old, (&load, known_waves.as_deref())); // (T3), (T4)
         let riders = self.riders(matrix);
         let mut free = riders.predict(&old.rides, &load); // (V4)
         let problem = self.contact_problem(matrix, old, &load, &d, &free); // (C1), (T5), (V5)
@@ -168,6 +177,7 @@ impl Stepper<'_> {
         let pressing = [old.pressing(), new.pressing()];
         let ridden = riders.finish(&mut rides, &mut free, new.deck(), pressing, along);
         new.rides = rides;
+        self.remember(matrix, old, known_waves, &mut new);
         new.forces = contact.forces;
         new.elongations = contact.elongations;
         let way = [&*old.elongations, &*new.elongations];
@@ -179,8 +189,11 @@ impl Stepper<'_> {
     }
 
     /// The step without new connector and inertia forces, `A d = f - M (y_m + b y_v) - K (u_0 + a y_v)`.
-    fn predict(&self, matrix: &StepMatrix, old: &Motion, load: &Load) -> Vec<f64> {
+    fn predict(&self, matrix: &StepMatrix, old: &Motion, (load, waves): (&Load, Option<&[f64]>)) -> Vec<f64> {
         let mut d = self.known_forces(matrix, old);
+        if let Some(waves) = waves {
+            self.add_known_waves(matrix, old, waves, &mut d);
+        }
         let weight = -(1.0 - matrix.scheme.alpha_f);
         matrix.flexibility.add_track_force(&load.weight, weight, &mut d);
         matrix.flexibility.solve(&mut d);
@@ -211,6 +224,41 @@ impl Stepper<'_> {
         self.bridge.times_m.multiply(&new.v, &mut new.mv);
         self.bridge.times_m.multiply(&new.a, &mut new.ma);
         new
+    }
+
+    /// Adds the forces of water with memory at alpha, `(1 - alpha_f) F_1 + alpha_f F_0`, without what the step's d adds to F_1; that
+    /// is in the matrix of the step.
+    /// Equation (W6).
+    fn add_known_waves(&self, matrix: &StepMatrix, old: &Motion, known: &[f64], f: &mut [f64]) {
+        let (Some(waves), Some(memory)) = (&self.bridge.waves, self.convolution) else {
+            return;
+        };
+        let s = &matrix.scheme;
+        let free: Vec<f64> = old.v.iter().zip(&old.a).map(|(v, a)| s.v_v * v + s.v_a * a).collect();
+        let pressed = memory.at_end(s.h) * DVector::from_vec(waves.motion(&free));
+        let forces = known.iter().zip(pressed.iter()).zip(&old.remembered.force);
+        let forces: Vec<f64> = forces
+            .map(|((known, pressed), old)| s.at_f(known - pressed, *old))
+            .collect();
+        waves.add_forces(&forces, f);
+    }
+
+    /// Takes the velocity at the step's end into the memory of the water.
+    fn remember(&self, matrix: &StepMatrix, old: &Motion, known: Option<Vec<f64>>, new: &mut Motion) {
+        if let (Some(waves), Some(memory), Some(mut force)) = (&self.bridge.waves, self.convolution, known) {
+            let h = matrix.scheme.h;
+            let velocity = waves.motion(&new.v);
+            let pressed = memory.at_end(h) * DVector::from_column_slice(&velocity);
+            force.iter_mut().zip(pressed.iter()).for_each(|(f, p)| *f -= p);
+            new.remembered = memory.follow(&old.remembered, h, velocity, force);
+        }
+    }
+
+    /// Forces of water with memory where the balance of a step holds.
+    fn waves_at_balance(&self, matrix: &StepMatrix, old: &Motion, new: &Motion) -> Option<Vec<f64>> {
+        self.convolution?;
+        let forces = new.remembered.force.iter().zip(&old.remembered.force);
+        Some(forces.map(|(new, old)| matrix.scheme.at_f(*new, *old)).collect())
     }
 
     /// Force of a link at rest `[N]`.
@@ -245,7 +293,7 @@ impl Stepper<'_> {
     /// All forces of the balance at alpha that do not wait for the new instant.
     /// Equation (T3).
     fn known_forces(&self, matrix: &StepMatrix, old: &Motion) -> Vec<f64> {
-        let (s, Rayleigh { a, b }) = (&matrix.scheme, self.rayleigh);
+        let (s, Rayleigh { a, b, .. }) = (&matrix.scheme, self.rayleigh);
         let (on_v, on_a) = ((1.0 - s.alpha_f) * s.v_v + s.alpha_f, (1.0 - s.alpha_f) * s.v_a);
         let y_v: Vec<f64> = old.v.iter().zip(&old.a).map(|(v, a)| on_v * v + on_a * a).collect();
         let mut f = vec![0.0; y_v.len()];
@@ -254,6 +302,12 @@ impl Stepper<'_> {
         let m_a = (1.0 - s.alpha_m) * s.a_a + s.alpha_m + b * on_a;
         for (i, f) in f.iter_mut().enumerate() {
             *f = -a * *f - old.ku[i] - m_v * old.mv[i] - m_a * old.ma[i];
+        }
+        let beyond_water = self.rayleigh.beyond_water();
+        if beyond_water != 0.0 {
+            let mut of_water = vec![0.0; y_v.len()];
+            self.bridge.times_k_water.multiply(&y_v, &mut of_water);
+            f.iter_mut().zip(&of_water).for_each(|(f, w)| *f += beyond_water * w);
         }
         for (i, (connector, force)) in self.bridge.links.iter().zip(&old.forces).enumerate() {
             connector.row.add_to(-s.alpha_f * (force - self.rest_n(i)), &mut f);
@@ -368,11 +422,14 @@ impl Stepper<'_> {
 
     /// The forces of connectors and pins where the balance holds, and when that is.
     fn balance(&self, matrix: &StepMatrix, old: &Motion, new: &Motion) -> BalanceForces {
-        let (s, Rayleigh { a, b }) = (&matrix.scheme, self.rayleigh);
+        let (s, Rayleigh { a, b, .. }) = (&matrix.scheme, self.rayleigh);
         let dofs = 0..new.u.len();
         let v = |i: usize| s.at_f(new.v[i], old.v[i]);
         let elastic: Vec<f64> = dofs.clone().map(|i| s.at_f(new.u[i], old.u[i]) + a * v(i)).collect();
-        let inertial: Vec<f64> = dofs.map(|i| s.at_m(new.a[i], old.a[i]) + b * v(i)).collect();
+        let inertial: Vec<f64> = dofs.clone().map(|i| s.at_m(new.a[i], old.a[i]) + b * v(i)).collect();
+        let beyond_water = self.rayleigh.beyond_water();
+        let beyond_water: Option<Vec<f64>> = (beyond_water != 0.0).then(|| dofs.map(|i| beyond_water * v(i)).collect());
+        let waves = self.waves_at_balance(matrix, old, new);
         let shares = [(1.0 - s.alpha_f, 1.0 - s.alpha_m, new), (s.alpha_f, s.alpha_m, old)];
         let down: Vec<SparseRow> = shares
             .iter()
@@ -383,12 +440,16 @@ impl Stepper<'_> {
                 pressed.chain([SparseRow::combine(&[(*f, &instant.load.weight)])])
             })
             .collect();
+        let acting = Acting {
+            elastic: &elastic,
+            beyond_water: beyond_water.as_deref(),
+            inertial: Some(&inertial),
+            waves: waves.as_deref(),
+            down: &down,
+        };
         let force = |(i, pin): (usize, &PinPlace)| {
             let at_rest = self.dead.as_ref().map_or([0.0; 3], |dead| dead.pins_n[i]);
-            let moved = pin
-                .rows
-                .each_ref()
-                .map(|row| row.force_n(&elastic, Some(&inertial), &down));
+            let moved = pin.rows.each_ref().map(|row| row.force_n(&acting));
             [0, 1, 2].map(|d| moved[d] + at_rest[d])
         };
         let connectors = new.forces.iter().zip(&old.forces);
@@ -426,6 +487,19 @@ impl Stepper<'_> {
             damping_m += d * s.at_f(new.mv[i], old.mv[i]);
             damping_k += s.at_f(new.v[i], old.v[i]) * (new.ku[i] - old.ku[i]);
         }
+        let beyond_water = self.rayleigh.beyond_water();
+        let of_water = if beyond_water == 0.0 {
+            0.0
+        } else {
+            let mut pressed = vec![0.0; d.len()];
+            self.bridge.times_k_water.multiply(d, &mut pressed);
+            let v = (0..d.len()).map(|i| s.at_f(new.v[i], old.v[i]));
+            v.zip(&pressed).map(|(v, pressed)| v * pressed).sum()
+        };
+        let radiated = match (&self.bridge.waves, self.waves_at_balance(matrix, old, new)) {
+            (Some(waves), Some(forces)) => -dot(&waves.motion(d), &forces),
+            _ => 0.0,
+        };
         let (mut springs, mut dashpots) = (0.0, 0.0);
         for i in 0..new.forces.len() {
             let lengthening = new.elongations[i] - old.elongations[i];
@@ -447,7 +521,8 @@ impl Stepper<'_> {
             kinetic,
             strain,
             connectors,
-            rayleigh: self.rayleigh.a * damping_k + self.rayleigh.b * damping_m,
+            rayleigh: self.rayleigh.a * damping_k + self.rayleigh.b * damping_m - beyond_water * of_water,
+            radiated,
             dashpots: dashpots + ridden.dampers,
             vehicles: old.spent.vehicles + ridden.stored,
             numerical: ridden.numerical

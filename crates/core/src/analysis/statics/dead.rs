@@ -4,7 +4,7 @@
 
 use super::{Rest, StaticSolver, brought_on};
 use crate::analysis::{AnalysisError, DeadFault};
-use crate::bridge::{Bridge, BridgeDesign, HeldDof, LinkPlace, ModulePlace, PinPlace, SpringPlace};
+use crate::bridge::{Acting, Bridge, BridgeDesign, HeldDof, LinkPlace, ModulePlace, PinPlace, SpringPlace};
 use crate::connector::{Connection, OwnLaws};
 use crate::contact::{ContactSolution, LinkLaw};
 use crate::fem::SparseRow;
@@ -73,9 +73,12 @@ pub(super) fn dead_state(solver: &StaticSolver, case: &DeadCase) -> Result<Optio
 fn told(bridge: &Bridge, level_m: f64, contact: &ContactSolution, u: Vec<f64>) -> DeadState {
     let at = |[lies, water]: [f64; 2]| lies + level_m * water;
     let pin = |pin: &PinPlace| {
-        pin.rows
-            .each_ref()
-            .map(|row| row.force_n(&u, None, &[]) - at(row.dead_n))
+        pin.rows.each_ref().map(|row| {
+            row.force_n(&Acting {
+                elastic: &u,
+                ..Acting::default()
+            }) - at(row.dead_n)
+        })
     };
     let pins_n: Vec<[f64; 3]> = bridge.pins.iter().map(pin).collect();
     let reading = Rest {

@@ -7,7 +7,7 @@ mod dead;
 
 use super::AnalysisError;
 use super::snapshot::{Snapshot, connectors, wheels};
-use crate::bridge::{Bridge, Heading, Load, PinPlace, VehiclePlacement, joint_parts};
+use crate::bridge::{Acting, Bridge, Heading, Load, PinPlace, VehiclePlacement, joint_parts};
 use crate::connector::{Connection, OwnLaws, State};
 use crate::contact::{ContactProblem, ContactSolution, LinkLaw, NotSettled, rest_force_n};
 use crate::fem::{Factor, SparseRow, SymmetricMatrix};
@@ -191,7 +191,9 @@ impl StaticSolver {
             time_s: 0.0,
             elastic: u.clone(),
             u,
+            beyond_water: None,
             inertial: None,
+            waves: None,
             connectors: connectors(&contact.states, &contact.forces, &elongations),
             wheels: wheels(
                 self.flexibility.track(),
@@ -291,7 +293,13 @@ impl StaticSolver {
         let down = std::slice::from_ref(&load.weight);
         let force = |(i, pin): (usize, &PinPlace)| {
             let at_rest = dead.map_or([0.0; 3], |dead| dead.pins_n[i]);
-            let own = pin.rows.each_ref().map(|row| row.force_n(u, None, down));
+            let own = pin.rows.each_ref().map(|row| {
+                row.force_n(&Acting {
+                    elastic: u,
+                    down,
+                    ..Acting::default()
+                })
+            });
             [0, 1, 2].map(|d| own[d] + at_rest[d])
         };
         self.bridge.pins.iter().enumerate().map(force).collect()

@@ -31,6 +31,14 @@ pub(super) fn check_water(design: &BridgeDesign) -> Result<(), InvalidInput> {
         within("wet_to_m", to_m, from_m, length_m)?;
     }
     if design.is_dry() {
+        if design.water.is_some() {
+            let refused = InvalidInput::new(
+                "water",
+                "a water file",
+                "no file where a module is dry: waves run under all modules",
+            );
+            return Err(refused.because(Problem::Misplaced));
+        }
         let given = [
             (
                 "hydrostatic_stiffness_pa_m",
@@ -54,12 +62,25 @@ pub(super) fn check_water(design: &BridgeDesign) -> Result<(), InvalidInput> {
             return Err(refused.because(problem));
         }
     }
+    if design.water.is_some() {
+        let given = [
+            ("added_mass_kg_m", design.added_mass_kg_m.is_some()),
+            ("todd", design.todd.is_some()),
+        ];
+        return match given.into_iter().find(|(_, given)| *given) {
+            Some((key, _)) => {
+                let allowed = "nothing beside water, whose file has the added mass";
+                Err(InvalidInput::new(key, "a value", allowed).because(Problem::Misplaced))
+            }
+            None => Ok(()),
+        };
+    }
     match (design.added_mass_kg_m, &design.todd) {
         (Some(m_a), None) => not_negative("added_mass_kg_m", m_a).map(|_| ()),
         (None, Some(todd)) => todd.check().map_err(|e| e.under("todd")),
         (found, _) => {
             let (found, problem) = both_or_neither(found.is_some());
-            Err(InvalidInput::new("added_mass_kg_m", found, "either this or todd").because(problem))
+            Err(InvalidInput::new("added_mass_kg_m", found, "either this, todd or water").because(problem))
         }
     }
 }

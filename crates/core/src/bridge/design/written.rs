@@ -3,7 +3,7 @@
 //! Knows how a number with one module and a list with kinds become one design, and how a design is written again. Does not
 //! know whether the numbers are a bridge's.
 
-use super::{BridgeDesign, Condensation, Supports};
+use super::{BridgeDesign, Condensation, Supports, WaterSpec};
 use crate::bridge::Provenance;
 use crate::bridge::ballast::DeadSpec;
 use crate::bridge::banks::BankSpec;
@@ -63,6 +63,9 @@ pub(super) struct WrittenBridge {
     /// How both waters are shared among the nodes of the wetted bottom.
     #[serde(default)]
     water_distribution: WaterDistribution,
+    /// Water with memory, in place of an added mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    water: Option<WaterSpec>,
     /// Hinges at the bottom of every joint.
     hinges: Hinges,
     /// Connectors at the deck of every joint.
@@ -204,6 +207,7 @@ impl WrittenBridge {
             wet_from_m: self.wet_from_m,
             wet_to_m: self.wet_to_m,
             water_distribution: self.water_distribution,
+            water: self.water,
             hinges: self.hinges,
             connectors: self.connectors,
             joints: self.joints,
@@ -243,6 +247,7 @@ impl WrittenBridge {
             wet_from_m: of.wet_from_m,
             wet_to_m: of.wet_to_m,
             water_distribution: of.water_distribution,
+            water: of.water,
             hinges: of.hinges,
             connectors: of.connectors,
             joints: of.joints,
