@@ -3,11 +3,11 @@
 //! Knows the neutral form and which facts it needs. Does not know where in a file anything stands: who read it has refused what is
 //! not finite.
 
-use crate::module_lengths::ModuleLengths;
 use crate::options::{Options, WaterDepth, WaterFacts};
-use crate::triangle::{asymmetry, symmetric_part};
-use crate::water_file::{FREEDOMS, LargestAsymmetry, WaterFile, WaterSource};
 use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
+use pontoon_plan::water_file::{
+    FREEDOMS, LargestAsymmetry, ModuleLengths, WaterFile, WaterSource, asymmetry, symmetric_part,
+};
 use std::path::Path;
 
 /// What a file of a BEM code holds of the modules' freedoms.

@@ -5,11 +5,10 @@
 //! Which sense of time the code chose is immaterial for added mass and damping.
 
 use crate::bem_data::{AtFrequency, BemData};
-use crate::module_lengths::ModuleLengths;
 use crate::options::{WaterDepth, WaterFacts};
-use crate::water_file::FREEDOMS;
 use netcdf_reader::{NcFile, NcOpenOptions};
 use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
+use pontoon_plan::water_file::{FREEDOMS, ModuleLengths};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 

@@ -2,8 +2,8 @@
 //!
 //! Knows facts of the water and the hull, and how modes are numbered. Does not know the files.
 
-use crate::module_lengths::ModuleLengths;
 use pontoon_plan::input::{FoundValue, Refusal, RefusalKind};
+use pontoon_plan::water_file::ModuleLengths;
 use std::path::Path;
 
 /// How deep the water is.

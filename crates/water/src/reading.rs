@@ -4,9 +4,9 @@
 
 use crate::bem_data::{Asymmetry, check_modules};
 use crate::options::{Options, WaterDepth, WaterFacts};
-use crate::water_file::WaterFile;
 use crate::{capytaine, nemoh, wamit};
 use pontoon_plan::input::{Document, FoundValue, Refusal};
+use pontoon_plan::water_file::WaterFile;
 use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};

@@ -6,8 +6,8 @@
 use crate::bem_data::{AtFrequency, BemData, needed};
 use crate::numbers::{check_last_line, line_place, number, parsed, whole};
 use crate::options::{BemModes, Options};
-use crate::water_file::FREEDOMS;
 use pontoon_plan::input::{Refusal, RefusalKind};
+use pontoon_plan::water_file::FREEDOMS;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -5,7 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 use pontoon_plan::input::{Refusal, RefusalKind};
-use pontoon_water::{ModuleLengths, Options, Reading, WaterDepth, WaterFacts, WaterFormat, full, read};
+use pontoon_plan::water_file::{ModuleLengths, full};
+use pontoon_water::{Options, Reading, WaterDepth, WaterFacts, WaterFormat, read};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 

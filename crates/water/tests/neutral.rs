@@ -5,7 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 use pontoon_plan::input::{Document, Refusal, RefusalKind};
-use pontoon_water::{Options, WaterFile, WaterFormat, read, schema, triangle_length};
+use pontoon_plan::water_file::{WaterFile, schema, triangle_length};
+use pontoon_water::{Options, WaterFormat, read};
 use serde_json::{Value, json};
 use std::path::Path;
 use tempfile::TempDir;

@@ -5,7 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 use pontoon_plan::input::{Refusal, RefusalKind};
-use pontoon_water::{BemModes, ModuleLengths, Options, Reading, WaterDepth, WaterFacts, WaterFormat, full, read};
+use pontoon_plan::water_file::{ModuleLengths, full};
+use pontoon_water::{BemModes, Options, Reading, WaterDepth, WaterFacts, WaterFormat, read};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use tempfile::TempDir;

@@ -8,10 +8,9 @@ use anyhow::Result;
 use pontoon_journal::place::Folder;
 use pontoon_plan::input::{Cell, Document, Refusal};
 use pontoon_plan::study_file::{BridgeFile, read_bridge};
+use pontoon_plan::water_file::{JudgedCheck, JudgedWater, ModuleLengths, WaterFile};
 use pontoon_results::{labels, replaceable};
-use pontoon_water::{
-    BemModes, JudgedCheck, JudgedWater, ModuleLengths, Options, Reading, WaterDepth, WaterFacts, WaterFile,
-};
+use pontoon_water::{BemModes, Options, Reading, WaterDepth, WaterFacts};
 use serde_json::json;
 use std::path::Path;
 
@@ -22,7 +21,11 @@ const EQUAL_LENGTHS_M: f64 = 1e-9;
 pub(crate) fn water(arguments: &WaterArguments, common: Common) -> Result<ExitStatus> {
     let bridge = arguments.bridge.as_deref().map(read_bridge).transpose()?;
     let reading = pontoon_water::read(&arguments.file, &options(arguments, bridge.as_ref()))?;
-    let judged = JudgedWater::of(&arguments.file, &reading.water, bridge.as_ref())?;
+    let judged = JudgedWater::of(
+        &arguments.file,
+        &reading.water,
+        bridge.as_ref().map(|bridge| &bridge.design),
+    )?;
     let refused = judged.is_refused();
     let out = arguments.out.as_deref().filter(|_| !refused);
     if let Some(out) = out {

@@ -156,11 +156,7 @@ impl<'a> CalibrationModel<'a> {
         let candidate = Candidate::new(self.parameters, self.bridge, point)?;
         let of_source = |source: &ReferencedStudy<'_>| {
             let mut study = source.study.clone();
-            study.bridge = BridgeFile {
-                file: self.bridge.file.clone(),
-                document: candidate.document(),
-                design: candidate.design.clone(),
-            };
+            study.bridge = self.bridge.with(candidate.document(), candidate.design.clone());
             let jobs = Jobs::new(&study).filter(|job| job.as_ref().map_or(true, |job| source.needs(job)));
             let jobs = jobs.collect::<Result<Vec<Job>, Refusal>>()?;
             Ok((study, jobs))

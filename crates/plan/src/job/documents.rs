@@ -6,7 +6,8 @@ use super::crossing_type::CrossingType;
 use crate::design::{DesignPoint, JobAxis, Root};
 use crate::input::{Cell, DocumentPath, Refusal, RefusalKind, canonical_text, join, to_value, typed_value};
 use crate::study_file::{Analysis, Study, WearSpec, at_home, filled_vehicle};
-use pontoon_core::bridge::{BankSpec, BridgeDesign, DeadSpec, Joints, Supports};
+use crate::water_file::BridgeWater;
+use pontoon_core::bridge::{BankSpec, BridgeDesign, DeadSpec, Joints, Supports, WaterSpec};
 use pontoon_core::input::InvalidInput;
 use pontoon_core::road::{Road, RoadDesign, Ways};
 use pontoon_core::traffic::{Deck, Driven, StudyVehicle, Traffic, TrafficDesign};
@@ -25,6 +26,8 @@ pub struct BridgeEntry {
     pub id: usize,
     /// Its design.
     pub design: BridgeDesign,
+    /// Its water with memory, where it names one and the file was read.
+    pub water: Option<Arc<BridgeWater>>,
     /// The design as a document, defaults filled in.
     pub document: Value,
     /// Hash of the document.
@@ -173,19 +176,22 @@ impl Documents {
         let changes = Changes::of(study, point, Root::Bridge);
         let read = || {
             let design = match changes.applied(&study.bridge.design)? {
-                None => study.bridge.design.clone(),
-                Some(design) => {
+                None => (study.bridge.design.clone(), study.bridge.water.clone()),
+                Some(mut design) => {
                     let checked = design.check().and_then(|()| design.check_water_line());
                     checked.map_err(|e| changes.refusal(e))?;
-                    design
+                    let water = changed_water(study, &mut design).map_err(|refusal| changes.placed(refusal))?;
+                    (design, water)
                 }
             };
+            let (design, water) = design;
             let document = to_value(&design);
-            Ok((canonical_text(&document), (design, document)))
+            Ok((canonical_text(&document), (design, water, document)))
         };
-        self.bridges.get((0, changes.text()), read, |id, (design, document)| {
-            bridge_entry(id, design, document)
-        })
+        self.bridges
+            .get((0, changes.text()), read, |id, (design, water, document)| {
+                bridge_entry(id, (design, water), document)
+            })
     }
 
     /// The vehicle of a point on the deck of `bridge`.
@@ -338,7 +344,22 @@ impl Documents {
     }
 }
 
-fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry {
+/// The water of a bridge that axes have changed: another file has another hash than that of the bridge's own.
+fn changed_water(study: &Study, design: &mut BridgeDesign) -> Result<Option<Arc<BridgeWater>>, Refusal> {
+    let bridge = &study.bridge;
+    if bridge.design.water.is_some() && bridge.water.is_none() {
+        // a bridge of stored documents, whose files are not read
+        return Ok(None);
+    }
+    if let (Some(own), Some(base)) = (&mut design.water, &bridge.design.water)
+        && own.file != base.file
+    {
+        own.blake3 = None;
+    }
+    bridge.waters.attach(&study.file, bridge.folder(), design)
+}
+
+fn bridge_entry(id: usize, (design, water): (BridgeDesign, Option<Arc<BridgeWater>>), document: Value) -> BridgeEntry {
     let hash_of = |document: &Value| blake3::hash(canonical_text(document).as_bytes()).to_hex();
     let hash = hash_of(&document).to_string();
     let mut neutral = design.without_words();
@@ -360,6 +381,10 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
         of_kind.dead = DeadSpec::default();
         of_kind.draft_m = None;
         of_kind.freeboard_m = None;
+        // a module is the same in all water with memory
+        if let Some(water) = &mut of_kind.water {
+            *water = WaterSpec::default();
+        }
         hash_of(&to_value(&of_kind)).as_str().into()
     };
     neutral.joints = design.joints.clone();
@@ -367,6 +392,7 @@ fn bridge_entry(id: usize, design: BridgeDesign, document: Value) -> BridgeEntry
     BridgeEntry {
         id,
         design,
+        water,
         document,
         hash,
         structure_key,

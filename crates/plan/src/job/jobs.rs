@@ -439,7 +439,8 @@ impl Short<'_> {
 
     /// Refuses damping at the bending modes of a bridge that has none.
     fn damping(&self, analysis: &CrossingAnalysis, bridge: &BridgeEntry) -> Result<(), Refusal> {
-        if analysis.damping.frequencies_hz.is_some() || bridge.design.modules > 1 {
+        let damping = &analysis.damping;
+        if damping.frequencies_hz.is_some() || damping.structure.is_some() || bridge.design.modules > 1 {
             return Ok(());
         }
         let path = self.path_or("analysis.damping.frequencies_hz");

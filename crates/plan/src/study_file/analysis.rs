@@ -273,8 +273,20 @@ fn crossing(written: &AnalysisSpec) -> Result<CrossingAnalysis, InvalidInput> {
     let step_limit = written
         .step_limit
         .map(|limit| whole("step_limit", limit, 1, 10_000_000));
-    let damping = written.damping.unwrap_or_default();
-    within("damping.ratio", damping.ratio, 0.0, 0.99)?;
+    let damping = written.damping.unwrap_or_default().filled();
+    if let Some(of) = damping.structure {
+        let beside = [
+            ("ratio", damping.ratio.is_some()),
+            ("frequencies_hz", damping.frequencies_hz.is_some()),
+        ];
+        if let Some((key, _)) = beside.into_iter().find(|(_, given)| *given) {
+            let allowed = "nothing beside damping.structure";
+            return Err(InvalidInput::new(format!("damping.{key}"), "a value", allowed).because(Problem::Misplaced));
+        }
+        within("damping.structure.ratio", of.ratio, 0.0, 0.99)?;
+        positive("damping.structure.at_hz", of.at_hz)?;
+    }
+    within("damping.ratio", damping.rayleigh_ratio(), 0.0, 0.99)?;
     if let Some([first, second]) = damping.frequencies_hz {
         positive("damping.frequencies_hz[0]", first)?;
         if !(second.is_finite() && second > first) {
@@ -391,8 +403,8 @@ mod tests {
         assert_eq!(
             spec.damping,
             Some(DampingSpec {
-                ratio: 0.05,
-                frequencies_hz: None
+                ratio: Some(0.05),
+                ..DampingSpec::default()
             })
         );
     }

@@ -27,7 +27,7 @@ mod wear;
 pub use analysis::{Analysis, CrossingAnalysis, ModesAnalysis, Solver, StaticAnalysis, TimeStep};
 pub use find::{Find, FindSpec};
 pub use limits::{Allowed, Limit, LimitsSpec};
-pub use raw::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, StudySpec, VerifySpec};
+pub use raw::{AnalysisSpec, DampingSpec, Kind, ModelSpec, SolverSpec, StructureDamping, StudySpec, VerifySpec};
 pub use record::{HistoriesSpec, PeakAt, PeakColumn, PeakSpec, RecordSpec};
 pub use study::{BridgeFile, Study, bridge_of, filled_vehicle, read_bridge};
 pub(crate) use vehicle_files::at_home;

@@ -190,18 +190,33 @@ impl From<ModelSpec> for Model {
     }
 }
 
-/// Rayleigh damping.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Damping: Rayleigh's, of structure and water alike, or that of the structure alone, which belongs to water with memory.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DampingSpec {
-    /// Ratio of critical damping at both frequencies.
-    #[serde(default = "default_ratio")]
+    /// Ratio of critical damping at both frequencies; 0.05 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 0.99))]
-    pub ratio: f64,
+    pub ratio: Option<f64>,
     /// The two frequencies, increasing `[Hz]`; absent: the first two vertical bending modes of the job's own bridge,
     /// linearly connected and floating free.
     #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
     pub frequencies_hz: Option<[f64; 2]>,
+    /// Damping of the structure alone, in place of both: none of the water's springs and added mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structure: Option<StructureDamping>,
+}
+
+/// Damping of the structure in proportion to its stiffness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StructureDamping {
+    /// Ratio of critical damping of a motion at `at_hz` that the structure alone restores.
+    #[schemars(range(min = 0.0, max = 0.99))]
+    pub ratio: f64,
+    /// Frequency at which the ratio holds; it is in proportion to the frequency `[Hz]`.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub at_hz: f64,
 }
 
 /// Two numbers or nothing; a list of another length is told as such.
@@ -214,15 +229,24 @@ fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, 
     list.map(to_pair).transpose()
 }
 
-fn default_ratio() -> f64 {
-    0.05
-}
+impl DampingSpec {
+    /// The ratio of Rayleigh's damping where none is written.
+    pub const RATIO: f64 = 0.05;
 
-impl Default for DampingSpec {
-    fn default() -> Self {
-        Self {
-            ratio: default_ratio(),
-            frequencies_hz: None,
+    /// The ratio of Rayleigh's damping.
+    pub fn rayleigh_ratio(&self) -> f64 {
+        self.ratio.unwrap_or(Self::RATIO)
+    }
+
+    /// With the ratio written out where it counts.
+    #[must_use]
+    pub(super) fn filled(self) -> Self {
+        match self.structure {
+            None => Self {
+                ratio: Some(self.rayleigh_ratio()),
+                ..self
+            },
+            Some(_) => self,
         }
     }
 }

@@ -11,7 +11,8 @@ use super::record::RecordSpec;
 use super::vehicle_files::{VehicleFile, at_home, with_vehicle_files};
 use super::wear::WearSpec;
 use crate::design::{Axis, Block, Design, Goes, JobAxis, NAMED_AXES, Varies};
-use crate::input::{Document, FoundValue, Refusal, RefusalKind, leaves, to_value, typed};
+use crate::input::{Document, FoundValue, Refusal, RefusalKind, canonical_text, leaves, to_value, typed};
+use crate::water_file::{BridgeWater, Waters};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::traffic::TrafficDesign;
 use pontoon_core::vehicle::VehicleDesign;
@@ -29,6 +30,10 @@ pub struct BridgeFile {
     pub document: Document,
     /// Its design.
     pub design: BridgeDesign,
+    /// The water with memory that it names.
+    pub water: Option<Arc<BridgeWater>>,
+    /// Waters read for it and for what axes make of it.
+    pub(crate) waters: Arc<Waters>,
 }
 
 /// Reads and checks a bridge file.
@@ -44,6 +49,20 @@ pub fn read_bridge(file: &Path) -> Result<BridgeFile, Refusal> {
 /// # Errors
 /// [`Refusal`].
 pub fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
+    let mut bridge = stored_bridge_of(file, document)?;
+    let waters = Arc::clone(&bridge.waters);
+    bridge.water = waters.attach(file, file.parent().unwrap_or(Path::new("")), &mut bridge.design)?;
+    if let Some(water) = &bridge.water {
+        // what is kept of the bridge says which water it was
+        let mut value = bridge.document.value();
+        value["water"]["blake3"] = water.blake3.as_str().into();
+        bridge.document = Document::of_canonical(canonical_text(&value));
+    }
+    Ok(bridge)
+}
+
+/// Checks the document of a bridge that results were computed with; its water file is not read.
+fn stored_bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
     let design: BridgeDesign = typed(file, "", &document)?;
     let checked = design.check().and_then(|()| design.check_water_line());
     checked.map_err(|e| Refusal::of(file, "", e))?;
@@ -51,7 +70,27 @@ pub fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal>
         file: file.to_owned(),
         document,
         design,
+        water: None,
+        waters: Arc::default(),
     })
+}
+
+impl BridgeFile {
+    /// Another design in the place of this one, in this one's water.
+    #[must_use]
+    pub fn with(&self, document: Document, mut design: BridgeDesign) -> Self {
+        design.water.clone_from(&self.design.water);
+        Self {
+            document,
+            design,
+            ..self.clone()
+        }
+    }
+
+    /// The folder that its paths are relative to.
+    pub(crate) fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new(""))
+    }
 }
 
 /// A study with everything that its jobs are made of.
@@ -139,7 +178,7 @@ impl Study {
     /// [`Refusal`].
     pub fn of_documents(file: &Path, document: Document, bridge: Document) -> Result<Self, Refusal> {
         let spec: StudySpec = typed(file, "", &document)?;
-        let bridge = bridge_of(file, bridge)?;
+        let bridge = stored_bridge_of(file, bridge)?;
         Self::checked(file.to_owned(), document, spec, bridge, Vec::new())
     }
 

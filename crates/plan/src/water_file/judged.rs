@@ -2,15 +2,14 @@
 //!
 //! Knows the checks of the mechanics and the bridge's own water plane. Does not know what becomes of a water that is refused.
 
-use crate::triangle::full;
-use crate::water_file::WaterFile;
+use super::{WaterFile, full};
+use crate::input::{FoundValue, Refusal};
 use pontoon_core::bridge::BridgeDesign;
+use pontoon_core::input::InvalidInput;
 use pontoon_core::radiation::{
-    Band, Check, CheckName, FREEDOMS_PER_MODULE, Kernel, Limit, Outcome, RadiationTable, Scales, Window,
+    Band, Check, CheckName, FREEDOMS_PER_MODULE, Kernel, Limit, Outcome, Radiation, RadiationTable, Scales, Window,
     added_mass_infinite,
 };
-use pontoon_plan::input::{FoundValue, Refusal};
-use pontoon_plan::study_file::BridgeFile;
 use serde::Serialize;
 use std::path::Path;
 
@@ -22,6 +21,12 @@ const EQUAL_LENGTHS_M: f64 = 1e-3;
 
 /// Water plane of the hull against the bridge's hydrostatic stiffness: beyond what is unusual, and what is another hull.
 const WATER_PLANE: [f64; 2] = [0.05, 0.5];
+
+/// Name of that check.
+const WATER_PLANE_CHECK: &str = "water_plane";
+
+/// A water held against checks, its kernel or why it has none, its table and its lengths.
+type JudgedParts = (JudgedWater, Result<Kernel, InvalidInput>, RadiationTable, Scales);
 
 /// What was found of a water.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -57,14 +62,34 @@ impl JudgedWater {
     ///
     /// # Errors
     /// [`Refusal`] of a water of other modules than the bridge's, and of one whose breadth is not known.
-    pub fn of(file: &Path, water: &WaterFile, bridge: Option<&BridgeFile>) -> Result<Self, Refusal> {
+    pub fn of(file: &Path, water: &WaterFile, bridge: Option<&BridgeDesign>) -> Result<Self, Refusal> {
+        Self::with_kernel(file, water, bridge).map(|(judged, ..)| judged)
+    }
+
+    /// Holds a water against a bridge, and makes of it what the bridge moves in; `key` tells it from other waters.
+    ///
+    /// # Errors
+    /// As [`Self::of`], and of a water that allows no memory or no added mass at infinite frequency.
+    pub fn with_radiation(
+        file: &Path,
+        water: &WaterFile,
+        bridge: &BridgeDesign,
+        key: &str,
+    ) -> Result<(Self, Radiation), Refusal> {
+        let (judged, kernel, table, scales) = Self::with_kernel(file, water, Some(bridge))?;
+        let refused = |error| Refusal::of(file, "", error);
+        let radiation = kernel.and_then(|kernel| Radiation::new(kernel, &table, scales, key.to_owned()));
+        Ok((judged, radiation.map_err(refused)?))
+    }
+
+    fn with_kernel(file: &Path, water: &WaterFile, bridge: Option<&BridgeDesign>) -> Result<JudgedParts, Refusal> {
         if let Some(bridge) = bridge {
-            fits(file, water, &bridge.design)?;
+            fits(file, water, bridge)?;
         }
         let lengths_m: Vec<f64> = (0..water.modules).filter_map(|m| water.module_length_m.of(m)).collect();
         let breadth_m = water
             .waterline_breadth_m
-            .or(bridge.map(|bridge| bridge.design.module.breadth_m));
+            .or(bridge.map(|bridge| bridge.module.breadth_m));
         let breadth_m = breadth_m.ok_or_else(|| Refusal::missing(file, "waterline_breadth_m"))?;
         let refused = |error| Refusal::of(file, "", error);
         let scales = Scales::new(&lengths_m, breadth_m).map_err(refused)?;
@@ -73,8 +98,9 @@ impl JudgedWater {
             usable_to_rad_s: water.usable_to_rad_s,
             ..Band::default()
         };
-        let kernel = Kernel::new(&table, &scales, band).ok();
-        let mut checks = Check::all(&table, &scales, band, kernel.as_ref()).map_err(refused)?;
+        let made = Kernel::new(&table, &scales, band);
+        let kernel = made.as_ref().ok();
+        let mut checks = Check::all(&table, &scales, band, kernel).map_err(refused)?;
         // the file keeps the symmetric part alone, and says how far the code's own was from it
         if let Some(own) = &water.source.asymmetry {
             for check in &mut checks {
@@ -86,29 +112,41 @@ impl JudgedWater {
             }
         }
         let mut judged: Vec<JudgedCheck> = checks.iter().map(JudgedCheck::of).collect();
-        judged.extend(bridge.and_then(|bridge| water_plane(water, &bridge.design)));
+        judged.extend(bridge.and_then(|bridge| water_plane(water, bridge)));
         let length_m: f64 = lengths_m.iter().sum();
-        let infinite = kernel.as_ref().and_then(|kernel| {
+        let infinite = kernel.and_then(|kernel| {
             let infinite = added_mass_infinite(kernel, &table, &scales, Window::TRANSFER).ok()?;
             Some(total_heave(&infinite) / length_m)
         });
         let norm = |kernel: &Kernel, t_s: f64| scales.scaled(&kernel.at(t_s)).norm();
-        Ok(Self {
+        let judged = Self {
             checks: judged,
             infinite_heave_kg_m: infinite,
-            memory_heave_n_m2: kernel.as_ref().map(|kernel| total_heave(&kernel.at(0.0)) / length_m),
-            memory_left: kernel.as_ref().map_or_else(Vec::new, |kernel| {
+            memory_heave_n_m2: kernel.map(|kernel| total_heave(&kernel.at(0.0)) / length_m),
+            memory_left: kernel.map_or_else(Vec::new, |kernel| {
                 TOLD_AT_S
                     .iter()
                     .map(|&t_s| norm(kernel, t_s) / norm(kernel, 0.0))
                     .collect()
             }),
-        })
+        };
+        Ok((judged, made, table, scales))
     }
 
     /// Whether a check refuses the water.
     pub fn is_refused(&self) -> bool {
-        self.checks.iter().any(|check| check.outcome == REFUSED)
+        self.refused().next().is_some()
+    }
+
+    /// The checks that refuse the water.
+    pub fn refused(&self) -> impl Iterator<Item = &JudgedCheck> {
+        self.checks.iter().filter(|check| check.outcome == REFUSED)
+    }
+
+    /// The names of all checks.
+    pub fn names() -> Vec<&'static str> {
+        let of_water = CheckName::ALL.into_iter().map(CheckName::as_str);
+        of_water.chain([WATER_PLANE_CHECK]).collect()
     }
 }
 
@@ -160,7 +198,7 @@ fn fits(file: &Path, water: &WaterFile, design: &BridgeDesign) -> Result<(), Ref
 }
 
 /// The table of a water.
-fn table_of(water: &WaterFile) -> Result<RadiationTable, pontoon_core::input::InvalidInput> {
+fn table_of(water: &WaterFile) -> Result<RadiationTable, InvalidInput> {
     let order = water.order();
     let matrix = |triangle: &Vec<f64>| RadiationTable::matrix(order, &full(order, triangle));
     RadiationTable::new(
@@ -188,7 +226,7 @@ fn water_plane(water: &WaterFile, design: &BridgeDesign) -> Option<JudgedCheck> 
     let off = hull_n_m2.map(|hull_n_m2| (hull_n_m2 / own_n_m2 - 1.0).abs());
     let [usual, allowed] = WATER_PLANE;
     Some(JudgedCheck {
-        check: "water_plane",
+        check: WATER_PLANE_CHECK,
         figure: off,
         usual: Some(format!("at most {usual}")),
         allowed: Some(format!("at most {allowed}")),

@@ -19,7 +19,7 @@ pub fn full(order: usize, triangle: &[f64]) -> Vec<f64> {
 }
 
 /// The upper triangle of the symmetric part of a whole matrix.
-pub(crate) fn symmetric_part(order: usize, whole: &[f64]) -> Vec<f64> {
+pub fn symmetric_part(order: usize, whole: &[f64]) -> Vec<f64> {
     let places = (0..order).flat_map(|i| (i..order).map(move |j| (i, j)));
     places
         .map(|(i, j)| (whole[i * order + j] + whole[j * order + i]) / 2.0)
@@ -28,7 +28,7 @@ pub(crate) fn symmetric_part(order: usize, whole: &[f64]) -> Vec<f64> {
 
 /// The largest difference between an entry and its mirror image over the largest entry, each entry over the lengths of its two
 /// freedoms; 0 of a matrix of zeros.
-pub(crate) fn asymmetry(lengths: &[f64], whole: &[f64]) -> f64 {
+pub fn asymmetry(lengths: &[f64], whole: &[f64]) -> f64 {
     let order = lengths.len();
     let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
     for i in 0..order {

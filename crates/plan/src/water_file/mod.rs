@@ -1,14 +1,29 @@
-//! The neutral form of water with memory: one JSON file.
+//! Water with memory as a file: added mass and radiation damping of a chain of modules over frequency, as one JSON file.
+//!
+//! | module | charter |
+//! |---|---|
+//! | `module_lengths` | the modules' lengths as the file writes them |
+//! | `triangle` | symmetric matrices as lists of their upper triangles |
+//! | `judged` | a water held against what radiation has to be, and against a bridge |
+//! | `waters` | water files that bridges name, read once |
 //!
 //! Knows the keys, their ranges and how the file is written. Does not know what BEM codes write.
 
-use crate::module_lengths::ModuleLengths;
-use crate::triangle::triangle_length;
-use pontoon_plan::input::{Cell, Document, FoundValue, Refusal, RefusalKind, pretty, to_value, typed};
+mod judged;
+mod module_lengths;
+mod triangle;
+mod waters;
+
+use crate::input::{Cell, Document, FoundValue, Refusal, RefusalKind, pretty, to_value, typed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::path::Path;
+
+pub use judged::{JudgedCheck, JudgedWater};
+pub use module_lengths::ModuleLengths;
+pub use triangle::{asymmetry, full, symmetric_part, triangle_length};
+pub use waters::{BridgeWater, Waters};
 
 /// A water file: added mass and radiation damping of a chain of modules. Units are SI: forces `[N]` and moments `[N m]` per
 /// acceleration or speed `[m]`, `[rad]`.
@@ -127,7 +142,7 @@ fn number_or_null<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f
 
 /// The JSON Schema of a water file.
 pub fn schema() -> Value {
-    let mut schema = pontoon_plan::schema::titled(schemars::schema_for!(WaterFile), "pontoon water");
+    let mut schema = crate::schema::titled(schemars::schema_for!(WaterFile), "pontoon water");
     if let Some(required) = schema["required"].as_array_mut()
         && !required.iter().any(|key| key == "depth_m")
     {
