@@ -54,6 +54,8 @@ pub(super) struct Layout {
     verify: bool,
     /// Whether any job has a vehicle on springs.
     springs: bool,
+    /// Whether any job's bridge is in water with memory.
+    waves: bool,
     /// Whether limits are stated.
     limits: bool,
     /// What is kept of jobs.
@@ -94,6 +96,7 @@ impl Layout {
             tables: TableName::ALL.into_iter().filter(left).collect(),
             auto: crossings().any(|crossing| crossing.analysis.time_step.tolerance().is_some()),
             springs,
+            waves: jobs.iter().any(|job| job.bridge.design.water.is_some()),
             limits: study.limits.is_some(),
             verify: crossings().any(|crossing| crossing.analysis.verify().is_some()),
             record: Arc::clone(record),
@@ -182,6 +185,8 @@ impl Layout {
             When::Verify => self.verify,
             When::Pins => self.record.pins && self.kind != Kind::Modes,
             When::Sections => self.record.sections && self.kind != Kind::Modes,
+            When::Waves => self.waves && self.kind.has_crossings(),
+            When::ModesInWaves => self.waves && self.kind == Kind::Modes,
             When::Freeboards => self.record.freeboards && self.kind != Kind::Modes,
             When::Springs => self.springs,
             When::VehicleHistories => !self.record.histories.vehicles.is_empty(),

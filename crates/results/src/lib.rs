@@ -77,7 +77,7 @@ pub use memory::too_large;
 pub use moment::Moment;
 pub use outcome::{Cause, Failures, Outcome};
 pub use parquet::TableProvenance;
-pub use preparation::{BridgeReport, OperatorCounts, Preparation};
+pub use preparation::{BridgeReport, OperatorCounts, Preparation, WaterReport};
 pub use quantities::{DEAD_QUANTITIES, QUANTITIES, SECTION_QUANTITIES};
 pub use record::{
     AtPeakRow, BankRow, ConnectorRow, HistoryRows, HistorySeries, JobRecord, ModeRow, NumberPlace, PinRow, PlaceRow,

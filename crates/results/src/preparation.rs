@@ -74,4 +74,31 @@ pub struct BridgeReport {
     pub operator_tolerance: Option<f64>,
     /// Error left: the largest share by which that flexibility is off.
     pub operator_error: Option<f64>,
+    /// Its water with memory; absent in other waters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub water: Option<WaterReport>,
+}
+
+/// What is told of water with memory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WaterReport {
+    /// Its name.
+    pub name: String,
+    /// Hash of its file.
+    pub blake3: String,
+    /// Depth `[m]`; null where it is deep.
+    pub depth_m: Option<f64>,
+    /// Added mass at infinite frequency, heave of the whole bridge, per length `[kg/m]`.
+    pub infinite_heave_kg_m: Option<f64>,
+    /// Memory at 0 s, heave of the whole bridge, per length `[N/m per m]`.
+    pub memory_heave_n_m2: Option<f64>,
+    /// Checks that refuse the water and were accepted, with their figures.
+    pub accepted: Vec<(String, Option<f64>)>,
+    /// Real states of the memory in the operator, the rms error of the kernel by them, and the least eigenvalue of Re K over the
+    /// largest before it is lifted to 0.
+    pub states: Option<usize>,
+    /// See `states`.
+    pub kernel_error: Option<f64>,
+    /// See `states`.
+    pub passivity: Option<f64>,
 }

@@ -152,6 +152,10 @@ pub struct Summary {
     pub energy_residual: Option<f64>,
     /// Largest numerical dissipation over the load's work.
     pub numerical_dissipation: Option<f64>,
+    /// What waves of water with memory have taken at the end `[J]`; null in other waters.
+    pub radiated_energy_j: Option<f64>,
+    /// The least of what they had taken at any time `[J]`.
+    pub least_radiated_energy_j: Option<f64>,
     /// How far the operator's largest deflection is off, as a share of the reference solver's; of jobs solved again.
     pub verify_deflection: Option<f64>,
     /// How far the largest compression is off, as a share of the job's largest joint force.
@@ -317,6 +321,8 @@ pub struct ModeRow {
     pub frequency_hz: f64,
     /// Name of its shape.
     pub shape: String,
+    /// Damping by radiated waves, a share of critical damping.
+    pub radiation_ratio: Option<f64>,
     /// Vertical share.
     pub vertical_share: f64,
     /// Share of torsion.

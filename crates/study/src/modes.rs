@@ -5,6 +5,7 @@
 
 use pontoon_core::analysis::{AnalysisError, modes};
 use pontoon_core::bridge::{Bridge, Ends, PreparedModule};
+use pontoon_core::input::{InvalidInput, Problem};
 use pontoon_plan::study_file::{BridgeFile, ModelSpec};
 
 pub use pontoon_core::bridge::BridgeError;
@@ -42,6 +43,11 @@ pub enum ModesError {
 pub fn modes(file: &BridgeFile, request: ModesRequest) -> Result<Vec<ModeRow>, ModesError> {
     let mut design = file.design.clone();
     if request.module {
+        if design.water.is_some() {
+            let allowed = "no water with memory, which is that of the whole bridge, under a module alone";
+            let refused = InvalidInput::new("water", "a water file", allowed);
+            return Err(BridgeError::from(refused.because(Problem::Conflict)).into());
+        }
         // of a row of kinds the first module
         design = design.variants().designs.swap_remove(0);
         design.modules = 1;
@@ -63,6 +69,7 @@ pub(crate) fn rows(bridge: &Bridge, count: usize) -> Result<Vec<ModeRow>, Analys
         number,
         frequency_hz: mode.frequency_hz,
         shape: mode.name,
+        radiation_ratio: mode.radiation_ratio,
         vertical_share: mode.vertical_share,
         torsion_share: mode.torsion_share,
         horizontal_share: mode.horizontal_share,

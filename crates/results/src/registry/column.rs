@@ -156,6 +156,10 @@ pub enum When {
     PinHistories,
     /// Where any job has a vehicle on springs.
     Springs,
+    /// Where crossings are in water with memory.
+    Waves,
+    /// Where modes are in water with memory.
+    ModesInWaves,
     /// Where limits are stated.
     Limits,
     /// In studies of ratings.

@@ -312,6 +312,7 @@ fn rows(
         places_x_m: &job.record.places_x_m,
     };
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
+    let waves = job.bridge.design.water.is_some();
     let mut summary = Summary {
         peak_edge_deflection_m: Some(response.peak_edge.value),
         peak_roll_rad: Some(response.peak_roll.value),
@@ -326,6 +327,8 @@ fn rows(
         contact_switches: Some(response.statistics.contact_switches),
         energy_residual: Some(response.energy.energy_residual),
         numerical_dissipation: Some(response.energy.numerical_dissipation),
+        radiated_energy_j: waves.then_some(response.energy.radiated_j),
+        least_radiated_energy_j: waves.then_some(response.energy.least_radiated_j),
         ..Summary::default()
     };
     summary.take_peaks(&positions, &connectors);

@@ -68,8 +68,11 @@ impl From<BridgeError> for JobFailure {
 }
 
 impl From<OperatorError> for JobFailure {
-    fn from(OperatorError::Factor(error): OperatorError) -> Self {
-        error.into()
+    fn from(error: OperatorError) -> Self {
+        match error {
+            OperatorError::Factor(error) => error.into(),
+            error @ OperatorError::Waves(_) => Self::not_prepared(&error),
+        }
     }
 }
 

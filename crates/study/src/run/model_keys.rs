@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 pub(super) type ModuleKey = (Model, Arc<str>);
 pub(super) type BridgeKey = (Model, Arc<str>);
-pub(super) type DampingKey = (BridgeKey, u64, Option<[u64; 2]>);
+pub(super) type DampingKey = (BridgeKey, u64, [Option<[u64; 2]>; 2]);
 pub(super) type CrossingKey = (DampingKey, [u64; 2], [usize; 2]);
 /// Crossings of one key are solved side by side.
 pub(super) type LaneBatchKey = (CrossingKey, OperatorKey, Option<u64>);
@@ -106,8 +106,9 @@ pub(super) fn damping_key(crossing: &CrossingJob<'_>) -> DampingKey {
     let damping = crossing.analysis.damping;
     (
         bridge_key(crossing.job),
-        damping.ratio.to_bits(),
-        damping.frequencies_hz.map(|f| f.map(f64::to_bits)),
+        damping.rayleigh_ratio().to_bits(),
+        [damping.frequencies_hz, damping.structure.map(|of| [of.ratio, of.at_hz])]
+            .map(|pair| pair.map(|x| x.map(f64::to_bits))),
     )
 }
 

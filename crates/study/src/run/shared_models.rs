@@ -18,12 +18,13 @@ use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, Operato
 use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
-use pontoon_core::operator::BridgeOperator;
+use pontoon_core::operator::{BridgeOperator, WaveStates};
 use pontoon_core::response::DeadState;
 use pontoon_core::stop::Stop;
 use pontoon_plan::job::{CrossingJob, Job, Task};
 use pontoon_plan::study_file::CrossingAnalysis;
-use pontoon_results::{BridgeReport, OperatorCounts, Preparation};
+use pontoon_plan::water_file::BridgeWater;
+use pontoon_results::{BridgeReport, OperatorCounts, Preparation, WaterReport};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -32,7 +33,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Damping and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Damping {
-    frequencies_hz: [f64; 2],
+    /// Of Rayleigh's; none of the structure's own.
+    frequencies_hz: Option<[f64; 2]>,
     coefficients: Rayleigh,
 }
 
@@ -267,14 +269,20 @@ impl SharedModels {
     fn damping_of(&self, crossing: &CrossingJob<'_>, cancel: &CancelToken) -> Result<Damping, JobFailure> {
         let asked = || cancel.is_asked();
         let damping = crossing.analysis.damping;
+        if let Some(of) = damping.structure {
+            return Ok(Damping {
+                frequencies_hz: None,
+                coefficients: Rayleigh::of_structure(of.ratio, of.at_hz),
+            });
+        }
         let frequencies_hz = match damping.frequencies_hz {
             Some(stated) => stated,
             None => bending_frequencies_hz(&self.bridge(crossing.job, Ends::Free)?, Stop::when(&asked))
                 .map_err(|e| JobFailure::from(e).said("damping: ", "; state analysis.damping.frequencies_hz"))?,
         };
         Ok(Damping {
-            frequencies_hz,
-            coefficients: rayleigh(damping.ratio, frequencies_hz),
+            frequencies_hz: Some(frequencies_hz),
+            coefficients: rayleigh(damping.rayleigh_ratio(), frequencies_hz),
         })
     }
 
@@ -513,6 +521,7 @@ impl SharedModels {
             let crossing = job.as_crossing();
             let damping = crossing.and_then(|crossing| shared(&self.damping, &damping_key(&crossing)).ok());
             let operator = crossing.and_then(|crossing| self.operator_of(&crossing).ok());
+            let waves = operator.as_ref().and_then(|operator| operator.wave_states());
             let operator = operator.map(|operator| operator.cutoff());
             let report = BridgeReport {
                 blake3: job.bridge.hash.clone(),
@@ -523,19 +532,43 @@ impl SharedModels {
                 module_dofs: largest(PreparedModule::dofs),
                 structural_mass_kg: self.mean_mass_kg(job).ok(),
                 dofs: shared(&self.bridges, &bridge_key(job)).ok().map(|b| b.dofs()),
-                damping_frequencies_hz: damping.as_ref().map(|d| d.frequencies_hz),
+                damping_frequencies_hz: damping.as_ref().and_then(|d| d.frequencies_hz),
                 damping_stiffness_s: damping.as_ref().map(|d| d.coefficients.a),
                 damping_mass_1_s: damping.as_ref().map(|d| d.coefficients.b),
                 operator_modes: operator.map(|o| o.modes),
                 operator_cutoff_hz: operator.map(|o| o.frequency_hz),
                 operator_tolerance: operator.map(|o| o.tolerance),
                 operator_error: operator.map(|o| o.error),
+                water: job.bridge.water.as_ref().map(|water| water_report(job, water, waves)),
             };
             if !reports.contains(&report) {
                 reports.push(report);
             }
         }
         reports
+    }
+}
+
+/// What is told of the water with memory under a job's bridge.
+fn water_report(job: &Job, water: &BridgeWater, states: Option<WaveStates>) -> WaterReport {
+    let accepts = |name: &str| {
+        job.bridge
+            .design
+            .water
+            .iter()
+            .any(|spec| spec.accept.iter().any(|own| own == name))
+    };
+    let accepted = water.judged.refused().filter(|check| accepts(check.check));
+    WaterReport {
+        name: water.name.clone(),
+        blake3: water.blake3.clone(),
+        depth_m: water.depth_m,
+        infinite_heave_kg_m: water.judged.infinite_heave_kg_m,
+        memory_heave_n_m2: water.judged.memory_heave_n_m2,
+        accepted: accepted.map(|check| (check.check.to_owned(), check.figure)).collect(),
+        states: states.map(|states| states.real_states),
+        kernel_error: states.map(|states| states.kernel_error),
+        passivity: states.map(|states| states.least_over_largest),
     }
 }
 

@@ -5,7 +5,7 @@
 use super::ExportError;
 use super::subject::{CrossingWanted, Stresses};
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
-use pontoon_core::analysis::modes::{bending_frequencies_hz, rayleigh};
+use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
 use pontoon_core::analysis::snapshot::Snapshot;
 use pontoon_core::bridge::{
     Bridge, BridgeDesign, BridgeStresses, Ends, MeshedBridge, Model, PreparedModule, StressRecovery,
@@ -68,13 +68,17 @@ impl Ready {
         let (design, crossing) = (&wanted.job.bridge.design, wanted.crossing()?);
         let modules = PreparedModule::of_kinds(design, wanted.job.model().into())?;
         let damping = crossing.analysis.damping;
-        let frequencies_hz = match damping.frequencies_hz {
-            Some(stated) => stated,
-            None => bending_frequencies_hz(&Bridge::of_kinds(design, &modules, Ends::Free)?, Stop::never())?,
+        let coefficients = match (damping.structure, damping.frequencies_hz) {
+            (Some(of), _) => Rayleigh::of_structure(of.ratio, of.at_hz),
+            (None, Some(stated)) => rayleigh(damping.rayleigh_ratio(), stated),
+            (None, None) => {
+                let free = Bridge::of_kinds(design, &modules, Ends::Free)?;
+                rayleigh(damping.rayleigh_ratio(), bending_frequencies_hz(&free, Stop::never())?)
+            }
         };
         let settings = CrossingSettings {
             time_step_s: wanted.time_step_s,
-            ..crossing.settings(rayleigh(damping.ratio, frequencies_hz))
+            ..crossing.settings(coefficients)
         };
         Ok((Self::of(design, &modules, Ends::Supported, stresses)?, settings))
     }

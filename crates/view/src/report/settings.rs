@@ -6,7 +6,7 @@ use super::Item;
 use crate::asked;
 use pontoon_core::vehicle::Inertia;
 use pontoon_plan::design::{Root, Varies};
-use pontoon_plan::study_file::{Analysis, Kind, ModelSpec, Solver, Study, TimeStep};
+use pontoon_plan::study_file::{Analysis, DampingSpec, Kind, ModelSpec, Solver, Study, TimeStep};
 use pontoon_results::labels::{self, SHOWN};
 
 /// The settings of a study, its axes apart.
@@ -41,12 +41,15 @@ fn bridge(study: &Study) -> String {
             .rsplit_once('.')
             .map_or(String::new(), |(_, name)| format!("{name} "));
         format!(
-            "{name}{} m, {} m wide, {} m deep; water {} kPa/m and {} kg/m",
+            "{name}{} m, {} m wide, {} m deep; water {} kPa/m and {}",
             number(module.length_m),
             number(module.breadth_m),
             number(module.depth_m),
             number(1e-3 * kind.p_b()),
-            number(kind.m_a()),
+            match &kind.water {
+                None => format!("{} kg/m", number(kind.m_a())),
+                Some(water) => format!("radiated waves of {}", water.file),
+            },
         )
     });
     let kinds = kinds.collect::<Vec<_>>().join("; ");
@@ -116,11 +119,22 @@ fn analysis(analysis: &Analysis) -> String {
                 TimeStep::Stated(seconds) => format!("time step {} ms", number(1e3 * seconds)),
             };
             format!(
-                "crossing by the {solver}, {model}, {step}, {} s after the vehicle has left, damping {} %",
+                "crossing by the {solver}, {model}, {step}, {} s after the vehicle has left, {}",
                 number(crossing.tail_s),
-                number(100.0 * crossing.damping.ratio)
+                damping(&crossing.damping)
             )
         }
+    }
+}
+
+fn damping(of: &DampingSpec) -> String {
+    match of.structure {
+        None => format!("damping {} %", number(100.0 * of.rayleigh_ratio())),
+        Some(own) => format!(
+            "damping of the structure {} % at {} Hz",
+            number(100.0 * own.ratio),
+            number(own.at_hz)
+        ),
     }
 }
 
