@@ -12,6 +12,7 @@ pub mod fem_model;
 pub mod operated;
 pub mod oscillator;
 pub mod scenario;
+pub mod waves;
 
 use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{Crossing, CrossingSettings, CrossingSolver, OperatorSolver};
