@@ -22,6 +22,8 @@ WHEN = {
     "pins": "; where pins are recorded",
     "sections": "; where sections are recorded",
     "freeboards": "; where freeboards are recorded",
+    "waves": "; where a bridge has water with memory",
+    "modes_in_waves": "; where a bridge has water with memory",
     "place_histories": "; with histories of places",
     "pin_histories": "; with histories of pins or vehicles",
     "springs": "; of vehicles on springs",

@@ -94,11 +94,10 @@ pub struct WaterReport {
     pub memory_heave_n_m2: Option<f64>,
     /// Checks that refuse the water and were accepted, with their figures.
     pub accepted: Vec<(String, Option<f64>)>,
-    /// Real states of the memory in the operator, the rms error of the kernel by them, and the least eigenvalue of Re K over the
-    /// largest before it is lifted to 0.
+    /// Real states of the memory in the operator.
     pub states: Option<usize>,
-    /// See `states`.
+    /// The rms error of the kernel by its states, a share of the kernel's rms.
     pub kernel_error: Option<f64>,
-    /// See `states`.
+    /// The least eigenvalue of Re K over the largest, before it is lifted to 0.
     pub passivity: Option<f64>,
 }

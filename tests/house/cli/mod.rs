@@ -33,3 +33,4 @@ mod shown_places;
 mod terminal;
 mod traffic;
 mod water;
+mod waves;

@@ -38,7 +38,7 @@ fn diagonal(number: f64) -> Vec<f64> {
     (0..order).flat_map(row).collect()
 }
 
-fn stage() -> Stage {
+pub(super) fn stage() -> Stage {
     let stage = Stage::new();
     fs::copy(
         concat!(env!("CARGO_MANIFEST_DIR"), "/../../studies/bridges/smoke.json"),
@@ -49,7 +49,7 @@ fn stage() -> Stage {
 }
 
 /// A water for the smoke bridge with the water plane that its stiffness asks for.
-fn water(stage: &Stage) -> Value {
+pub(super) fn water(stage: &Stage) -> Value {
     let bridge: Value = serde_json::from_slice(&fs::read(stage.path("bridge.json")).unwrap()).unwrap();
     let stiffness = bridge["hydrostatic_stiffness_pa_m"].as_f64().unwrap();
     let breadth_m = stiffness * bridge["module"]["breadth_m"].as_f64().unwrap() / 9810.0;

@@ -7,7 +7,7 @@ use crate::text;
 use anyhow::Result;
 use pontoon_plan::input::{Cell, Refusal};
 use pontoon_plan::study_file::read_bridge;
-use pontoon_results::{Column, TableName};
+use pontoon_results::{Column, TableName, When};
 use pontoon_study::modes::{ModesError, ModesRequest, modes as find};
 use serde_json::json;
 use unicode_width::UnicodeWidthStr;
@@ -33,6 +33,7 @@ pub(crate) fn modes(arguments: &ModesArguments, common: Common) -> Result<ExitSt
             // there is one job: its number says nothing
             let columns: Vec<&Column> = Column::of_table(TableName::Modes)
                 .filter(|column| column.name != "job")
+                .filter(|column| column.when != When::ModesInWaves || file.design.water.is_some())
                 .collect();
             let names: Vec<String> = columns.iter().map(|column| column.name.to_owned()).collect();
             let row = |mode| columns.iter().map(|column| column.of_mode(mode)).collect();

@@ -48,7 +48,7 @@ const LOCAL_BELOW: f64 = 0.5;
 /// Share of a profile that must be rigid for the shape to be called rigid.
 const RIGID_SHARE: f64 = 0.95;
 
-/// The same in water with memory, whose mass is less at the ends: what heaves bends there.
+/// Share of a profile that must be rigid in water with memory, whose mass is less at the ends: what heaves bends there.
 const RIGID_SHARE_IN_WAVES: f64 = 0.6;
 
 /// The lowest `count` modes with the linear connection (both trusses of a connector at work), and their shapes.

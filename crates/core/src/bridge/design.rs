@@ -2,6 +2,7 @@
 //!
 //! Knows which numbers describe a bridge and refuses those that cannot. Does not know files or studies.
 
+mod condensation;
 mod heights;
 mod wet;
 mod written;
@@ -18,11 +19,12 @@ use crate::connector::{Connection, OwnLaws};
 use crate::input::{InvalidInput, Problem, SAME_PLACE_M, positive, within};
 use crate::module::{MeshSize, ModuleDesign, ModuleMesh, Outline, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
+pub use condensation::Condensation;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
-use wet::{OF_DRY, check_dry_held, check_own_water_line, check_water};
+use wet::{OF_DRY, check_dry_held, check_modules_in_waves, check_own_water_line, check_water};
 use written::WrittenBridge;
 
 /// A bridge of modules side by side, as one of the two forms of its file has it: equal modules, or a row of kinds.
@@ -92,37 +94,6 @@ pub struct Variants {
     pub keys: Vec<String>,
 }
 
-/// Masters and modes of the super-element. Hinges, connectors, the deck's z and the ends' bottom edges are always
-/// masters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Condensation {
-    /// Fixed-master modes kept (Craig-Bampton); 0 is Guyan's condensation.
-    #[serde(default = "default_fixed_master_modes")]
-    pub fixed_master_modes: usize,
-    /// Whether z of all bottom nodes, which carry the water, are masters too.
-    #[serde(default)]
-    pub bottom_masters: bool,
-    /// Whether x of the bottom at the connectors' places of both ends are masters, as in every row of unlike depths, whose
-    /// connectors reach below a deck.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub end_masters: bool,
-}
-
-fn default_fixed_master_modes() -> usize {
-    16
-}
-
-impl Default for Condensation {
-    fn default() -> Self {
-        Self {
-            fixed_master_modes: default_fixed_master_modes(),
-            bottom_masters: false,
-            end_masters: false,
-        }
-    }
-}
-
 impl<'de> Deserialize<'de> for BridgeDesign {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let written = WrittenBridge::deserialize(deserializer)?;
@@ -146,7 +117,7 @@ impl JsonSchema for BridgeDesign {
     }
 }
 
-/// Most that a river may rise or fall `[m]`: the water is linear, and its depth not known.
+/// Most that a river may rise or fall `[m]`: the water is linear.
 const MOST_LEVEL_M: f64 = 100.0;
 
 /// Most memory that the dense matrices of one bridge may take `[GiB]`.
@@ -165,10 +136,14 @@ impl BridgeDesign {
             Some(row) => row.check()?,
             None if (1..=500).contains(&self.modules) => {}
             None => {
-                let allowed = "a whole number from 1 to 500";
-                return Err(InvalidInput::new("modules", self.modules, allowed));
+                return Err(InvalidInput::new(
+                    "modules",
+                    self.modules,
+                    "a whole number from 1 to 500",
+                ));
             }
         }
+        check_modules_in_waves(self)?;
         for (key, kind) in self.named_kinds() {
             kind.check_kind().map_err(|e| e.within_kind(&key))?;
         }
@@ -418,7 +393,7 @@ impl BridgeDesign {
         self.wet_from_m.into_iter().chain(self.wet_to_m).collect()
     }
 
-    /// Where the wet part of the module's bottom begins and ends, from its left end `[m]`.
+    /// Where the wet part of the module's bottom begins and ends `[m]`.
     pub fn wet_m(&self) -> [f64; 2] {
         wet_m(self.module.length_m, [self.wet_from_m, self.wet_to_m])
     }

@@ -165,28 +165,43 @@ pub(crate) struct ModuleForces {
 #[cfg(test)]
 #[allow(clippy::expect_used)]
 impl ModuleForces {
-    /// Of each module, at each of its dofs; arguments as of [`PinRow::force_n`].
+    /// Of each module, at each of its dofs.
     pub(crate) fn of(
         design: &BridgeDesign,
         module: &super::PreparedModule,
-        elastic: &[f64],
-        inertial: Option<&[f64]>,
-        down: &[SparseRow],
+        waves: Option<&BridgeWaves>,
+        acting: &Acting<'_>,
     ) -> Vec<Vec<Self>> {
+        let (down, nothing) = (acting.down, vec![0.0; acting.elastic.len()]);
+        // forces of the water's memory and of its mass on heave, pitch and roll of each module
+        let of_waves: Vec<f64> = waves.map_or_else(Vec::new, |waves| {
+            let moved = nalgebra::DVector::from_vec(waves.motion(acting.inertial.unwrap_or(&nothing)));
+            let mass = waves.radiation.infinite() * moved;
+            let memory = acting.waves.unwrap_or(&[]);
+            mass.iter().zip(memory).map(|(mass, memory)| mass - memory).collect()
+        });
         let prepared = [module];
         let modules = Modules::new(design, &prepared).expect("the modules of the design");
         let row = Row::number(design, &modules, super::Ends::Supported);
         let (grid, nx, ny) = (&module.grid, module.grid.x.len(), module.grid.y.len());
         let of_module = |j: usize| {
             let own = |x: &[f64]| -> Vec<f64> { row.map[j].iter().map(|dof| dof.map_or(0.0, |dof| x[dof])).collect() };
-            let (elastic, inertial) = (own(elastic), inertial.map(own));
+            let (elastic, inertial) = (own(acting.elastic), acting.inertial.map(own));
+            let beyond_water = acting.beyond_water.map(own);
+            let on_water = |dof: usize| -> f64 {
+                let motions = of_waves.iter().skip(FREEDOMS_PER_MODULE * j).zip(&module.motions);
+                let at = |row: &SparseRow| row.0.iter().filter(|(of, _)| *of == dof).map(|(_, g)| g).sum::<f64>();
+                motions.map(|(force, row)| at(row) * force).sum()
+            };
             let mut forces: Vec<Self> = (0..module.dofs())
                 .map(|dof| {
                     let of = |matrix: &SymmetricMatrix, x: &[f64]| SparseRow(matrix.column(dof).collect()).dot(x);
                     Self {
                         global: row.map[j][dof],
                         tied: None,
-                        force: of(&module.k, &elastic) + inertial.as_ref().map_or(0.0, |x| of(&module.m, x)),
+                        force: of(&module.k, &elastic) + inertial.as_ref().map_or(0.0, |x| of(&module.m, x))
+                            - beyond_water.as_ref().map_or(0.0, |x| of(&module.k_water, x))
+                            + on_water(dof),
                         rigid: [0.0; 3],
                     }
                 })

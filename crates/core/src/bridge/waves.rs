@@ -84,3 +84,54 @@ impl BridgeWaves {
         entries
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::expect_used)]
+mod tests {
+    use crate::bridge::{BridgeDesign, Model, PreparedModule};
+
+    /// Heave, pitch and roll of a module are read off its bottom with their signs, `z = 1`, `z = -(x - x_c)` and `z = y`, of the finite
+    /// elements to rounding, and of the super-element whose masters move so: inner nodes of its bottom stay behind by what the water's
+    /// springs press on them, 3e-5. Twin: a pitch of the other sign.
+    #[test]
+    fn rigid_motions_are_read_with_their_signs() {
+        let text = include_str!("../../../../studies/bridges/smoke.json");
+        let design: BridgeDesign = serde_json::from_str(text).expect("a design");
+        let (middle_m, height_m) = (0.5 * design.module.length_m, design.module.depth_m);
+        for (model, tolerance) in [(Model::Full, 1e-12), (Model::SuperElement, 1e-4)] {
+            let module = PreparedModule::new(&design, model).expect("a module");
+            // z, and x and y of what turns about axes in the bottom's plane
+            let read = |z: &dyn Fn(f64, f64) -> f64, turned: [f64; 2]| {
+                let mut u = vec![0.0; module.dofs()];
+                for (node, place) in module.mesh.nodes.iter().enumerate() {
+                    let motion = [
+                        turned[1] * place.z,
+                        -turned[0] * place.z,
+                        z(place.x, place.y),
+                        turned[0],
+                        turned[1],
+                        0.0,
+                    ];
+                    for (direction, value) in motion.into_iter().enumerate() {
+                        if let Some(dof) = module.dof(crate::fem::NodeId(node), direction) {
+                            u[dof] = value;
+                        }
+                    }
+                }
+                module.motions.each_ref().map(|row| row.dot(&u))
+            };
+            let near = |found: [f64; 3], expected: [f64; 3]| {
+                found.iter().zip(expected).all(|(a, b)| (a - b).abs() < tolerance)
+            };
+            let (heave, pitch, roll) = (
+                read(&|_, _| 1.0, [0.0, 0.0]),
+                read(&|x, _| middle_m - x, [0.0, 1.0]),
+                read(&|_, y| y, [1.0, 0.0]),
+            );
+            assert!(height_m > 0.0 && near(heave, [1.0, 0.0, 0.0]), "{model:?}: {heave:?}");
+            assert!(near(pitch, [0.0, 1.0, 0.0]), "{model:?}: {pitch:?}");
+            assert!(near(roll, [0.0, 0.0, 1.0]), "{model:?}: {roll:?}");
+            assert!(!near(pitch, [0.0, -1.0, 0.0]), "the other sign passes");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! Knows numbers. Does not know what is tested with them.
 
-use super::{RadiationTable, Scales};
+use super::{Band, Kernel, Radiation, RadiationTable, Scales};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::PI;
 
@@ -181,17 +181,25 @@ pub(super) fn heaving_box(place: usize, factor: f64) -> (RadiationTable, Scales)
 /// The exponent of [`bell`] `[s^2]`.
 const A: f64 = 0.5;
 
+/// The exponent of the damping of [`chain_water`] `[s^2]`: it is largest at 2.2 rad/s.
+const OF_CHAIN: f64 = 0.2;
+
 /// The damping `w^2 e^(-a w^2)`, and its `A(w) - A_inf = (1 - 2 y D(y)) / sqrt(pi a)` with y = sqrt(a) w and Dawson's integral D.
 pub(super) fn bell(omega: f64) -> (f64, f64) {
-    let y = A.sqrt() * omega;
+    bell_of(A, omega)
+}
+
+/// The damping `w^2 e^(-a w^2)` of an exponent a `[s^2]`, and its added mass, see [`bell`].
+fn bell_of(a: f64, omega: f64) -> (f64, f64) {
+    let y = a.sqrt() * omega;
     let (n, mut dawson) = (2000, 0.0);
     for i in 0..n {
         let t = y * (f64::from(i) + 0.5) / f64::from(n);
         dawson += (t * t - y * y).exp() * y / f64::from(n);
     }
     (
-        omega * omega * (-A * omega * omega).exp(),
-        (1.0 - 2.0 * y * dawson) / (PI * A).sqrt(),
+        omega * omega * (-a * omega * omega).exp(),
+        (1.0 - 2.0 * y * dawson) / (PI * a).sqrt(),
     )
 }
 
@@ -252,4 +260,32 @@ impl MadeUp {
         eigen.eigenvalues[least] = ratio * eigen.eigenvalues.max();
         self.b[place] = self.scales.unscaled(&eigen.recompose());
     }
+}
+
+/// The water of a chain of equal modules that is made up: each drives its neighbours, heave and pitch each other, about as much as a
+/// box of 6 m in deep water; damping times `factor`, the added mass left as it is.
+pub(crate) fn chain_water(modules: usize, length_m: f64, breadth_m: f64, factor: f64) -> Radiation {
+    let scales = Scales::new(&vec![length_m; modules], breadth_m).unwrap();
+    let n = 3 * modules;
+    let v = DMatrix::from_fn(n, n, |i, j| match (i / 3).abs_diff(j / 3) {
+        _ if (i % 3 == 2) != (j % 3 == 2) => 0.0,
+        0 if i == j => 1.0,
+        1 => 0.3 / (1.0 + (i % 3).abs_diff(j % 3) as f64),
+        _ => 0.0,
+    });
+    let v = &v * v.transpose();
+    let residue = scales.unscaled(&((&v + scales.mirrored(&v)) / 2.0)) * (6e3 * length_m);
+    let infinite = &residue * 2.2;
+    let omega: Vec<f64> = (0..=25).map(|i| 0.2 * f64::from(i)).collect();
+    let a = omega
+        .iter()
+        .map(|&w| &infinite + &residue * bell_of(OF_CHAIN, w).1)
+        .collect();
+    let b = omega
+        .iter()
+        .map(|&w| &residue * (factor * bell_of(OF_CHAIN, w).0))
+        .collect();
+    let table = RadiationTable::new(modules, omega, a, b, None).unwrap();
+    let kernel = Kernel::new(&table, &scales, Band::default()).unwrap();
+    Radiation::new(kernel, &table, scales, format!("chain {factor}")).unwrap()
 }

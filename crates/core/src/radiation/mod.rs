@@ -47,3 +47,5 @@ pub use window::Window;
 
 #[cfg(test)]
 mod fixture;
+#[cfg(test)]
+pub(crate) use fixture::chain_water;

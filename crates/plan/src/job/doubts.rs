@@ -18,6 +18,9 @@ const SOFT_PA: f64 = 1e9;
 /// Thickness above which a plate is a doubt `[m]`.
 const THICK_M: f64 = 0.1;
 
+/// Modules from which the states of water with memory are slow to make.
+const MANY_IN_WAVES: usize = 30;
+
 /// Stiffness above which a wheel's spring on a point is a doubt `[N/m]`.
 const STIFF_N_M: f64 = 1e7;
 
@@ -76,6 +79,15 @@ impl Doubts {
             );
         }
         if let Some(crossing) = job.as_crossing() {
+            let damping = &crossing.analysis.damping;
+            let twice =
+                job.bridge.design.water.is_some() && damping.structure.is_none() && damping.rayleigh_ratio() > 0.0;
+            self.note(
+                twice,
+                "analysis.damping.ratio",
+                damping.rayleigh_ratio(),
+                "damps structure and water alike, of which waves take theirs already: state analysis.damping.structure",
+            );
             self.note(
                 crossing.is_step_long() == Some(true),
                 "analysis.time_step_s",
@@ -111,6 +123,13 @@ impl Doubts {
     }
 
     fn bridge(&mut self, design: &BridgeDesign) {
+        let many = design.water.is_some() && design.modules > MANY_IN_WAVES;
+        self.note(
+            many,
+            "bridge.modules",
+            design.modules as f64,
+            "in water with memory: the states of its memory take a minute or more and gigabytes, once for each bridge",
+        );
         for (key, kind) in design.named_kinds() {
             let key = if key.is_empty() {
                 String::new()

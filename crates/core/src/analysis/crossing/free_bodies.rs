@@ -6,9 +6,10 @@ use super::{Crossing, CrossingSettings, CrossingSolver};
 use crate::analysis::modes::Rayleigh;
 use crate::analysis::snapshot::{Snapshot, WheelNow};
 use crate::analysis::statics::{StaticCase, StaticSolver};
-use crate::bridge::{Bridge, BridgeDesign, Ends, Model, ModuleForces, PreparedModule};
+use crate::bridge::{Acting, Bridge, BridgeDesign, Ends, Model, ModuleForces, PreparedModule, WaterSpec};
 use crate::connector::Connection;
 use crate::fem::SparseRow;
+use crate::radiation::chain_water;
 use crate::response::{Axis, Record, Subject};
 use crate::scheme::Scheme;
 use crate::traffic::Traffic;
@@ -33,6 +34,24 @@ fn setup(model: Model) -> Setup {
     let mut design: BridgeDesign = serde_json::from_str(text).expect("a design");
     design.modules = 4;
     let module = PreparedModule::new(&design, model).expect("a module");
+    let bridge = Arc::new(Bridge::new(&design, &module, Ends::Supported).expect("a bridge"));
+    Setup { design, module, bridge }
+}
+
+/// Puts a bridge into a water that is made up.
+fn in_waves(of: Setup) -> Setup {
+    let mut design = of.design;
+    design.added_mass_kg_m = None;
+    design.water = Some(WaterSpec {
+        radiation: Some(Arc::new(chain_water(
+            design.modules,
+            design.module.length_m,
+            design.module.breadth_m,
+            1.0,
+        ))),
+        ..WaterSpec::default()
+    });
+    let module = PreparedModule::new(&design, Model::SuperElement).expect("a module");
     let bridge = Arc::new(Bridge::new(&design, &module, Ends::Supported).expect("a bridge"));
     Setup { design, module, bridge }
 }
@@ -119,7 +138,12 @@ fn static_free_bodies_are_in_equilibrium() {
             let pins_n = solver.solve(&vehicle, &case).expect("solved").pins_n;
             let state = solver.state(&vehicle, &case).expect("a state");
             let down: Vec<SparseRow> = state.wheels.iter().map(|w| pressed(w, w.contact_force_n)).collect();
-            let bodies = ModuleForces::of(&setup.design, &setup.module, &state.elastic, None, &down);
+            let acting = Acting {
+                elastic: &state.elastic,
+                down: &down,
+                ..Acting::default()
+            };
+            let bodies = ModuleForces::of(&setup.design, &setup.module, None, &acting);
             let [right, wrong] = [0.0, 0.05].map(|off| left_over(&setup, &bodies, &connectors_n(&state), &pins_n, off));
             assert!(
                 right < 1e-10,
@@ -133,9 +157,18 @@ fn static_free_bodies_are_in_equilibrium() {
 /// In a crossing, at each instant of the balance: 1e-8 of the load, rounding of some hundred steps. Twin: pins 5 % off.
 #[test]
 fn moving_free_bodies_are_in_equilibrium() {
-    let setup = setup(Model::SuperElement);
+    moving(&setup(Model::SuperElement), Rayleigh::new(0.02, 0.1));
+}
+
+/// In water with memory, damping that of the structure alone.
+#[test]
+fn moving_free_bodies_are_in_equilibrium_in_waves() {
+    moving(&in_waves(setup(Model::SuperElement)), Rayleigh::of_structure(0.02, 1.0));
+}
+
+fn moving(setup: &Setup, rayleigh: Rayleigh) {
     let settings = CrossingSettings {
-        rayleigh: Rayleigh::new(0.02, 0.1),
+        rayleigh,
         time_step_s: 0.01,
         spectral_radius: 0.9,
         newton_limit: 60,
@@ -179,19 +212,20 @@ fn moving_free_bodies_are_in_equilibrium() {
                 .map(|of| [0, 1, 2].map(|d| of[d].values[step + 1]))
                 .collect();
             let down = balance.down(&vehicle);
-            let bodies = ModuleForces::of(
-                &setup.design,
-                &setup.module,
-                &balance.elastic,
-                Some(&balance.inertial),
-                &down,
-            );
+            let acting = Acting {
+                elastic: &balance.elastic,
+                beyond_water: Some(&balance.beyond_water),
+                inertial: Some(&balance.inertial),
+                waves: balance.waves.as_deref(),
+                down: &down,
+            };
+            let bodies = ModuleForces::of(&setup.design, &setup.module, setup.bridge.waves.as_ref(), &acting);
             let connectors: Vec<f64> = connectors_n(new)
                 .iter()
                 .zip(connectors_n(old))
                 .map(|(n, o)| scheme.at_f(*n, o))
                 .collect();
-            let [r, w] = [0.0, 0.05].map(|off| left_over(&setup, &bodies, &connectors, &pins, off));
+            let [r, w] = [0.0, 0.05].map(|off| left_over(setup, &bodies, &connectors, &pins, off));
             (right, wrong) = (right.max(r), wrong.max(w));
         }
         assert!(right < 1e-8, "{inertia:?}: {right:e} of the load is left over");
@@ -204,16 +238,26 @@ struct Balance<'a> {
     scheme: &'a Scheme,
     states: [&'a Snapshot; 2],
     elastic: Vec<f64>,
+    beyond_water: Vec<f64>,
     inertial: Vec<f64>,
+    waves: Option<Vec<f64>>,
 }
 
 impl<'a> Balance<'a> {
-    fn new(scheme: &'a Scheme, Rayleigh { a, b, .. }: Rayleigh, old: &'a Snapshot, new: &'a Snapshot) -> Self {
+    fn new(scheme: &'a Scheme, rayleigh: Rayleigh, old: &'a Snapshot, new: &'a Snapshot) -> Self {
+        let Rayleigh { a, b, .. } = rayleigh;
         let v = |of: &Snapshot, i: usize| (of.elastic[i] - of.u[i]) / a;
         let acceleration = |of: &Snapshot, i: usize| of.inertial.as_ref().expect("a motion")[i] - b * v(of, i);
         let dofs = || 0..new.u.len();
         Self {
             elastic: dofs().map(|i| scheme.at_f(new.elastic[i], old.elastic[i])).collect(),
+            beyond_water: dofs()
+                .map(|i| rayleigh.beyond_water() * scheme.at_f(v(new, i), v(old, i)))
+                .collect(),
+            waves: new.waves.as_ref().zip(old.waves.as_ref()).map(|(new, old)| {
+                let forces = new.iter().zip(old);
+                forces.map(|(new, old)| scheme.at_f(*new, *old)).collect()
+            }),
             inertial: dofs()
                 .map(|i| {
                     scheme.at_m(acceleration(new, i), acceleration(old, i)) + b * scheme.at_f(v(new, i), v(old, i))

@@ -6,6 +6,8 @@
 #[cfg(test)]
 mod free_bodies;
 mod halving;
+#[cfg(test)]
+mod in_waves;
 mod observe;
 mod operated;
 mod riders;

@@ -85,6 +85,21 @@ pub(super) fn check_water(design: &BridgeDesign) -> Result<(), InvalidInput> {
     }
 }
 
+/// Most modules of a bridge in water with memory: its mass couples the dofs of all modules, and its states take minutes.
+const MOST_IN_WAVES: usize = 40;
+
+/// Refuses a bridge that is too long for water with memory.
+///
+/// # Errors
+/// [`InvalidInput`] on `modules`.
+pub(super) fn check_modules_in_waves(design: &BridgeDesign) -> Result<(), InvalidInput> {
+    if design.water.is_none() || design.modules <= MOST_IN_WAVES {
+        return Ok(());
+    }
+    let allowed = format!("at most {MOST_IN_WAVES} in water with memory");
+    Err(InvalidInput::new("modules", design.modules, allowed).because(Problem::Conflict))
+}
+
 /// Refuses a dry module of which an end is free to fall: no neighbour that floats, no support and no bank that holds z.
 ///
 /// # Errors
