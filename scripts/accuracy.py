@@ -194,7 +194,9 @@ def in_waves(folder, options, table):
             moved = {job: dict.fromkeys(ASKED, 0.0) for job in suspects}
             for factor in (1 + NUDGE, 1 - NUDGE) if suspects else ():
                 there = [cases[job] | {"load_n": factor * cases[job]["load_n"]} for job in suspects]
-                nudge = run(folder, f"waves {factor}", there, STRUCTURE | {"solver": "reference"}, bridge="fu2005_waves")
+                nudge = run(
+                    folder, f"waves {factor}", there, STRUCTURE | {"solver": "reference"}, bridge="fu2005_waves"
+                )
                 renumbered = {
                     name: t.with_columns(pl.col("job").replace_strict(suspects, list(range(len(suspects)))))
                     for name, t in only.items()
