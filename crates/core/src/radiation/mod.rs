@@ -46,6 +46,8 @@ pub use water::Radiation;
 pub use window::Window;
 
 #[cfg(test)]
+mod barge;
+#[cfg(test)]
 mod fixture;
 #[cfg(test)]
 pub(crate) use fixture::chain_water;
