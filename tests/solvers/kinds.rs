@@ -6,7 +6,7 @@
 
 use pontoon_core::analysis::crossing::OperatorSolver;
 use pontoon_core::bridge::{BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
-use pontoon_core::operator::{BridgeOperator, Followed};
+use pontoon_core::operator::{BridgeOperator, OperatorParts};
 use pontoon_core::response::{CrossingResponse, Record, Section};
 use pontoon_core::stop::Stop;
 use pontoon_core::vehicle::Inertia;
@@ -285,8 +285,8 @@ fn is_the_reference_solver(what: &str, ramp: RampOf, limits: &[(f64, f64)]) {
         };
         let own = operator(&ready);
         // kept and read again it is the one that was built
-        let kept = BridgeOperator::from_parts(&ready.bridge, &own.parts()).expect("an operator");
-        assert_eq!(kept.parts(), own.parts());
+        let kept = OperatorParts::of(&own).operator(&ready.bridge).expect("an operator");
+        assert_eq!(OperatorParts::of(&kept), OperatorParts::of(&own));
         let both = Both::new(&ready, &Arc::new(kept), &settings);
         let twin = OperatorSolver::new(&other.bridge, &operator(&other), &settings);
         for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {

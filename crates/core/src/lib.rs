@@ -6,10 +6,10 @@
 //! | floor | module | charter |
 //! |---|---|---|
 //! | 0 | [`conventions`], [`input`], [`response`], [`stop`] | axes, units, signs; what a refused number looks like; whether to stop; peaks, histories and the energy balance, data that every floor above fills |
-//! | 1 | [`fem`] | shells, beams, assembly, factorisation, eigenvalues; has never heard of a bridge |
+//! | 1 | [`fem`], `scheme` | shells, beams, assembly, factorisation, eigenvalues; constants of time integration; have never heard of a bridge |
 //! | 2 | [`module`], [`water`], [`radiation`], [`superelement`] | the pontoon's geometry to finite elements, hydrostatics and added mass, radiated waves, condensation |
 //! | 3 | [`connector`], [`vehicle`], [`road`], [`traffic`], [`bridge`] | the gap law, the wheels, what they drive on and how, and the one place where they all meet |
-//! | 4 | `scheme`, `riding`, `flexibility`, `contact`, [`operator`] | time integration, vehicles on springs in a step, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
+//! | 4 | `riding`, `flexibility`, `contact`, [`operator`] | vehicles on springs in a step, the factorised bridge at its places, active-set Newton, the reduced bridge in lanes |
 //! | 5 | [`analysis`] | modes, statics, crossings |
 
 pub mod analysis;

@@ -4,6 +4,7 @@
 //! time step within a module's passage) are not expressible there.
 
 use crate::study_file::StudySpec;
+use crate::water_file::WaterFile;
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::vehicle::VehicleDesign;
 use serde_json::{Value, json};
@@ -21,6 +22,17 @@ pub fn bridge() -> Value {
 /// Of a vehicle file.
 pub fn vehicle() -> Value {
     titled(schemars::schema_for!(VehicleDesign), "pontoon vehicle")
+}
+
+/// The JSON Schema of a water file.
+pub fn water() -> Value {
+    let mut schema = titled(schemars::schema_for!(WaterFile), "pontoon water");
+    if let Some(required) = schema["required"].as_array_mut()
+        && !required.iter().any(|key| key == "depth_m")
+    {
+        required.push("depth_m".into());
+    }
+    schema
 }
 
 /// A schema with its title, which a file may name.

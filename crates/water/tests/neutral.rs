@@ -5,7 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 use pontoon_plan::input::{Document, Refusal, RefusalKind};
-use pontoon_plan::water_file::{WaterFile, schema, triangle_length};
+use pontoon_plan::schema::water as schema;
+use pontoon_plan::water_file::{WaterFile, triangle_length};
 use pontoon_water::{Options, WaterFormat, read};
 use serde_json::{Value, json};
 use std::path::Path;

@@ -10,7 +10,7 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Result<ExitStatus> {
     let schema = match arguments.of {
         SchemaOf::Study => pontoon_plan::schema::study(),
         SchemaOf::Bridge => pontoon_plan::schema::bridge(),
-        SchemaOf::Water => pontoon_plan::water_file::schema(),
+        SchemaOf::Water => pontoon_plan::schema::water(),
         SchemaOf::Vehicle => pontoon_plan::schema::vehicle(),
         SchemaOf::Parameters => pontoon_judge::schema::parameters(),
         SchemaOf::Tables => pontoon_results::registered(),

@@ -4,15 +4,24 @@
 
 use super::basis::{BridgeOperator, Observed, Sizes, operated_modules};
 use super::cutoff::Cutoff;
-use super::persist::{NumberReader, OperatorParts};
+use super::persist::NumberReader;
 use super::pin_rows::{PinRows, pin_places};
 use super::waves::OperatorWaves;
 use crate::bridge::{Bridge, Track};
 
-impl BridgeOperator {
-    /// Its numbers, for keeping.
-    pub fn parts(&self) -> OperatorParts {
-        let (s, r) = (&self.sizes, &self.rows);
+/// Numbers of an operator in a fixed order: counts, then reals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OperatorParts {
+    /// Counts.
+    pub counts: Vec<u64>,
+    /// Reals.
+    pub numbers: Vec<f64>,
+}
+
+impl OperatorParts {
+    /// Those of an operator.
+    pub fn of(of: &BridgeOperator) -> Self {
+        let (s, r) = (&of.sizes, &of.rows);
         let counts = [
             s.modes,
             s.connectors,
@@ -22,37 +31,37 @@ impl BridgeOperator {
             r.positions,
             r.corners,
             r.bottom_corners,
-            self.near,
+            of.near,
             s.pins,
             r.places,
             r.springs,
         ];
         let cutoff = [
-            self.cutoff.frequency_hz,
-            self.cutoff.tolerance,
-            self.cutoff.error,
-            self.breadth_m,
+            of.cutoff.frequency_hz,
+            of.cutoff.tolerance,
+            of.cutoff.error,
+            of.breadth_m,
         ];
         let lists: [&[f64]; 15] = [
             &cutoff,
-            &self.omega2,
-            &self.omega2_water,
-            self.b.as_slice(),
-            self.r_bb.as_slice(),
-            self.v.as_slice(),
-            self.r_vb.as_slice(),
-            self.inside.as_slice(),
-            self.r_inside_b.as_slice(),
-            &self.deck,
-            &self.r_deck,
-            self.pins.stiffness.as_slice(),
-            self.pins.mass.as_slice(),
-            self.pins.connectors.as_slice(),
-            self.pins.water.as_slice(),
+            &of.omega2,
+            &of.omega2_water,
+            of.b.as_slice(),
+            of.r_bb.as_slice(),
+            of.v.as_slice(),
+            of.r_vb.as_slice(),
+            of.inside.as_slice(),
+            of.r_inside_b.as_slice(),
+            &of.deck,
+            &of.r_deck,
+            of.pins.stiffness.as_slice(),
+            of.pins.mass.as_slice(),
+            of.pins.connectors.as_slice(),
+            of.pins.water.as_slice(),
         ];
-        let bounds = self.inside_bounds.iter().flatten().copied();
-        let waves = || self.waves.iter();
-        OperatorParts {
+        let bounds = of.inside_bounds.iter().flatten().copied();
+        let waves = || of.waves.iter();
+        Self {
             counts: counts
                 .iter()
                 .map(|&n| n as u64)
@@ -65,7 +74,8 @@ impl BridgeOperator {
     }
 
     /// The operator of `bridge` from its numbers; none where they do not fit the bridge.
-    pub fn from_parts(bridge: &Bridge, parts: &OperatorParts) -> Option<Self> {
+    pub fn operator(&self, bridge: &Bridge) -> Option<BridgeOperator> {
+        let parts = self;
         let (mut sizes, rows, near, of_waves) = counts(parts)?;
         sizes.joint_connectors = bridge.joint_connectors;
         let track = Track::new(bridge);
@@ -85,7 +95,7 @@ impl BridgeOperator {
         let &[frequency_hz, tolerance, error, breadth_m] = &r.list(4)?[..] else {
             return None;
         };
-        let operator = Self {
+        let operator = BridgeOperator {
             sizes,
             rows,
             cutoff: Cutoff {

@@ -1,20 +1,11 @@
-//! An operator as plain numbers, for keeping.
+//! Plain numbers that are read one list after the other.
 //!
-//! Knows counts, reals and how they are read one list after the other. Does not know what they are, nor files.
+//! Knows reals. Does not know what they are, nor files.
 
 use nalgebra::DMatrix;
 
 /// What the numbers of an operator, or of anything else that this crate computes, belong to: a hash of the crate's sources.
 pub const SOURCES: &str = env!("PONTOON_CORE_SOURCES");
-
-/// Numbers of an operator in a fixed order: counts, then reals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OperatorParts {
-    /// Counts.
-    pub counts: Vec<u64>,
-    /// Reals.
-    pub numbers: Vec<f64>,
-}
 
 /// Takes numbers off the front.
 pub(super) struct NumberReader<'a>(&'a [f64]);

@@ -281,10 +281,6 @@ fn its_added_mass_at_infinity_is_that_of_the_file() {
     let error = |factor: f64| {
         let barge = Barge::read(factor);
         let of_file = barge.scales.scaled(barge.table.infinite().unwrap());
-        println!(
-            "KK {factor} {:e}",
-            (barge.infinite() - &of_file).amax() / of_file.amax()
-        );
         (barge.infinite() - &of_file).amax() / of_file.amax()
     };
     assert!(error(1.0) < 5e-4, "{:e}", error(1.0));

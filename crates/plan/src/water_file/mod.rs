@@ -17,7 +17,6 @@ mod waters;
 use crate::input::{Cell, Document, FoundValue, Refusal, RefusalKind, pretty, to_value, typed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
 use std::path::Path;
 
 pub use judged::{JudgedCheck, JudgedWater};
@@ -138,17 +137,6 @@ fn usable_to_rad_s() -> f64 {
 /// A key that has to be there and may be null.
 fn number_or_null<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     Option::deserialize(deserializer)
-}
-
-/// The JSON Schema of a water file.
-pub fn schema() -> Value {
-    let mut schema = crate::schema::titled(schemars::schema_for!(WaterFile), "pontoon water");
-    if let Some(required) = schema["required"].as_array_mut()
-        && !required.iter().any(|key| key == "depth_m")
-    {
-        required.push("depth_m".into());
-    }
-    schema
 }
 
 /// Most modules of a bridge.

@@ -72,7 +72,7 @@ impl Cache {
         let Ok(bytes) = fs::read(&path) else {
             return CacheLookup::Nothing;
         };
-        match decode(name, &bytes).and_then(|parts| BridgeOperator::from_parts(bridge, &parts)) {
+        match decode(name, &bytes).and_then(|parts| parts.operator(bridge)) {
             Some(operator) => {
                 // used now; where that cannot be noted, it goes earlier than it might
                 let now = fs::File::options().append(true).open(&path);
@@ -87,7 +87,7 @@ impl Cache {
     pub(super) fn write(&self, name: &str, operator: &BridgeOperator) -> io::Result<()> {
         fs::create_dir_all(&self.folder)?;
         let hidden = HiddenFile::begin_among_others(&self.path(name))?;
-        hidden.file().write_all(&encode(name, &operator.parts()))?;
+        hidden.file().write_all(&encode(name, &OperatorParts::of(&operator)))?;
         hidden.file().sync_all()?;
         hidden.put()?;
         self.thin_out()

@@ -200,7 +200,6 @@ fn the_convolution_is_the_frequency_domain() {
         apart(&response.recorded.histories[0].values, &expected)
     };
     let [found, weaker] = [1.0, 0.95].map(|factor| miss(&bridge(&chain(factor))));
-    println!("{found:e} {weaker:e}");
     assert!(found < 1e-3 && weaker > 1e-3, "{found:e} {weaker:e}");
 }
 
@@ -248,7 +247,6 @@ fn water_without_damping_is_an_added_mass() {
         .max(roll)
     };
     let (right, wrong) = (miss(&strip(1.0)), miss(&strip(0.95)));
-    println!("{right:e} {wrong:e}");
     assert!(right < 1e-3 && wrong > 1e-3, "{right:e} {wrong:e}");
 }
 
@@ -297,7 +295,6 @@ fn states_repeat_the_convolution() {
                 true => 0.0,
                 false => share(found.peak_roll.value, expected.peak_roll.value),
             };
-            println!("{what}: history {history:.1e} peaks {peaks:.1e} force {force:.1e} roll {roll:.1e}");
             match connection {
                 Connection::Linear => (history / 5e-4).max(roll / 1e-3),
                 _ => peaks.max(force).max(roll) / 1e-3,
