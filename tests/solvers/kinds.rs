@@ -6,7 +6,7 @@
 
 use pontoon_core::analysis::crossing::OperatorSolver;
 use pontoon_core::bridge::{BridgeDesign, Ends, MeshedBridge, Model, PreparedModule};
-use pontoon_core::operator::{BridgeOperator, OperatorParts};
+use pontoon_core::operator::{BridgeOperator, Followed, OperatorParts};
 use pontoon_core::response::{CrossingResponse, Record, Section};
 use pontoon_core::stop::Stop;
 use pontoon_core::vehicle::Inertia;

@@ -87,7 +87,7 @@ impl Cache {
     pub(super) fn write(&self, name: &str, operator: &BridgeOperator) -> io::Result<()> {
         fs::create_dir_all(&self.folder)?;
         let hidden = HiddenFile::begin_among_others(&self.path(name))?;
-        hidden.file().write_all(&encode(name, &OperatorParts::of(&operator)))?;
+        hidden.file().write_all(&encode(name, &OperatorParts::of(operator)))?;
         hidden.file().sync_all()?;
         hidden.put()?;
         self.thin_out()
