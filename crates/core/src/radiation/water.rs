@@ -8,6 +8,9 @@ use crate::input::InvalidInput;
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
 
+/// Least eigenvalue of the added mass at infinite frequency over the largest, in scaled freedoms: rounding of files.
+const LEAST_MASS: f64 = -1e-3;
+
 /// Added mass at infinite frequency and memory of the water under a chain of modules, shared read-only by all that moves in it.
 #[derive(Debug)]
 pub struct Radiation {
@@ -29,9 +32,18 @@ impl Radiation {
     /// The water of a table and the kernel that was made of it. Two waters of one `key` are one water.
     ///
     /// # Errors
-    /// [`InvalidInput`] as of [`added_mass_infinite`].
+    /// [`InvalidInput`] as of [`added_mass_infinite`], and on `added_mass` where a motion would have a mass below 0.
     pub fn new(kernel: Kernel, table: &RadiationTable, scales: Scales, key: String) -> Result<Self, InvalidInput> {
         let infinite = added_mass_infinite(&kernel, table, &scales, Window::TRANSFER)?;
+        let eigenvalues = scales.scaled(&infinite).symmetric_eigenvalues();
+        if eigenvalues.min() < LEAST_MASS * eigenvalues.max().max(0.0) {
+            let found = format!("{:.3e} kg in one motion at infinite frequency", eigenvalues.min());
+            return Err(InvalidInput::new(
+                "added_mass",
+                found,
+                "added mass of at least 0 in every motion",
+            ));
+        }
         Ok(Self {
             scales,
             kernel,

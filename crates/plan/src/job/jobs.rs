@@ -9,13 +9,16 @@ use super::seen::SeenJobs;
 use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
-use crate::study_file::{Allowed, Analysis, CrossingAnalysis, Find, ModelSpec, Study};
+use crate::study_file::{Allowed, Analysis, CrossingAnalysis, Find, ModelSpec, Study, TimeStep};
 use pontoon_core::analysis::crossing::CrossingSolver;
 use pontoon_core::connector::Connection;
 use pontoon_core::input::{InvalidInput, bound};
 use pontoon_core::traffic::Driven;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
+
+/// Longest time step in water with memory `[s]`: at 0.2 s the radiated energy is 10 % off.
+const LONGEST_IN_WAVES_S: f64 = 0.1;
 
 /// The jobs of a study in order, numbered from 0; equal jobs come once, where the first of them stands.
 pub struct Jobs<'a> {
@@ -157,6 +160,7 @@ impl Jobs<'_> {
                 };
                 short.time_step(crossing, &bridge, (&vehicle, traffic.as_deref()), speed_m_s)?;
                 short.damping(crossing, &bridge)?;
+                short.step_in_waves(crossing, &bridge)?;
                 if bridge.design.has_dead_load() {
                     short.held(&bridge)?;
                 }
@@ -446,6 +450,19 @@ impl Short<'_> {
         let path = self.path_or("analysis.damping.frequencies_hz");
         let allowed = "two frequencies: a bridge of one module has no vertical bending modes to take them from";
         Err(Refusal::new(&self.study.file, path, FoundValue::NOTHING, allowed))
+    }
+
+    /// Refuses a time step that is longer than the samples of the memory of a bridge's water.
+    fn step_in_waves(&self, analysis: &CrossingAnalysis, bridge: &BridgeEntry) -> Result<(), Refusal> {
+        match analysis.time_step {
+            TimeStep::Stated(seconds) if bridge.design.water.is_some() && seconds > LONGEST_IN_WAVES_S => {
+                let path = self.path_or("analysis.time_step_s");
+                let allowed =
+                    format!("at most {LONGEST_IN_WAVES_S} in water with memory, whose states are explicit in the step");
+                Err(Refusal::new(&self.study.file, path, seconds, allowed).because(RefusalKind::Conflict))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses a static case or a dead load of a bridge that its supports, banks and hinges leave free to move horizontally.

@@ -15,6 +15,7 @@ mod triangle;
 mod waters;
 
 use crate::input::{Cell, Document, FoundValue, Refusal, RefusalKind, pretty, to_value, typed};
+use pontoon_core::radiation::Band;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::path::Path;
@@ -247,6 +248,11 @@ impl WaterFile {
             if let Some(number) = number.filter(|number| !is_positive(*number)) {
                 return refuse(key, number.into(), "a number above 0");
             }
+        }
+        let zero_from_rad_s = Band::default().zero_from_rad_s;
+        if self.usable_to_rad_s >= zero_from_rad_s {
+            let allowed = format!("a number below {zero_from_rad_s}, where damping is led to 0");
+            return Err(Refusal::new(file, "usable_to_rad_s", self.usable_to_rad_s, allowed));
         }
         if let (Some(depth), Some(draught)) = (self.depth_m, self.draught_m)
             && depth <= draught

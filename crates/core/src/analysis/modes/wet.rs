@@ -61,7 +61,8 @@ pub(super) fn in_waves(waves: &BridgeWaves, pairs: &mut EigenPairs) -> Vec<WetMo
         let mode = WetMode {
             from: k,
             frequency_hz: lambda.max(0.0).sqrt() / (2.0 * PI),
-            radiation_ratio: ratio,
+            // above the kernel's last frequency it is rounding
+            radiation_ratio: if ratio > NO_DAMPING { ratio } else { 0.0 },
         };
         found.push((lambda, shape, mode));
     }
@@ -77,6 +78,9 @@ pub(super) fn in_waves(waves: &BridgeWaves, pairs: &mut EigenPairs) -> Vec<WetMo
     pairs.lambda = found.iter().map(|of| of.0).collect();
     found.into_iter().map(|of| of.2).collect()
 }
+
+/// Ratio of critical damping below which waves take nothing.
+const NO_DAMPING: f64 = 1e-6;
 
 /// Below this a mode is a motion that nothing restores `[1/s^2]`.
 const LEAST: f64 = 1e-4;
