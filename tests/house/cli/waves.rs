@@ -186,6 +186,21 @@ fn a_water_that_cannot_be_the_bridges_is_refused_before_anything_runs() {
         .pontoon(&["run", "study.json", "--out", "failed", "--quiet"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("job 0 failed: water: "), "{}", stderr(&output));
+    // a bridge found would not find its water from another folder
+    let output = stage.pontoon(&[
+        "calibrate",
+        "bridge.json",
+        "--with",
+        "r.json",
+        "--parameters",
+        "p.json",
+        "--out",
+        "other/found.json",
+    ]);
+    is_refused(
+        &output,
+        &["other/found.json", "to which its water water.json is relative"],
+    );
     // a module alone has no water of the whole
     stage.write();
     let output = stage.pontoon(&["modes", "bridge.json", "--module"]);

@@ -8,7 +8,7 @@ use pontoon_journal::place::Folder;
 use pontoon_judge::calibrate::{Calibration, CalibrationTask, FittedCheck, Identified, Parameters};
 use pontoon_judge::reference::Reference;
 use pontoon_plan::input::{Cell, Refusal, pretty};
-use pontoon_plan::study_file::read_bridge;
+use pontoon_plan::study_file::{BridgeFile, read_bridge};
 use pontoon_results::labels;
 use pontoon_results::replaceable;
 use serde_json::{Value, json};
@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 /// Fits, writes the bridge and says what was found.
 pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Result<ExitStatus> {
     let bridge = read_bridge(&arguments.bridge)?;
+    check_water_place(&bridge, &arguments.out)?;
     let references = arguments
         .with
         .iter()
@@ -56,6 +57,31 @@ pub(crate) fn calibrate(arguments: &CalibrateArguments, common: Common) -> Resul
     } else {
         ExitStatus::Short
     })
+}
+
+/// Refuses a file for the bridge found in another folder than that to which its water file is relative.
+fn check_water_place(bridge: &BridgeFile, out: &Path) -> Result<(), Refusal> {
+    let Some(water) = bridge
+        .design
+        .water
+        .as_ref()
+        .filter(|water| Path::new(&water.file).is_relative())
+    else {
+        return Ok(());
+    };
+    let folder = |file: &Path| {
+        let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty());
+        parent.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    if folder(out).is_some() && folder(out) == folder(&bridge.file) {
+        return Ok(());
+    }
+    let allowed = format!(
+        "a file in the folder of {}, to which its water {} is relative",
+        bridge.file.display(),
+        water.file
+    );
+    Err(Refusal::new(out, "", "a file in another folder", allowed))
 }
 
 /// The file for the bridge found: not the bridge that the fit starts from, and no file that another program or a person wrote.
