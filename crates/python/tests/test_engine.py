@@ -257,11 +257,16 @@ def test_memory_stays_flat_over_many_calls(bridge):
     f = bridge.function({"gap_tension_m": (0, 0.04), "load_n": (1e5, 2e5)}, ["peak_deflection_m"], speed_m_s=20)
     kept = [call(number) for number in range(40)]
     del kept
-    before = resident_bytes()
-    for number in range(40, 240):
-        call(number)
-    # the tables of 200 calls are some 50 MB
-    assert resident_bytes() - before < 8e6
+
+    def grown(numbers):
+        before = resident_bytes()
+        for number in numbers:
+            call(number)
+        return resident_bytes() - before
+
+    # the tables of 180 calls are some 45 MB; what is lost with each call is lost in both halves, what an allocator keeps
+    # once is in one of them
+    assert min(grown(range(40, 220)), grown(range(220, 400))) < 7.2e6
 
 
 def python(text, **more):
