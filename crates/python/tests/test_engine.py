@@ -264,8 +264,8 @@ def test_memory_stays_flat_over_many_calls(bridge):
             call(number)
         return resident_bytes() - before
 
-    # the tables of 180 calls are some 45 MB; what is lost with each call is lost in both halves, what an allocator keeps
-    # once is in one of them
+    # the tables of 180 calls are some 45 MB; what each call loses is lost in both halves, what an allocator keeps once
+    # is in one of them
     assert min(grown(range(40, 220)), grown(range(220, 400))) < 7.2e6
 
 
