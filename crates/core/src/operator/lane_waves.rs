@@ -251,6 +251,11 @@ impl LaneWaves {
         let (h, v) = (constants.scheme.h, v.vectors::<S>());
         let [upright, rolls] = &mut self.kinds;
         upright.follow(o, h, &waves.kinds[0], v, None);
+        if self.any_awake {
+            let awake = self.awake.vectors::<S>()[0];
+            rolls.follow(o, h, &waves.kinds[1], v, Some(awake));
+        }
+        // a lane that wakes now rolls from the next step on, whatever the lanes beside it do
         let mut reach = self.reach.vectors::<S>()[0];
         for velocity in upright.velocity.vectors::<S>() {
             reach = o.max(reach, o.abs(*velocity));
@@ -264,12 +269,7 @@ impl LaneWaves {
         for lane in 0..S::F64_LANES {
             if self.spare.at(0, lane) > ROLLS * self.reach.at(0, lane) {
                 *self.awake.at_mut(0, lane) = 1.0;
-                self.any_awake = true;
             }
-        }
-        if self.any_awake {
-            let awake = self.awake.vectors::<S>()[0];
-            rolls.follow(o, h, &waves.kinds[1], v, Some(awake));
         }
     }
 

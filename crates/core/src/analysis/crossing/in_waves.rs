@@ -338,3 +338,29 @@ fn mirrored_lanes_are_mirrored() {
     assert!(share(&one, &other) < 1e-9, "{:e}", share(&one, &other));
     assert!(share(&further, &one) > 1e-3, "another lane passes");
 }
+
+/// Crossings side by side, more than there are lanes, on the centre line and off it in turn, leave what each leaves alone, to the bit:
+/// rolls wake lane by lane, and nothing of a lane's last crossing is left.
+#[test]
+fn lanes_in_waves_are_as_if_alone() {
+    let right = bridge(&chain(1.0));
+    let operator = Arc::new(BridgeOperator::new(&right, 0.0).expect("an operator"));
+    let solver = OperatorSolver::new(&right, &operator, &settings(STRUCTURE(), 0.01, 0.9));
+    let crossing = crossing(GAPS);
+    let traffics: Vec<Traffic> = (0..20)
+        .map(|i| {
+            let tracks = if i % 3 == 0 { [-1.4, 1.4] } else { [0.3, 3.1] };
+            Traffic::single(&vehicle(&tracks, Inertia::Local), LOAD_N, 14.0 - 0.4 * f64::from(i))
+        })
+        .collect();
+    let asked: Vec<(&Traffic, &Crossing)> = traffics.iter().map(|traffic| (traffic, &crossing)).collect();
+    let beside: Vec<CrossingResponse> = solver
+        .solve_all(&asked, 0)
+        .into_iter()
+        .map(|r| r.expect("solved"))
+        .collect();
+    for (traffic, beside) in traffics.iter().zip(&beside) {
+        let alone = OperatorSolver::new(&right, &operator, &settings(STRUCTURE(), 0.01, 0.9));
+        assert_eq!(&alone.solve(traffic, &crossing).expect("solved"), beside);
+    }
+}
