@@ -347,12 +347,14 @@ fn lanes_in_waves_are_as_if_alone() {
     let operator = Arc::new(BridgeOperator::new(&right, 0.0).expect("an operator"));
     let solver = OperatorSolver::new(&right, &operator, &settings(STRUCTURE(), 0.01, 0.9));
     let crossing = crossing(GAPS);
-    let traffics: Vec<Traffic> = (0..20)
-        .map(|i| {
-            let tracks = if i % 3 == 0 { [-1.4, 1.4] } else { [0.3, 3.1] };
-            Traffic::single(&vehicle(&tracks, Inertia::Local), LOAD_N, 14.0 - 0.4 * f64::from(i))
-        })
-        .collect();
+    // the first ones leave all lanes at once
+    let speed_m_s = |i: u32| if i < 16 { 10.0 } else { 20.0 - 0.4 * f64::from(i) };
+    let traffic = |i: u32| {
+        let on_centre = i > 16 && i.is_multiple_of(3);
+        let tracks = if on_centre { [-1.4, 1.4] } else { [0.3, 3.1] };
+        Traffic::single(&vehicle(&tracks, Inertia::Local), LOAD_N, speed_m_s(i))
+    };
+    let traffics: Vec<Traffic> = (0..28).map(traffic).collect();
     let asked: Vec<(&Traffic, &Crossing)> = traffics.iter().map(|traffic| (traffic, &crossing)).collect();
     let beside: Vec<CrossingResponse> = solver
         .solve_all(&asked, 0)
