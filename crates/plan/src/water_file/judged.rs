@@ -133,6 +133,15 @@ impl JudgedWater {
         Ok((judged, made, table, scales))
     }
 
+    /// This water held against another bridge of the same lengths, by the water plane.
+    #[must_use]
+    pub(super) fn beside(&self, water: &WaterFile, bridge: &BridgeDesign) -> Self {
+        let mut judged = self.clone();
+        judged.checks.retain(|check| check.check != WATER_PLANE_CHECK);
+        judged.checks.extend(water_plane(water, bridge));
+        judged
+    }
+
     /// Whether a check refuses the water.
     pub fn is_refused(&self) -> bool {
         self.refused().next().is_some()

@@ -7,13 +7,13 @@ use crate::input::{Document, FoundValue, Refusal, RefusalKind, nearest};
 use pontoon_core::bridge::{BridgeDesign, WaterSpec};
 use pontoon_core::radiation::Radiation;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Waters that are kept at most: those of an axis.
 const KEPT: usize = 8;
 
 /// A water file as a bridge has it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct BridgeWater {
     /// Name of the water.
     pub name: String,
@@ -29,10 +29,20 @@ pub struct BridgeWater {
 
 /// Waters read so far.
 #[derive(Debug, Default)]
-pub struct Waters(Mutex<Vec<(WaterKey, Arc<BridgeWater>)>>);
+pub struct Waters(Mutex<Known>);
 
-/// What a water is made of: its file, the hash of what stands in it, and the lengths that scale its freedoms.
-type WaterKey = (PathBuf, String, Vec<u64>);
+/// What is kept of them: a file is read once, and what it comes to is made once for lengths that scale its freedoms.
+#[derive(Debug, Default)]
+struct Known {
+    files: Vec<(PathBuf, ReadWater)>,
+    waters: Vec<(WaterKey, Arc<BridgeWater>)>,
+}
+
+/// A water file with its hash.
+type ReadWater = (Arc<WaterFile>, String);
+
+/// What a water is made of: its file and the lengths that scale its freedoms.
+type WaterKey = (PathBuf, Vec<u64>);
 
 impl Waters {
     /// Reads the water file that a bridge names and leaves its hash and the water in the design; `folder` is what the path is relative
@@ -51,63 +61,84 @@ impl Waters {
             return Ok(None);
         };
         check_names(file, &spec)?;
-        let water = self.water(file, folder, design, &spec)?;
-        check_accepted(file, &spec, &water.judged)?;
-        design.water = Some(WaterSpec {
-            blake3: Some(water.blake3.clone()),
-            radiation: Some(Arc::clone(&water.radiation)),
-            ..spec
-        });
-        Ok(Some(water))
-    }
-
-    fn water(
-        &self,
-        file: &Path,
-        folder: &Path,
-        design: &BridgeDesign,
-        spec: &WaterSpec,
-    ) -> Result<Arc<BridgeWater>, Refusal> {
         let path = folder.join(&spec.file);
         if !path.is_file() {
             let found = FoundValue::value(spec.file.as_str()).which("which is no file");
             let allowed = "the path of a water file, relative to the bridge file";
             return Err(Refusal::new(file, "water.file", found, allowed));
         }
-        let document = Document::read(&path)?;
-        let blake3 = document.hash();
+        let (read, blake3) = self.file(&path)?;
         if let Some(asked) = spec.blake3.as_ref().filter(|asked| **asked != blake3) {
             let allowed = format!("{blake3}, the hash of {}", spec.file);
-            return Err(Refusal::new(
-                file,
-                "water.blake3",
-                FoundValue::value(asked.as_str()),
-                allowed,
-            ));
+            let found = FoundValue::value(asked.as_str());
+            return Err(Refusal::new(file, "water.blake3", found, allowed));
         }
-        let ends_m = design.positions_m();
-        let lengths = ends_m.into_iter().chain([design.module.breadth_m, design.p_b()]);
-        let key = (path, blake3, lengths.map(f64::to_bits).collect());
-        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = lock().iter().find(|(of, _)| *of == key) {
-            return Ok(Arc::clone(known));
+        let water = self.water(path, design, &read, &blake3)?;
+        check_accepted(file, &spec, &water.judged)?;
+        design.water = Some(WaterSpec {
+            blake3: Some(blake3),
+            radiation: Some(Arc::clone(&water.radiation)),
+            ..spec
+        });
+        Ok(Some(water))
+    }
+
+    fn file(&self, path: &Path) -> Result<ReadWater, Refusal> {
+        if let Some((_, known)) = self.known().files.iter().find(|(of, _)| of == path) {
+            return Ok(known.clone());
         }
-        let water = WaterFile::of(&key.0, &document)?;
-        let (judged, radiation) = JudgedWater::with_radiation(&key.0, &water, design, &key.1)?;
-        let read = Arc::new(BridgeWater {
-            name: water.name,
-            depth_m: water.depth_m,
-            blake3: key.1.clone(),
+        let document = Document::read(path)?;
+        let read = (Arc::new(WaterFile::of(path, &document)?), document.hash());
+        keep(&mut self.known().files, (path.to_owned(), read.clone()));
+        Ok(read)
+    }
+
+    /// The water under a bridge. Memory and states hang on lengths alone; the water plane is that of each bridge.
+    fn water(
+        &self,
+        path: PathBuf,
+        design: &BridgeDesign,
+        read: &WaterFile,
+        blake3: &str,
+    ) -> Result<Arc<BridgeWater>, Refusal> {
+        let lengths = design.positions_m().into_iter().chain([design.module.breadth_m]);
+        let key = (path, lengths.map(f64::to_bits).collect());
+        let known = self
+            .known()
+            .waters
+            .iter()
+            .find(|(of, _)| *of == key)
+            .map(|(_, known)| Arc::clone(known));
+        if let Some(known) = known {
+            let judged = known.judged.beside(read, design);
+            return Ok(Arc::new(BridgeWater {
+                judged,
+                ..(*known).clone()
+            }));
+        }
+        let (judged, radiation) = JudgedWater::with_radiation(&key.0, read, design, blake3)?;
+        let water = Arc::new(BridgeWater {
+            name: read.name.clone(),
+            depth_m: read.depth_m,
+            blake3: blake3.to_owned(),
             judged,
             radiation: Arc::new(radiation),
         });
-        let mut kept = lock();
-        if kept.len() == KEPT {
-            kept.remove(0);
-        }
-        kept.push((key, Arc::clone(&read)));
-        Ok(read)
+        keep(&mut self.known().waters, (key, Arc::clone(&water)));
+        Ok(water)
     }
+
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Keeps a thing, and lets go of the oldest where there are too many.
+fn keep<T>(kept: &mut Vec<T>, more: T) {
+    if kept.len() == KEPT {
+        kept.remove(0);
+    }
+    kept.push(more);
 }
 
 /// Refuses accepted names that are no checks.
@@ -146,5 +177,35 @@ fn check_accepted(file: &Path, spec: &WaterSpec, judged: &JudgedWater) -> Result
             );
             Err(Refusal::new(file, "water.file", found, allowed).because(RefusalKind::NotAllowed))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::study_file::read_bridge;
+    use std::path::Path;
+    use std::sync::Arc;
+
+    /// Bridges of the same lengths share memory and states, which are dear; each has its own water plane.
+    #[test]
+    fn bridges_of_the_same_lengths_share_a_water() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/bridges/fu2005_waves.json");
+        let bridge = read_bridge(&file).unwrap();
+        let attached = |stiffness: f64| {
+            let mut design = bridge.design.clone();
+            design.hydrostatic_stiffness_pa_m = design.hydrostatic_stiffness_pa_m.map(|p_b| stiffness * p_b);
+            let water = bridge
+                .waters
+                .attach(&file, bridge.folder(), &mut design)
+                .unwrap()
+                .unwrap();
+            let plane = water.judged.checks.iter().find(|check| check.check == "water_plane");
+            let plane = plane.unwrap().figure.unwrap();
+            (water, plane)
+        };
+        let ((own, own_plane), (other, other_plane)) = (attached(1.0), attached(1.2));
+        assert!(Arc::ptr_eq(&own.radiation, &other.radiation));
+        assert_eq!(own.judged.checks.len(), other.judged.checks.len());
+        assert!(own_plane < 0.05 && other_plane > 0.1, "{own_plane} {other_plane}");
     }
 }
