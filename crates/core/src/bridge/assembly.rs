@@ -27,13 +27,11 @@ pub struct Bridge {
     model: Model,
     pub(crate) k: SymmetricMatrix,
     pub(crate) m: SymmetricMatrix,
-    /// What the water's springs have of `k`.
-    pub(crate) k_water: SymmetricMatrix,
     /// Products with `k`, module by module.
     pub(crate) times_k: ModuleProduct,
     /// Products with `m`.
     pub(crate) times_m: ModuleProduct,
-    /// Products with `k_water`.
+    /// Products with what the water's springs have of `k`.
     pub(crate) times_k_water: ModuleProduct,
     /// Water with memory, where the bridge has it; its mass is part of `m`.
     pub(crate) waves: Option<BridgeWaves>,
@@ -159,7 +157,6 @@ impl Bridge {
             m: SymmetricMatrix::from_entries(row.dofs, &m)?,
             times_k: ModuleProduct::new(&modules, &row, |module| &module.k).with(in_k),
             times_m,
-            k_water: SymmetricMatrix::from_entries(row.dofs, &row.entries(|module| &module.k_water))?,
             times_k_water: ModuleProduct::new(&modules, &row, |module| &module.k_water),
             links,
             joint_connectors,

@@ -6,7 +6,7 @@
 use super::modules::Modules;
 use super::prepared::PreparedModule;
 use super::row::Row;
-use crate::fem::{SparseRow, SymmetricMatrix};
+use crate::fem::{FemError, SparseRow, SymmetricMatrix};
 use faer::{Accum, Mat, Par, linalg::matmul::matmul};
 use nalgebra::{DMatrix, DVector};
 
@@ -53,6 +53,16 @@ impl Matrix {
         }
         Self::Dense(dense)
     }
+
+    fn entries(&self) -> Vec<(usize, usize, f64)> {
+        match self {
+            Self::Sparse(a) => a.entries().collect(),
+            Self::Dense(a) => {
+                let places = (0..a.ncols()).flat_map(|j| (0..a.nrows()).map(move |i| (i, j)));
+                places.map(|(i, j)| (i, j, a[(i, j)])).collect()
+            }
+        }
+    }
 }
 
 impl ModuleProduct {
@@ -86,6 +96,22 @@ impl ModuleProduct {
             coupled: Some((rows.to_vec(), x.clone())),
             ..self
         }
+    }
+
+    /// The matrix itself, of modules alone.
+    ///
+    /// # Errors
+    /// [`FemError::OutOfMemory`].
+    pub(crate) fn of_modules(&self) -> Result<SymmetricMatrix, FemError> {
+        let mut entries = Vec::new();
+        for group in &self.groups {
+            let own = group.matrix.entries();
+            for map in &group.map {
+                let placed = own.iter().map(|&(i, j, v)| (map[i], map[j], v));
+                entries.extend(placed.filter(|&(i, j, _)| i != self.dofs && j != self.dofs));
+            }
+        }
+        SymmetricMatrix::from_entries(self.dofs, &entries)
     }
 
     /// `y = A x` of the bridge.

@@ -4,6 +4,7 @@
 
 use super::{Radiation, Scales, Window};
 use nalgebra::{DMatrix, DVector};
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Largest entry of a coupling, in scaled freedoms and as a share of the memory's largest, of freedoms that do not drive each other.
@@ -24,10 +25,10 @@ pub(crate) struct Convolution {
 /// What a convolution remembers at an instant.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Remembered {
-    /// Velocities r' at the ends of whole steps, the last one behind; the first was rest.
-    whole: Arc<Vec<Vec<f64>>>,
+    /// Velocities r' at the ends of whole steps, the last one behind, as far back as the kernel reaches.
+    whole: VecDeque<Arc<[f64]>>,
     /// Times since the last of these `[s]` and velocities, where a step is halved.
-    parts: Vec<(f64, Vec<f64>)>,
+    parts: Vec<(f64, Arc<[f64]>)>,
     /// Force of the water at the last whole step, and a whole step later of what was until then.
     faded: [Vec<f64>; 2],
     /// Force at the instant `[N, N m]`.
@@ -79,7 +80,7 @@ impl Convolution {
     pub(crate) fn at_rest(&self) -> Remembered {
         let zero = || vec![0.0; self.first[0].nrows()];
         Remembered {
-            whole: Arc::new(vec![zero()]),
+            whole: VecDeque::from([zero().into()]),
             parts: Vec::new(),
             faded: [zero(), zero()],
             force: zero(),
@@ -99,8 +100,8 @@ impl Convolution {
         let faded = old.faded[0].iter().zip(&old.faded[1]);
         let mut known: Vec<f64> = faded.map(|(now, later)| now + share * (later - now)).collect();
         // trapezoids over the parts, the kernel linear over a whole step
-        let begin = (0.0, old.whole.last().cloned().unwrap_or_default());
-        let ends: Vec<&(f64, Vec<f64>)> = [&begin].into_iter().chain(&old.parts).collect();
+        let begin = old.whole.back().map(|velocity| (0.0, Arc::clone(velocity)));
+        let ends: Vec<&(f64, Arc<[f64]>)> = begin.iter().chain(&old.parts).collect();
         for (i, (time, velocity)) in ends.iter().enumerate() {
             let before = if i == 0 { *time } else { ends[i - 1].0 };
             let after = ends.get(i + 1).map_or(at, |end| end.0);
@@ -118,28 +119,26 @@ impl Convolution {
         let since = old.parts.last().map_or(0.0, |part| part.0) + step_s;
         let mut new = Remembered { force, ..old.clone() };
         if (since - self.h).abs() > 1e-9 * self.h {
-            new.parts.push((since, velocity));
+            new.parts.push((since, velocity.into()));
             return new;
         }
         new.parts.clear();
-        let whole = Arc::make_mut(&mut new.whole);
-        whole.push(velocity);
-        new.faded = [new.force.clone(), self.faded(whole)];
+        if new.whole.len() == self.samples {
+            new.whole.pop_front();
+        }
+        new.whole.push_back(velocity.into());
+        new.faded = [new.force.clone(), self.faded(&new.whole)];
         new
     }
 
     /// The force a whole step later of the velocities so far, the last one at half its weight.
-    fn faded(&self, whole: &[Vec<f64>]) -> Vec<f64> {
+    fn faded(&self, whole: &VecDeque<Arc<[f64]>>) -> Vec<f64> {
         let mut force = vec![0.0; self.first[0].nrows()];
         for (group, entries) in &self.groups {
             let n = group.len();
             let mut sum = vec![0.0; n];
             // lag j of the velocity j - 1 before the last
-            let lags = entries
-                .chunks_exact(n * n)
-                .skip(1)
-                .zip(whole.iter().rev())
-                .take(self.samples);
+            let lags = entries.chunks_exact(n * n).skip(1).zip(whole.iter().rev());
             for (j, (kernel, velocity)) in lags.enumerate() {
                 let weight = if j == 0 { 0.5 * self.h } else { self.h };
                 for (column, &freedom) in kernel.chunks_exact(n).zip(group) {

@@ -137,7 +137,8 @@ fn by_frequencies(bridge: &Bridge, rayleigh: Rayleigh, vehicle: &Vehicle, times_
         a.entries().for_each(|(i, j, v)| matrix[(i, j)] += v);
         matrix
     };
-    let (k, m, k_water) = (dense(&bridge.k), dense(&bridge.m), dense(&bridge.k_water));
+    let k_water = dense(&bridge.times_k_water.of_modules().expect("a matrix"));
+    let (k, m) = (dense(&bridge.k), dense(&bridge.m));
     let damping = &k * rayleigh.a - &k_water * rayleigh.beyond_water() + &m * rayleigh.b;
     // the linear connection, which has no damping: both trusses at work
     let mut k = k;

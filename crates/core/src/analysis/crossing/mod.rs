@@ -178,9 +178,11 @@ impl CrossingSolver {
             let Rayleigh { a, b, .. } = self.settings.rayleigh;
             let (bridge, beyond_water) = (&self.bridge, self.settings.rayleigh.beyond_water());
             let mut terms = vec![(c_m + c_c * b, &bridge.m), (c_k + c_c * a, &bridge.k)];
-            if beyond_water != 0.0 {
-                terms.push((-c_c * beyond_water, &bridge.k_water));
-            }
+            let of_water = match beyond_water {
+                0.0 => None,
+                _ => Some(bridge.times_k_water.of_modules()?),
+            };
+            terms.extend(of_water.iter().map(|of_water| (-c_c * beyond_water, of_water)));
             let of_waves = match (&bridge.waves, &self.convolution) {
                 (Some(waves), Some(convolution)) => {
                     let entries = waves.entries(&convolution.at_end(h));
