@@ -43,14 +43,14 @@ pub(crate) struct WaterArguments {
     /// Acceleration of gravity.
     #[arg(long, value_name = "X")]
     pub gravity_m_s2: Option<f64>,
-    /// Frequency up to which the coefficients are to be used.
-    #[arg(long, value_name = "W", default_value_t = 5.0)]
-    pub usable_to_rad_s: f64,
+    /// Frequency up to which the coefficients are to be used: that of a water file, 5 of other files where it is not given.
+    #[arg(long, value_name = "W")]
+    pub usable_to_rad_s: Option<f64>,
     /// Modes of WAMIT or NEMOH, from 1, that are heave, pitch and roll of the first module, of the second, and so on: where the
     /// modules are no bodies of six modes each.
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..))]
     pub modes: Vec<u16>,
-    /// The length by which WAMIT made its coefficients free of dimension (ULEN).
-    #[arg(long, value_name = "X", default_value_t = 1.0)]
-    pub length_scale_m: f64,
+    /// The length by which WAMIT made its coefficients free of dimension (ULEN); 1 where it is not given.
+    #[arg(long, value_name = "X")]
+    pub length_scale_m: Option<f64>,
 }

@@ -89,7 +89,7 @@ impl BemData {
                 file: file.file_name().map(|name| name.to_string_lossy().into_owned()),
                 blake3: Some(blake3),
                 note: options.note.clone(),
-                asymmetry: Some(largest(&asymmetries, options.usable_to_rad_s)),
+                asymmetry: Some(largest(&asymmetries, options.usable_to_rad_s())),
             },
             modules: self.modules,
             module_length_m,
@@ -103,7 +103,7 @@ impl BemData {
             waterline_breadth_m: facts.waterline_breadth_m,
             draught_m: facts.draught_m,
             freedoms: FREEDOMS,
-            usable_to_rad_s: options.usable_to_rad_s,
+            usable_to_rad_s: options.usable_to_rad_s(),
             omega_rad_s: self.frequencies.iter().map(|at| at.omega_rad_s).collect(),
             added_mass: self.frequencies.iter().map(|at| triangle(&at.added_mass)).collect(),
             radiation_damping: self

@@ -48,7 +48,7 @@ pub enum BemModes {
 }
 
 /// What a reader is told beside the file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Facts that the file may not hold.
     pub facts: WaterFacts,
@@ -56,24 +56,39 @@ pub struct Options {
     pub modules: Option<usize>,
     /// Where the file comes from and whatever else a reader should know.
     pub note: Option<String>,
-    /// Frequency up to which the coefficients are to be used `[rad/s]`.
-    pub usable_to_rad_s: f64,
+    /// Frequency up to which the coefficients are to be used `[rad/s]`; where absent that of a water file, 5 of other files.
+    pub usable_to_rad_s: Option<f64>,
     /// Which modes are the modules' freedoms, of WAMIT and NEMOH.
     pub modes: BemModes,
-    /// The length by which WAMIT made its coefficients free of dimension, `ULEN` `[m]`.
-    pub length_scale_m: f64,
+    /// The length by which WAMIT made its coefficients free of dimension, `ULEN` `[m]`; 1 where absent.
+    pub length_scale_m: Option<f64>,
 }
 
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            facts: WaterFacts::default(),
-            modules: None,
-            note: None,
-            usable_to_rad_s: 5.0,
-            modes: BemModes::Bodies,
-            length_scale_m: 1.0,
+impl Options {
+    /// Refuses, of a form that numbers no modes or has dimensions, what holds for another form alone.
+    ///
+    /// # Errors
+    /// [`Refusal`] at the option.
+    pub(crate) fn check_form(&self, file: &Path, is_numbered: bool, is_scaled: bool) -> Result<(), Refusal> {
+        let misplaced = |key: &str, of: &str| {
+            let refused = Refusal::new(file, key, "a value", format!("no value of this form: it is for {of}"));
+            Err(refused.because(RefusalKind::Misplaced))
+        };
+        match (&self.modes, self.length_scale_m) {
+            (BemModes::Listed(_), _) if !is_numbered => misplaced("modes", "WAMIT and NEMOH"),
+            (_, Some(_)) if !is_scaled => misplaced("length_scale_m", "WAMIT"),
+            _ => Ok(()),
         }
+    }
+
+    /// Frequency up to which the coefficients of a BEM code are to be used `[rad/s]`.
+    pub(crate) fn usable_to_rad_s(&self) -> f64 {
+        self.usable_to_rad_s.unwrap_or(5.0)
+    }
+
+    /// The length by which coefficients are free of dimension `[m]`.
+    pub(crate) fn length_scale_m(&self) -> f64 {
+        self.length_scale_m.unwrap_or(1.0)
     }
 }
 

@@ -61,6 +61,9 @@ pub struct Reading {
 pub fn read(file: &Path, options: &Options) -> Result<Reading, Refusal> {
     let bytes = bytes_of(file)?;
     let format = format_of(file, &bytes)?;
+    let is_wamit = format == WaterFormat::Wamit;
+    let is_nemoh = matches!(format, WaterFormat::NemohTecplot | WaterFormat::NemohTables);
+    options.check_form(file, is_wamit || is_nemoh, is_wamit)?;
     let text = String::from_utf8_lossy(&bytes);
     let mut hash = blake3::Hasher::new();
     hash.update(&bytes);
@@ -134,7 +137,7 @@ fn format_of(file: &Path, bytes: &[u8]) -> Result<WaterFormat, Refusal> {
 }
 
 fn neutral(file: &Path, options: &Options) -> Result<Reading, Refusal> {
-    let water = WaterFile::of(file, &Document::read(file)?)?;
+    let mut water = WaterFile::of(file, &Document::read(file)?)?;
     check_modules(file, water.modules, options)?;
     let facts = WaterFacts {
         module_length_m: Some(water.module_length_m.clone()),
@@ -143,9 +146,17 @@ fn neutral(file: &Path, options: &Options) -> Result<Reading, Refusal> {
         depth: Some(water.depth_m.map_or(WaterDepth::Deep, WaterDepth::Metres)),
         density_kg_m3: Some(water.density_kg_m3),
         gravity_m_s2: Some(water.gravity_m_s2),
-        ..WaterFacts::default()
+        name: Some(water.name.clone()),
+        hull: Some(water.hull.clone()),
     };
-    facts.with(file, &options.facts)?;
+    let facts = facts.with(file, &options.facts)?;
+    water.name = facts.name.unwrap_or(water.name);
+    water.hull = facts.hull.unwrap_or(water.hull);
+    water.waterline_breadth_m = facts.waterline_breadth_m;
+    water.draught_m = facts.draught_m;
+    water.usable_to_rad_s = options.usable_to_rad_s.unwrap_or(water.usable_to_rad_s);
+    // what the reader told is held to the ranges of the file
+    let water = WaterFile::of(file, &Document::parse(file, &water.text())?)?;
     Ok(Reading {
         water,
         format: WaterFormat::Neutral,

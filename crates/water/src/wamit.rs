@@ -94,7 +94,7 @@ pub(crate) fn read(
                     let coefficient = at.coefficients.get(&(places[i], places[j]));
                     let rotations = [i, j].iter().filter(|&&place| place % FREEDOMS.len() != 0).count();
                     let power = i32::try_from(3 + rotations).unwrap_or(3);
-                    factor * options.length_scale_m.powi(power) * coefficient.map_or(0.0, |pair| pair[which])
+                    factor * options.length_scale_m().powi(power) * coefficient.map_or(0.0, |pair| pair[which])
                 })
                 .collect()
         };
@@ -128,7 +128,7 @@ fn check_counts(file: &Path, periods: &[AtPeriod]) -> Result<(), Refusal> {
 
 /// Refuses a length scale where modes may be generalised ones.
 fn check_scale(file: &Path, options: &Options) -> Result<(), Refusal> {
-    let scale = options.length_scale_m;
+    let scale = options.length_scale_m();
     if !(scale.is_finite() && scale > 0.0) {
         return Err(Refusal::new(file, "length_scale_m", scale, "a number above 0"));
     }
@@ -205,7 +205,7 @@ fn water_plane(
     let heaves = places.iter().step_by(FREEDOMS.len());
     let areas: Vec<f64> = heaves
         .filter_map(|&heave| stiffness.get(&(heave, heave)))
-        .map(|stiffness| stiffness * options.length_scale_m.powi(2))
+        .map(|stiffness| stiffness * options.length_scale_m().powi(2))
         .collect();
     if areas.len() != data.modules {
         let found = format!("the stiffness of heave of {} modules", areas.len());

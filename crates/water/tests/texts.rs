@@ -90,7 +90,7 @@ fn wamit_gives_the_modules_of_its_bodies() {
 #[test]
 fn wamit_coefficients_have_the_length_scale_they_were_made_with() {
     let options = Options {
-        length_scale_m: 2.0,
+        length_scale_m: Some(2.0),
         ..options()
     };
     let water = read_files(&[("two.1", &wamit(12))], &options).unwrap().water;

@@ -1,6 +1,6 @@
 //! `pontoon water`: a water that is what radiation has to be, and waters that are not.
 
-use crate::stage::{Stage, stderr, stdout};
+use crate::stage::{Stage, is_refused, stderr, stdout};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_2_PI, TAU};
 use std::fs;
@@ -132,6 +132,18 @@ fn a_water_of_one_causal_fluid_holds_and_is_written() {
         checks.iter().map(|check| check["outcome"].clone()).collect()
     };
     assert_eq!((status, outcomes(&again)), (Some(0), outcomes(&found)));
+    // the reader's word stands for names and for the band; what holds for BEM codes alone is refused
+    let told = |more: &[&str]| stage.pontoon(&[&["water", "water.json"], more].concat());
+    let output = told(&["--usable-to-rad-s", "4.5", "--name", "other", "--out", "told.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let written: Value = serde_json::from_slice(&fs::read(stage.path("told.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&written["usable_to_rad_s"], &written["name"]),
+        (&json!(4.5), &json!("other"))
+    );
+    is_refused(&told(&["--usable-to-rad-s", "7"]), &["usable_to_rad_s", "below 6.5"]);
+    is_refused(&told(&["--modes", "3,5,4"]), &["modes", "WAMIT and NEMOH"]);
+    is_refused(&told(&["--length-scale-m", "2"]), &["length_scale_m", "for WAMIT"]);
 }
 
 #[test]
