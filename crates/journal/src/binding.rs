@@ -54,6 +54,9 @@ pub struct Session {
     pub study_blake3: String,
     /// Hash of the bridge's document.
     pub bridge_blake3: String,
+    /// Water files that its bridges name, with the hashes of their documents.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub waters: Vec<(String, String)>,
 }
 
 /// How a process ended by itself.

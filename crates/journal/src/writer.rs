@@ -441,6 +441,7 @@ mod tests {
             apart,
             study_blake3: String::new(),
             bridge_blake3: String::new(),
+            waters: Vec::new(),
         };
         JournalWriter::begin(folder, &binding, &session, 0).unwrap()
     }

@@ -50,6 +50,8 @@ pub struct RunDocuments {
     name: String,
     study: StoredDocument,
     bridge: StoredDocument,
+    /// Water files by the paths that bridges name them by.
+    waters: Vec<(String, StoredDocument)>,
     trees: OnceLock<[Value; 2]>,
 }
 
@@ -61,13 +63,16 @@ struct StudyHead {
     vehicle: Value,
 }
 
-/// Keeps the documents of a study in a folder of results, before any record or table names them.
+/// Keeps the documents of a study in a folder of results, before any record or table names them: the study, its bridge, and the
+/// water files that its bridges name.
 ///
 /// # Errors
 /// [`FolderError`] with the file that could not be written.
 pub fn keep_documents(folder: &Path, study: &Study) -> Result<(), FolderError> {
     let mut documents = [&study.document, &study.bridge.document].into_iter();
-    documents.try_for_each(|document| keep_document(folder, &document.hash(), document.text()))
+    documents.try_for_each(|document| keep_document(folder, &document.hash(), document.text()))?;
+    let mut waters = study.bridge.waters().into_iter();
+    waters.try_for_each(|water| keep_document(folder, &water.blake3, water.document.text()))
 }
 
 impl RunDocuments {
@@ -78,6 +83,7 @@ impl RunDocuments {
             name: study.name.clone(),
             study: StoredDocument::of(study.document.clone()),
             bridge: StoredDocument::of(study.bridge.document.clone()),
+            waters: Vec::new(),
             trees: OnceLock::new(),
         }
     }
@@ -111,9 +117,25 @@ impl RunDocuments {
             let read = OnceLock::new();
             Ok(StoredDocument { hash, read })
         };
+        let mut waters: Vec<(String, StoredDocument)> = Vec::new();
+        for water in manifest["bridges"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(|of| &of["water"])
+        {
+            let (Some(file), Some(hash)) = (water["file"].as_str(), water["blake3"].as_str()) else {
+                continue;
+            };
+            if waters.iter().all(|(known, _)| known != file) {
+                let (hash, read) = (hash.to_owned(), OnceLock::new());
+                waters.push((file.to_owned(), StoredDocument { hash, read }));
+            }
+        }
         Ok(Self {
             folder: folder.to_owned(),
             name: name.to_owned(),
+            waters,
             study: stored("study")?,
             bridge: stored("bridge")?,
             trees: OnceLock::new(),
@@ -139,6 +161,15 @@ impl RunDocuments {
     /// [`ResultsError::Damaged`].
     pub fn bridge(&self) -> Result<&Document, ResultsError> {
         self.bridge.get(&self.folder)
+    }
+
+    /// The water files, each with the path that bridges name it by.
+    ///
+    /// # Errors
+    /// [`ResultsError::Damaged`].
+    pub fn waters(&self) -> Result<Vec<(String, Document)>, ResultsError> {
+        let read = |(file, stored): &(String, StoredDocument)| Ok((file.clone(), stored.get(&self.folder)?.clone()));
+        self.waters.iter().map(read).collect()
     }
 
     /// The bridge and the study's vehicle as trees; null where the study names no vehicle.

@@ -84,6 +84,8 @@ pub struct BridgeReport {
 pub struct WaterReport {
     /// Its name.
     pub name: String,
+    /// Its file, as the bridge names it.
+    pub file: String,
     /// Hash of its file.
     pub blake3: String,
     /// Depth `[m]`; null where it is deep.

@@ -41,7 +41,7 @@ pub use realisation::{Fit, Realisation, RealisationError, StateGroup};
 pub use scales::{FREEDOMS_PER_MODULE, Scales};
 pub use spline::MatrixSpline;
 pub use state_step::StepCoefficients;
-pub use table::{FreedomMatrix, RadiationTable};
+pub use table::{FreedomMatrix, RadiationTable, total_heave};
 pub use water::Radiation;
 pub use window::Window;
 

@@ -160,7 +160,7 @@ impl RadiationTable {
 }
 
 /// The sum of a matrix over all pairs of heaves: what the whole chain has when it heaves as one body.
-pub(super) fn total_heave(matrix: &DMatrix<f64>) -> f64 {
+pub fn total_heave(matrix: &DMatrix<f64>) -> f64 {
     let heaves = || (0..matrix.nrows()).step_by(FREEDOMS_PER_MODULE);
     heaves().map(|i| heaves().map(|j| matrix[(i, j)]).sum::<f64>()).sum()
 }

@@ -348,7 +348,7 @@ impl Documents {
 fn changed_water(study: &Study, design: &mut BridgeDesign) -> Result<Option<Arc<BridgeWater>>, Refusal> {
     let bridge = &study.bridge;
     if bridge.design.water.is_some() && bridge.water.is_none() {
-        // a bridge of stored documents, whose files are not read
+        // a bridge of stored documents that was not given the waters beside them
         return Ok(None);
     }
     if let (Some(own), Some(base)) = (&mut design.water, &bridge.design.water)
@@ -450,7 +450,11 @@ impl<'a> Changes<'a> {
 
     /// The refusal with its path as the study file has it: at the axis that changed it, or at the block whose axes made
     /// another value wrong.
+    /// A refusal of a file of its own stays there.
     fn placed(&self, refusal: Refusal) -> Refusal {
+        if refusal.file != self.file {
+            return refusal;
+        }
         let path = join(self.root.word(), &refusal.path);
         if self.list.is_empty() {
             return Refusal { path, ..refusal };

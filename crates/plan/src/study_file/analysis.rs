@@ -284,7 +284,8 @@ fn crossing(written: &AnalysisSpec) -> Result<CrossingAnalysis, InvalidInput> {
             return Err(InvalidInput::new(format!("damping.{key}"), "a value", allowed).because(Problem::Misplaced));
         }
         within("damping.structure.ratio", of.ratio, 0.0, 0.99)?;
-        positive("damping.structure.at_hz", of.at_hz)?;
+        // further off the ratio at the bridge's own frequencies, 0.3 to 30 Hz, is none
+        within("damping.structure.at_hz", of.at_hz, 0.01, 1000.0)?;
     }
     within("damping.ratio", damping.rayleigh_ratio(), 0.0, 0.99)?;
     if let Some([first, second]) = damping.frequencies_hz {

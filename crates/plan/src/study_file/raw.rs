@@ -8,6 +8,7 @@ use super::limits::LimitsSpec;
 use super::record::RecordSpec;
 use super::wear::WearSpec;
 use crate::design::Design;
+use pontoon_core::analysis::modes::{Rayleigh, rayleigh};
 use pontoon_core::bridge::Model;
 use pontoon_core::road::RoadDesign;
 use pontoon_core::traffic::{ColumnDesign, TrafficDesign, TrafficEntry, VehicleOrFile};
@@ -215,7 +216,7 @@ pub struct StructureDamping {
     #[schemars(range(min = 0.0, max = 0.99))]
     pub ratio: f64,
     /// Frequency at which the ratio holds; it is in proportion to the frequency `[Hz]`.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.01, max = 1000.0))]
     pub at_hz: f64,
 }
 
@@ -236,6 +237,22 @@ impl DampingSpec {
     /// The ratio of Rayleigh's damping.
     pub fn rayleigh_ratio(&self) -> f64 {
         self.ratio.unwrap_or(Self::RATIO)
+    }
+
+    /// The frequencies of Rayleigh's damping `[Hz]`, none of the structure's own, and the coefficients; `bending_hz` finds the first two
+    /// vertical bending modes where no frequencies are stated.
+    ///
+    /// # Errors
+    /// Those of `bending_hz`.
+    pub fn coefficients<E>(
+        &self,
+        bending_hz: impl FnOnce() -> Result<[f64; 2], E>,
+    ) -> Result<(Option<[f64; 2]>, Rayleigh), E> {
+        if let Some(of) = self.structure {
+            return Ok((None, Rayleigh::of_structure(of.ratio, of.at_hz)));
+        }
+        let frequencies_hz = self.frequencies_hz.map_or_else(bending_hz, Ok)?;
+        Ok((Some(frequencies_hz), rayleigh(self.rayleigh_ratio(), frequencies_hz)))
     }
 
     /// With the ratio written out where it counts.

@@ -12,7 +12,7 @@ use super::vehicle_files::{VehicleFile, at_home, with_vehicle_files};
 use super::wear::WearSpec;
 use crate::design::{Axis, Block, Design, Goes, JobAxis, NAMED_AXES, Varies};
 use crate::input::{Document, FoundValue, Refusal, RefusalKind, canonical_text, leaves, to_value, typed};
-use crate::water_file::{BridgeWater, Waters};
+use crate::water_file::{BridgeWater, WaterDocument, Waters};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::traffic::TrafficDesign;
 use pontoon_core::vehicle::VehicleDesign;
@@ -61,7 +61,7 @@ pub fn bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal>
     Ok(bridge)
 }
 
-/// Checks the document of a bridge that results were computed with; its water file is not read.
+/// Checks the document of a bridge that results were computed with; its water file is not read, see [`Study::in_waters`].
 fn stored_bridge_of(file: &Path, document: Document) -> Result<BridgeFile, Refusal> {
     let design: BridgeDesign = typed(file, "", &document)?;
     let checked = design.check().and_then(|()| design.check_water_line());
@@ -85,6 +85,11 @@ impl BridgeFile {
             design,
             ..self.clone()
         }
+    }
+
+    /// The water files that it, or what axes made of it, names.
+    pub fn waters(&self) -> Vec<WaterDocument> {
+        self.waters.documents()
     }
 
     /// The folder that its paths are relative to.
@@ -180,6 +185,22 @@ impl Study {
         let spec: StudySpec = typed(file, "", &document)?;
         let bridge = stored_bridge_of(file, bridge)?;
         Self::checked(file.to_owned(), document, spec, bridge, Vec::new())
+    }
+
+    /// Gives a study of stored documents the waters that are stored beside them, each with the path by which bridges name it.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a document that is no water file, and of a water that the bridge may not have.
+    pub fn in_waters(mut self, stored: Vec<(String, Document)>) -> Result<Self, Refusal> {
+        if stored.is_empty() {
+            return Ok(self);
+        }
+        let (bridge, file) = (&mut self.bridge, &self.file);
+        let waters = Arc::clone(&bridge.waters);
+        let folder = bridge.folder().to_owned();
+        waters.hold_all(&folder, stored)?;
+        bridge.water = waters.attach(file, &folder, &mut bridge.design)?;
+        Ok(self)
     }
 
     /// The study of documents that a program holds: `file` stands for the study in messages, and paths of vehicle files in it

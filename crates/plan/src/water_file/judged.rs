@@ -7,8 +7,8 @@ use crate::input::{FoundValue, Refusal};
 use pontoon_core::bridge::BridgeDesign;
 use pontoon_core::input::InvalidInput;
 use pontoon_core::radiation::{
-    Band, Check, CheckName, FREEDOMS_PER_MODULE, Kernel, Limit, Outcome, Radiation, RadiationTable, Scales, Window,
-    added_mass_infinite,
+    Band, Check, CheckName, Kernel, Limit, Outcome, Radiation, RadiationTable, Scales, Window, added_mass_infinite,
+    total_heave,
 };
 use serde::Serialize;
 use std::path::Path;
@@ -217,12 +217,6 @@ fn table_of(water: &WaterFile) -> Result<RadiationTable, InvalidInput> {
         water.radiation_damping.iter().map(matrix).collect(),
         water.infinite_added_mass.as_ref().map(matrix),
     )
-}
-
-/// The force of the water on the heave of all modules where all heave alike.
-fn total_heave(matrix: &pontoon_core::radiation::FreedomMatrix) -> f64 {
-    let heave = || (0..matrix.nrows()).step_by(FREEDOMS_PER_MODULE);
-    heave().map(|i| heave().map(|j| matrix[(i, j)]).sum::<f64>()).sum()
 }
 
 /// The hull's water plane against the hydrostatic stiffness that the bridge has, per length; none where

@@ -23,7 +23,7 @@ use std::path::Path;
 pub use judged::{JudgedCheck, JudgedWater};
 pub use module_lengths::ModuleLengths;
 pub use triangle::{asymmetry, full, symmetric_part, triangle_length};
-pub use waters::{BridgeWater, Waters};
+pub use waters::{BridgeWater, WaterDocument, Waters};
 
 /// A water file: added mass and radiation damping of a chain of modules. Units are SI: forces `[N]` and moments `[N m]` per
 /// acceleration or speed `[m]`, `[rad]`.

@@ -9,7 +9,7 @@ use pontoon_core::radiation::Radiation;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Waters that are kept at most: those of an axis.
+/// Waters that are kept at most: those of the bridges of an axis.
 const KEPT: usize = 8;
 
 /// A water file as a bridge has it.
@@ -34,12 +34,28 @@ pub struct Waters(Mutex<Known>);
 /// What is kept of them: a file is read once, and what it comes to is made once for lengths that scale its freedoms.
 #[derive(Debug, Default)]
 struct Known {
-    files: Vec<(PathBuf, ReadWater)>,
+    files: Vec<ReadWater>,
     waters: Vec<(WaterKey, Arc<BridgeWater>)>,
 }
 
-/// A water file with its hash.
-type ReadWater = (Arc<WaterFile>, String);
+/// A water file that was read.
+#[derive(Debug, Clone)]
+struct ReadWater {
+    path: PathBuf,
+    kept: WaterDocument,
+    water: Arc<WaterFile>,
+}
+
+/// The document of a water file, to be kept with results.
+#[derive(Debug, Clone)]
+pub struct WaterDocument {
+    /// The path by which bridges name the file.
+    pub file: String,
+    /// Its hash.
+    pub blake3: String,
+    /// Its text.
+    pub document: Document,
+}
 
 /// What a water is made of: its file and the lengths that scale its freedoms.
 type WaterKey = (PathBuf, Vec<u64>);
@@ -62,18 +78,22 @@ impl Waters {
         };
         check_names(file, &spec)?;
         let path = folder.join(&spec.file);
-        if !path.is_file() {
-            let found = FoundValue::value(spec.file.as_str()).which("which is no file");
-            let allowed = "the path of a water file, relative to the bridge file";
-            return Err(Refusal::new(file, "water.file", found, allowed));
-        }
-        let (read, blake3) = self.file(&path)?;
+        let read = match self.known_file(&path) {
+            Some(known) => known,
+            None if path.is_file() => self.hold(folder, &spec.file, Document::read(&path)?)?,
+            None => {
+                let found = FoundValue::value(spec.file.as_str()).which("which is no file");
+                let allowed = "the path of a water file, relative to the bridge file";
+                return Err(Refusal::new(file, "water.file", found, allowed));
+            }
+        };
+        let blake3 = read.kept.blake3.clone();
         if let Some(asked) = spec.blake3.as_ref().filter(|asked| **asked != blake3) {
             let allowed = format!("{blake3}, the hash of {}", spec.file);
             let found = FoundValue::value(asked.as_str());
             return Err(Refusal::new(file, "water.blake3", found, allowed));
         }
-        let water = self.water(path, design, &read, &blake3)?;
+        let water = self.water(&read, design)?;
         check_accepted(file, &spec, &water.judged)?;
         design.water = Some(WaterSpec {
             blake3: Some(blake3),
@@ -83,26 +103,50 @@ impl Waters {
         Ok(Some(water))
     }
 
-    fn file(&self, path: &Path) -> Result<ReadWater, Refusal> {
-        if let Some((_, known)) = self.known().files.iter().find(|(of, _)| of == path) {
-            return Ok(known.clone());
-        }
-        let document = Document::read(path)?;
-        let read = (Arc::new(WaterFile::of(path, &document)?), document.hash());
-        keep(&mut self.known().files, (path.to_owned(), read.clone()));
+    /// The water files that were read.
+    pub fn documents(&self) -> Vec<WaterDocument> {
+        self.known().files.iter().map(|read| read.kept.clone()).collect()
+    }
+
+    /// Takes the document of a water file that bridges in `folder` name by a path.
+    fn hold(&self, folder: &Path, file: &str, document: Document) -> Result<ReadWater, Refusal> {
+        let path = folder.join(file);
+        let read = ReadWater {
+            water: Arc::new(WaterFile::of(&path, &document)?),
+            kept: WaterDocument {
+                file: file.to_owned(),
+                blake3: document.hash(),
+                document,
+            },
+            path,
+        };
+        self.known().files.push(read.clone());
         Ok(read)
     }
 
-    /// The water under a bridge. Memory and states hang on lengths alone; the water plane is that of each bridge.
-    fn water(
+    /// Takes the documents of water files that bridges in `folder` name by these paths.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a document that is no water file.
+    pub fn hold_all(
         &self,
-        path: PathBuf,
-        design: &BridgeDesign,
-        read: &WaterFile,
-        blake3: &str,
-    ) -> Result<Arc<BridgeWater>, Refusal> {
+        folder: &Path,
+        documents: impl IntoIterator<Item = (String, Document)>,
+    ) -> Result<(), Refusal> {
+        let mut documents = documents.into_iter();
+        documents.try_for_each(|(file, document)| self.hold(folder, &file, document).map(|_| ()))
+    }
+
+    fn known_file(&self, path: &Path) -> Option<ReadWater> {
+        self.known().files.iter().find(|read| read.path == path).cloned()
+    }
+
+    /// The water under a bridge. Memory and states hang on lengths alone; the water plane is that of each bridge.
+    fn water(&self, read: &ReadWater, design: &BridgeDesign) -> Result<Arc<BridgeWater>, Refusal> {
+        let (path, blake3) = (&read.path, &read.kept.blake3);
+        let read = &read.water;
         let lengths = design.positions_m().into_iter().chain([design.module.breadth_m]);
-        let key = (path, lengths.map(f64::to_bits).collect());
+        let key = (path.clone(), lengths.map(f64::to_bits).collect());
         let known = self
             .known()
             .waters
@@ -116,29 +160,26 @@ impl Waters {
                 ..(*known).clone()
             }));
         }
-        let (judged, radiation) = JudgedWater::with_radiation(&key.0, read, design, blake3)?;
+        let (judged, radiation) = JudgedWater::with_radiation(path, read, design, blake3)?;
         let water = Arc::new(BridgeWater {
             name: read.name.clone(),
             depth_m: read.depth_m,
-            blake3: blake3.to_owned(),
+            blake3: blake3.clone(),
             judged,
             radiation: Arc::new(radiation),
         });
-        keep(&mut self.known().waters, (key, Arc::clone(&water)));
+        let mut known = self.known();
+        if known.waters.len() == KEPT {
+            known.waters.remove(0);
+        }
+        known.waters.push((key, Arc::clone(&water)));
+        drop(known);
         Ok(water)
     }
 
     fn known(&self) -> MutexGuard<'_, Known> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// Keeps a thing, and lets go of the oldest where there are too many.
-fn keep<T>(kept: &mut Vec<T>, more: T) {
-    if kept.len() == KEPT {
-        kept.remove(0);
-    }
-    kept.push(more);
 }
 
 /// Refuses accepted names that are no checks.

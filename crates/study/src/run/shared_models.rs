@@ -15,7 +15,7 @@ use super::model_keys::{
 use super::progress::{Progress, Silent};
 use super::retry::RETRY_STEP_SHARE;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
-use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
+use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz};
 use pontoon_core::analysis::statics::{DeadCase, StaticCase, StaticSolver};
 use pontoon_core::bridge::{Bridge, Ends, Model, PreparedModule};
 use pontoon_core::operator::{BridgeOperator, WaveStates};
@@ -268,21 +268,14 @@ impl SharedModels {
 
     fn damping_of(&self, crossing: &CrossingJob<'_>, cancel: &CancelToken) -> Result<Damping, JobFailure> {
         let asked = || cancel.is_asked();
-        let damping = crossing.analysis.damping;
-        if let Some(of) = damping.structure {
-            return Ok(Damping {
-                frequencies_hz: None,
-                coefficients: Rayleigh::of_structure(of.ratio, of.at_hz),
-            });
-        }
-        let frequencies_hz = match damping.frequencies_hz {
-            Some(stated) => stated,
-            None => bending_frequencies_hz(&self.bridge(crossing.job, Ends::Free)?, Stop::when(&asked))
-                .map_err(|e| JobFailure::from(e).said("damping: ", "; state analysis.damping.frequencies_hz"))?,
+        let bending_hz = || {
+            bending_frequencies_hz(&self.bridge(crossing.job, Ends::Free)?, Stop::when(&asked))
+                .map_err(|e| JobFailure::from(e).said("damping: ", "; state analysis.damping.frequencies_hz"))
         };
+        let (frequencies_hz, coefficients) = crossing.analysis.damping.coefficients(bending_hz)?;
         Ok(Damping {
-            frequencies_hz: Some(frequencies_hz),
-            coefficients: rayleigh(damping.rayleigh_ratio(), frequencies_hz),
+            frequencies_hz,
+            coefficients,
         })
     }
 
@@ -551,16 +544,12 @@ impl SharedModels {
 
 /// What is told of the water with memory under a job's bridge.
 fn water_report(job: &Job, water: &BridgeWater, states: Option<WaveStates>) -> WaterReport {
-    let accepts = |name: &str| {
-        job.bridge
-            .design
-            .water
-            .iter()
-            .any(|spec| spec.accept.iter().any(|own| own == name))
-    };
+    let spec = job.bridge.design.water.as_ref();
+    let accepts = |name: &str| spec.is_some_and(|spec| spec.accept.iter().any(|own| own == name));
     let accepted = water.judged.refused().filter(|check| accepts(check.check));
     WaterReport {
         name: water.name.clone(),
+        file: spec.map_or_else(String::new, |spec| spec.file.clone()),
         blake3: water.blake3.clone(),
         depth_m: water.depth_m,
         infinite_heave_kg_m: water.judged.infinite_heave_kg_m,

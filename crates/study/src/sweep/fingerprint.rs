@@ -4,7 +4,7 @@
 
 use super::{SweepError, SweepSetting};
 use crate::run::instruction_path;
-use pontoon_journal::{Binding, FORM, JournalIndex, Session, document_file, read_document};
+use pontoon_journal::{Binding, FORM, JournalError, JournalIndex, Session, document_file, read_document};
 use pontoon_plan::input::{Document, Refusal, canonical_text, to_value};
 use pontoon_plan::job::Shard;
 use pontoon_plan::study_file::{Study, filled_vehicle};
@@ -79,6 +79,12 @@ pub(super) fn session(
         apart,
         study_blake3: study.document.hash(),
         bridge_blake3: study.bridge.document.hash(),
+        waters: study
+            .bridge
+            .waters()
+            .into_iter()
+            .map(|water| (water.file, water.blake3))
+            .collect(),
     }
 }
 
@@ -90,5 +96,10 @@ pub(super) fn study_of(session: &Session, folder: &Path) -> Result<Study, SweepE
     let document = |hash: &str| read_document(folder, hash).map(Document::of_canonical);
     let file = folder.join(document_file(&session.study_blake3));
     let (study, bridge) = (document(&session.study_blake3)?, document(&session.bridge_blake3)?);
-    Ok(Study::of_documents(&file, study, bridge)?)
+    let waters = session
+        .waters
+        .iter()
+        .map(|(file, hash)| Ok((file.clone(), document(hash)?)));
+    let waters: Vec<(String, Document)> = waters.collect::<Result<_, JournalError>>()?;
+    Ok(Study::of_documents(&file, study, bridge)?.in_waters(waters)?)
 }

@@ -5,7 +5,7 @@
 use super::ExportError;
 use super::subject::{CrossingWanted, Stresses};
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver};
-use pontoon_core::analysis::modes::{Rayleigh, bending_frequencies_hz, rayleigh};
+use pontoon_core::analysis::modes::bending_frequencies_hz;
 use pontoon_core::analysis::snapshot::Snapshot;
 use pontoon_core::bridge::{
     Bridge, BridgeDesign, BridgeStresses, Ends, MeshedBridge, Model, PreparedModule, StressRecovery,
@@ -67,15 +67,11 @@ impl Ready {
     ) -> Result<(Self, CrossingSettings), ExportError> {
         let (design, crossing) = (&wanted.job.bridge.design, wanted.crossing()?);
         let modules = PreparedModule::of_kinds(design, wanted.job.model().into())?;
-        let damping = crossing.analysis.damping;
-        let coefficients = match (damping.structure, damping.frequencies_hz) {
-            (Some(of), _) => Rayleigh::of_structure(of.ratio, of.at_hz),
-            (None, Some(stated)) => rayleigh(damping.rayleigh_ratio(), stated),
-            (None, None) => {
-                let free = Bridge::of_kinds(design, &modules, Ends::Free)?;
-                rayleigh(damping.rayleigh_ratio(), bending_frequencies_hz(&free, Stop::never())?)
-            }
+        let bending_hz = || -> Result<[f64; 2], ExportError> {
+            let free = Bridge::of_kinds(design, &modules, Ends::Free)?;
+            Ok(bending_frequencies_hz(&free, Stop::never())?)
         };
+        let (_, coefficients) = crossing.analysis.damping.coefficients(bending_hz)?;
         let settings = CrossingSettings {
             time_step_s: wanted.time_step_s,
             ..crossing.settings(coefficients)

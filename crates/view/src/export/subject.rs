@@ -148,7 +148,8 @@ impl Subject {
     fn of_results(source: &Path, request: &Request) -> Result<Self, ExportError> {
         let results = Results::read(source)?;
         let (study, bridge) = (results.documents.study()?, results.documents.bridge()?);
-        let study = Study::of_documents(source, study.clone(), bridge.clone())?;
+        let study =
+            Study::of_documents(source, study.clone(), bridge.clone())?.in_waters(results.documents.waters()?)?;
         let (job, row) = job_of(source, &results, &study, request.job)?;
         let Some(job) = Candidates::told_crossing(&study, &job, results.jobs().number("rated_value", row)) else {
             let refused = Refusal::new(source, "--job", job.number, "a rating that has a rated value");

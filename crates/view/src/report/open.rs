@@ -51,7 +51,8 @@ impl OpenedResults {
         let file = results.place.join("manifest.json");
         let documents = &results.documents;
         let (study, bridge) = (documents.study()?.clone(), documents.bridge()?.clone());
-        let read = Study::of_documents(&file, study, bridge);
+        let waters = documents.waters()?;
+        let read = Study::of_documents(&file, study, bridge).and_then(|study| study.in_waters(waters));
         let mut notes = Vec::new();
         let study = read.map_err(|refused| notes.push(unreadable(&refused))).ok();
         let of = |key: &str| match &results.manifest[key] {
