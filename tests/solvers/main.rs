@@ -10,6 +10,7 @@ mod joints;
 mod kinds;
 mod lanes;
 mod meshed;
+mod one_side;
 mod operator;
 mod operator_accuracy;
 mod operator_lanes;

@@ -4,6 +4,7 @@
 
 mod condensation;
 mod heights;
+mod image;
 mod wet;
 mod written;
 

@@ -61,6 +61,26 @@ impl Dashpot {
         damped.map(dashpot).collect()
     }
 
+    /// Whether another link has the same law and dashpot.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        (&self.law, self.damping) == (&other.law, other.damping)
+    }
+
+    /// As the dashpot of another link.
+    pub(crate) fn at(&self, link: usize) -> Self {
+        Self { link, ..self.clone() }
+    }
+
+    /// That of two such links side by side.
+    #[must_use]
+    pub(crate) fn doubled(self) -> Self {
+        Self {
+            law: self.law.doubled(),
+            damping: self.damping.map(|c| 2.0 * c),
+            ..self
+        }
+    }
+
     /// The law of a step whose elongations before it and one step earlier are `past` `[m]`.
     /// Equation (C4).
     pub(crate) fn in_step(&self, rate: BackwardRate, past: [f64; 2]) -> LinkLaw {

@@ -34,6 +34,8 @@ pub(crate) struct LinkLaw {
     between: State,
     /// The branch of each state.
     pub(super) branches: [Branch; State::COUNT],
+    /// Links that it stands for, side by side.
+    pub(crate) links: usize,
 }
 
 /// How a link takes up energy in one sense: `N^2 / 2 k` of its last branch, and of a buffer before that
@@ -60,6 +62,7 @@ impl LinkLaw {
             stiffness: 0.0,
             offset: 0.0,
         }; State::COUNT],
+        links: 1,
     };
 
     /// The law of a connector of two trusses of stiffness k `[N/m]`.
@@ -86,6 +89,17 @@ impl LinkLaw {
             }
         }
         laws
+    }
+
+    /// The law of two such links side by side.
+    #[must_use]
+    pub(crate) fn doubled(mut self) -> Self {
+        for branch in &mut self.branches {
+            branch.stiffness *= 2.0;
+            branch.offset *= 2.0;
+        }
+        self.links *= 2;
+        self
     }
 
     /// The law, its elongations counted from `e` on `[m]`.

@@ -85,6 +85,8 @@ impl Sizes {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Observed {
     pub positions: usize,
+    /// Corners at each end of a module: 2, or 1 of one side, whose corners stand for those of both edges.
+    pub edges: usize,
     pub corners: usize,
     pub bottom_corners: usize,
     pub places: usize,
@@ -360,6 +362,7 @@ fn observed(bridge: &Bridge, places_x_m: &[f64]) -> (Observed, Vec<SparseRow>) {
     };
     let rows = Observed {
         positions: bridge.positions.len(),
+        edges: 2,
         corners: bridge.deck_corners.len(),
         bottom_corners: bottom.len(),
         places: places_x_m.len(),

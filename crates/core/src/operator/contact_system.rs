@@ -135,8 +135,9 @@ impl ContactSystem {
         match settle(&mut system, &mut self.states, &mut self.seen, limit) {
             Ok(((), iterations)) => {
                 self.linear.e.copy_from_slice(&self.linear.found);
-                let links = self.states.iter().zip(&self.before).take(self.links);
-                let switches = links.filter(|(a, b)| a != b).count();
+                let links = self.states.iter().zip(&self.before).zip(input.laws);
+                let switched = links.filter(|((a, b), _)| a != b);
+                let switches = switched.map(|(_, law)| law.links).sum();
                 Ok((iterations, switches))
             }
             Err(stuck) => {

@@ -89,7 +89,7 @@ impl Envelope {
             from_rest: vec![false; lanes],
             beyond_m: modules.iter().map(beyond_m).collect(),
             half_per_m: modules.iter().map(|module| 0.5 / module.length_m).collect(),
-            of_lane: vec![0.0; rows.corners],
+            of_lane: vec![0.0; 2 / rows.edges * rows.corners],
         }
     }
 
@@ -136,7 +136,9 @@ impl Envelope {
 
     /// Deflection of a corner of a module's deck now, positive downward `[m]`.
     pub(super) fn corner_m(&self, index: usize, lane: usize) -> f64 {
-        0.0 - self.observed.at(self.rows.positions + index, lane)
+        0.0 - self
+            .observed
+            .at(self.rows.positions + index * self.rows.edges / 2, lane)
     }
 
     /// Motion of a spring of a bank now, along its sense `[m]`.
@@ -164,10 +166,10 @@ impl Envelope {
         }
         self.update_peaks(o, connectors);
         let before = [&self.edge, &self.roll, &self.trim].map(|of| of.vectors::<S>()[0]);
-        if self.from_rest.contains(&true) {
-            self.update_corners::<S, true>(o);
-        } else {
-            self.update_corners::<S, false>(o);
+        match (self.from_rest.contains(&true), self.rows.edges) {
+            (true, _) => self.update_corners::<S, true, 2>(o),
+            (false, 1) => self.update_corners::<S, false, 1>(o),
+            (false, _) => self.update_corners::<S, false, 2>(o),
         }
         self.note_corners(o, before);
         self.update_edges(o, operator, constants, energy, lanes);
@@ -211,9 +213,10 @@ impl Envelope {
         }
     }
 
-    /// Corners: module after module, left and right end, right and left edge; `FROM_REST` where a lane has a dead state.
+    /// Corners: module after module, left and right end, right and left edge; `FROM_REST` where a lane has a dead state, `EDGES`
+    /// the corners of an end.
     #[inline(always)]
-    fn update_corners<S: Simd, const FROM_REST: bool>(&mut self, o: Ops<S>) {
+    fn update_corners<S: Simd, const FROM_REST: bool, const EDGES: usize>(&mut self, o: Ops<S>) {
         let Observed {
             positions,
             corners,
@@ -225,27 +228,30 @@ impl Envelope {
         let mut roll = self.roll.vectors::<S>()[0];
         let mut trim = self.trim.vectors::<S>()[0];
         let mut corner = self.corner.vectors::<S>()[0];
-        let of_corners = observed[positions..][..corners].chunks_exact(4);
+        let of_corners = observed[positions..][..corners].chunks_exact(2 * EDGES);
         let modules = self.of_module.vectors_mut::<S>().iter_mut().zip(&self.beyond_m);
         let of_corners = of_corners.zip(&self.half_per_m);
         let edge = &mut self.edge.vectors_mut::<S>()[0];
         let risen = self.risen.vectors::<S>();
         for (j, ((module, [freeboard, _]), (ends, half))) in modules.zip(of_corners).enumerate() {
             let mut down = o.neg(ends[0]);
-            for end in ends.chunks_exact(2) {
-                roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
+            for end in ends.chunks_exact(EDGES) {
+                if EDGES == 2 {
+                    roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
+                }
                 for &z in end {
                     down = o.max(down, o.neg(z));
                 }
             }
-            let rise = o.sub(o.add(ends[2], ends[3]), o.add(ends[0], ends[1]));
+            let sum = |end: usize| o.add(ends[end * EDGES], ends[end * EDGES + EDGES - 1]);
+            let rise = o.sub(sum(1), sum(0));
             trim = o.max(trim, o.abs(o.mul(rise, o.splat(*half))));
             *module = down;
             *edge = o.max(*edge, down);
             let under = if FROM_REST {
                 let corners = ends
                     .iter()
-                    .zip(&risen[4 * j..])
+                    .zip(&risen[2 * EDGES * j..])
                     .map(|(z, risen)| o.neg(o.add(*z, *risen)));
                 corners.fold(o.splat(f64::NEG_INFINITY), |lowest, corner| o.max(lowest, corner))
             } else {
@@ -257,12 +263,12 @@ impl Envelope {
         self.trim.vectors_mut::<S>()[0] = trim;
         self.corner.vectors_mut::<S>()[0] = corner;
         let bottom = &mut self.bottom.vectors_mut::<S>()[0];
-        let of_bottom = observed[positions + corners..][..bottom_corners].chunks_exact(4);
+        let of_bottom = observed[positions + corners..][..bottom_corners].chunks_exact(2 * EDGES);
         for (j, ([_, draft], ends)) in self.beyond_m.iter().zip(of_bottom).enumerate() {
             let draft = o.splat(*draft);
             for (i, &z) in ends.iter().enumerate() {
                 let z = if FROM_REST {
-                    o.add(z, risen[corners + 4 * j + i])
+                    o.add(z, risen[corners + 2 * EDGES * j + i])
                 } else {
                     z
                 };
@@ -284,7 +290,12 @@ impl Envelope {
     /// As [`Self::note_corners`].
     #[inline(never)]
     fn note_lanes(&mut self) {
-        let (positions, corners) = (self.rows.positions, self.rows.corners);
+        let Observed {
+            positions,
+            corners,
+            edges,
+            ..
+        } = self.rows;
         for (lane, placed) in self.placed.iter_mut().enumerate() {
             let time_s = self.now.at(0, lane);
             let is_larger = [
@@ -296,6 +307,8 @@ impl Envelope {
                 continue;
             }
             let own = self.observed.lane(lane).skip(positions).take(corners);
+            // a corner of one side stands for those of both edges
+            let own = own.flat_map(|z| std::iter::repeat_n(z, 2 / edges));
             self.of_lane.iter_mut().zip(own).for_each(|(to, z)| *to = z);
             if is_larger[0] {
                 placed.note_edge(time_s, &self.of_lane);
@@ -362,13 +375,14 @@ impl Envelope {
         let (Some(crossing), sizes) = (&of.crossing, &operator.sizes) else {
             return;
         };
-        let corner = |i: usize| self.observed.at(self.rows.positions + 4 * module + i, lane);
+        let edges = self.rows.edges;
+        let corner = |i: usize| self.observed.at(self.rows.positions + 2 * edges * module + i, lane);
         let of_module = &operator.of_modules[module];
         let first = sizes.followed() + of_module.inside.start;
         let wheels = &crossing.wheels;
         for i in 0..of_module.inside.len() {
-            let (place, side) = (of_module.places[i / 2], i % 2);
-            let straight = (1.0 - place) * corner(side) + place * corner(2 + side);
+            let (place, side) = (of_module.places[i / edges], i % edges);
+            let straight = (1.0 - place) * corner(side) + place * corner(edges + side);
             let mut z = straight + self.inside.at(i, lane);
             for &(line, station, force) in &of.weights {
                 z -= force * wheels.weights[line].influence[station * wheels.influence_width + first + i];
@@ -378,7 +392,7 @@ impl Envelope {
             }
             let edge = self.edge.at_mut(0, lane);
             *edge = edge.max(-z);
-            self.placed[lane].edge.take(-z, of.time_s, of_module.nearer[i / 2]);
+            self.placed[lane].edge.take(-z, of.time_s, of_module.nearer[i / edges]);
         }
     }
 

@@ -172,6 +172,7 @@ fn counts(parts: &OperatorParts) -> Option<(Sizes, Observed, usize, Vec<usize>)>
     };
     let rows = Observed {
         positions,
+        edges: 2,
         corners,
         bottom_corners,
         places,

@@ -74,6 +74,19 @@ impl OperatorWaves {
         })
     }
 
+    /// On modes that are their own mirror images, which do not roll; pins are not followed.
+    pub(super) fn of_side(&self, modes: &[usize]) -> Self {
+        let of_group = |group: &WaveGroup| WaveGroup {
+            motions: group.motions.select_columns(modes),
+            pins: DMatrix::zeros(0, group.motions.nrows()),
+            ..group.clone()
+        };
+        Self {
+            groups: self.of_kind(false).into_iter().map(of_group).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Its counts: real states, and of each group whether it rolls, motions, poles, filters.
     pub(super) fn counts(&self) -> Vec<u64> {
         let of_group = |group: &WaveGroup| {

@@ -5,11 +5,13 @@
 //! | `design` | a vehicle as it is written, and its checks |
 //! | `written` | axles and bodies as they are written |
 //! | `springs` | masses on springs: matrices, wheels, the state at rest |
+//! | `side` | one side of a vehicle that is its own mirror image |
 //!
 //! Knows axles, patches and where their points stand for a given place of the vehicle. Does not know the bridge: what
 //! a point does to the deck is the track's business.
 
 mod design;
+mod side;
 mod springs;
 mod written;
 

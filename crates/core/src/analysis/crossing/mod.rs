@@ -9,6 +9,7 @@ mod halving;
 #[cfg(test)]
 mod in_waves;
 mod observe;
+mod one_side;
 mod operated;
 mod riders;
 mod run;

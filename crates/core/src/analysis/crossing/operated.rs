@@ -3,6 +3,7 @@
 //! Knows when a crossing begins, is halved and ends, and what a lane leaves behind. Does not know the step's arithmetic.
 
 use super::halving::{Halving, halve};
+use super::one_side::{BridgeReading, OneSide, peaks_of_bridge};
 use super::{Crossing, CrossingSettings, StepSpan};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign, LinkPlace, joint_parts};
@@ -27,9 +28,48 @@ pub struct OperatorSolver {
     banks: Vec<BankPart>,
     /// Where each link is.
     link_places: Vec<LinkPlace>,
+    settings: CrossingSettings,
+    whole: Stepped,
+    /// Its side for crossings that are their own mirror images, made when the first one comes; none where the bridge is not its own,
+    /// or no side is to be used.
+    side: OnceLock<Option<OneSide>>,
+}
+
+/// An operator, and what each step length makes of it.
+#[derive(Debug)]
+pub(super) struct Stepped {
     operator: Arc<BridgeOperator>,
     settings: CrossingSettings,
     constants: Vec<OnceLock<StepConstants>>,
+}
+
+impl Stepped {
+    /// An operator at one time step and its halves.
+    pub(super) fn new(operator: Arc<BridgeOperator>, settings: &CrossingSettings) -> Self {
+        Self {
+            operator,
+            settings: *settings,
+            constants: (0..=settings.bisection_limit + REFINEMENTS)
+                .map(|_| OnceLock::new())
+                .collect(),
+        }
+    }
+
+    /// The time step after some halvings `[s]`.
+    fn time_step_s(&self, halvings: usize) -> f64 {
+        self.settings.time_step_s / (1_u64 << halvings) as f64
+    }
+
+    fn constants(&self, halvings: usize) -> &StepConstants {
+        self.constants[halvings].get_or_init(|| {
+            let CrossingSettings {
+                spectral_radius,
+                rayleigh,
+                ..
+            } = self.settings;
+            StepConstants::new(&self.operator, self.time_step_s(halvings), spectral_radius, rayleigh)
+        })
+    }
 }
 
 /// Vehicles that are kept ready at once.
@@ -61,6 +101,9 @@ impl Mount {
 /// Crossings under way.
 struct Crew<'a, C> {
     solver: &'a OperatorSolver,
+    /// What they step on, and where that is one side of the bridge its links.
+    on: &'a Stepped,
+    side: Option<&'a OneSide>,
     mounts: Vec<Mount>,
     lanes: Crossings,
     /// One lane by itself, for steps that are halved.
@@ -89,17 +132,36 @@ impl OperatorSolver {
             least_freeboard_m: bridge.least_freeboard_m(),
             banks: bridge.bank_parts(),
             link_places: bridge.links.iter().map(|link| link.place).collect(),
-            operator: Arc::clone(operator),
             settings: *settings,
-            constants: (0..=settings.bisection_limit + REFINEMENTS)
-                .map(|_| OnceLock::new())
-                .collect(),
+            whole: Stepped::new(Arc::clone(operator), settings),
+            side: OnceLock::new(),
+        }
+    }
+
+    /// Solves all crossings on the whole bridge, those too that are their own mirror images.
+    #[must_use]
+    pub fn without_sides(self) -> Self {
+        Self {
+            side: OnceLock::from(None),
+            ..self
         }
     }
 
     /// The operator.
     pub fn operator(&self) -> &BridgeOperator {
-        &self.operator
+        &self.whole.operator
+    }
+
+    /// The side of the bridge.
+    fn side(&self) -> Option<&OneSide> {
+        let of = || OneSide::of(&self.design, &self.whole.operator, &self.settings);
+        self.side.get_or_init(of).as_ref()
+    }
+
+    /// Whether a crossing is its own mirror image on a bridge that is, so that it is solved on one side.
+    pub fn is_on_one_side(&self, traffic: &Traffic, crossing: &Crossing) -> bool {
+        self.side()
+            .is_some_and(|side| side.traffic(traffic, crossing).is_some())
     }
 
     /// Solves one crossing.
@@ -134,38 +196,55 @@ impl OperatorSolver {
         refinement: usize,
         clock: &mut impl StepClock,
     ) -> Vec<Result<CrossingResponse, AnalysisError>> {
+        let side = self.side();
+        let on_side = |&(traffic, crossing): &(&Traffic, &Crossing)| side?.traffic(traffic, crossing);
+        let on_side: Vec<Option<Traffic>> = crossings.iter().map(on_side).collect();
+        let (mut of_side, mut of_whole) = (Vec::new(), Vec::new());
+        for (number, (&(traffic, crossing), own)) in crossings.iter().zip(&on_side).enumerate() {
+            match own {
+                Some(own) => of_side.push((number, (own, crossing))),
+                None => of_whole.push((number, (traffic, crossing))),
+            }
+        }
+        let mut answers = self.solve_on(None, &of_whole, refinement, clock);
+        answers.extend(self.solve_on(side, &of_side, refinement, clock));
+        answers.sort_unstable_by_key(|(number, _)| *number);
+        answers.into_iter().map(|(_, answer)| answer).collect()
+    }
+
+    /// Solves numbered crossings on one side of the bridge or on the whole.
+    fn solve_on(
+        &self,
+        side: Option<&OneSide>,
+        numbered: &[(usize, (&Traffic, &Crossing))],
+        refinement: usize,
+        clock: &mut impl StepClock,
+    ) -> Vec<(usize, Result<CrossingResponse, AnalysisError>)> {
+        if numbered.is_empty() {
+            return Vec::new();
+        }
+        let on = side.map_or(&self.whole, |side| &side.stepped);
+        let (numbers, crossings): (Vec<usize>, Vec<_>) = numbered.iter().copied().unzip();
         let most_nodes = crossings
             .iter()
-            .map(|(traffic, _)| WheelLines::most_nodes_of(&self.operator, traffic));
+            .map(|(traffic, _)| WheelLines::most_nodes_of(&on.operator, traffic));
+        let most_nodes = most_nodes.max().unwrap_or(0);
         let mut crew = Crew {
             solver: self,
+            on,
+            side,
             mounts: Vec::new(),
-            lanes: Crossings::new(
-                &self.operator,
-                most_nodes.max().unwrap_or(0),
-                self.settings.newton_limit,
-            ),
+            lanes: Crossings::new(&on.operator, most_nodes, self.settings.newton_limit),
             solo: None,
             refinement: refinement.min(REFINEMENTS),
             clock,
         };
-        crew.run(crossings)
+        numbers.into_iter().zip(crew.run(&crossings)).collect()
     }
 
     /// The time step after some halvings `[s]`.
     pub fn time_step_s(&self, halvings: usize) -> f64 {
-        self.settings.time_step_s / (1_u64 << halvings) as f64
-    }
-
-    fn constants(&self, halvings: usize) -> &StepConstants {
-        self.constants[halvings].get_or_init(|| {
-            let CrossingSettings {
-                spectral_radius,
-                rayleigh,
-                ..
-            } = self.settings;
-            StepConstants::new(&self.operator, self.time_step_s(halvings), spectral_radius, rayleigh)
-        })
+        self.whole.time_step_s(halvings)
     }
 }
 
@@ -191,9 +270,9 @@ impl<C: StepClock> Crew<'_, C> {
                     self.lanes.place(lane, self.time_s(of));
                 }
             }
-            let level = self.solver.constants(self.refinement);
+            let level = self.on.constants(self.refinement);
             let limit = self.solver.settings.newton_limit;
-            step(&mut self.lanes, &self.solver.operator, level, limit, self.clock);
+            step(&mut self.lanes, &self.on.operator, level, limit, self.clock);
             for (lane, slot) in under.iter_mut().enumerate() {
                 let Some(of) = slot else {
                     continue;
@@ -218,20 +297,22 @@ impl<C: StepClock> Crew<'_, C> {
     fn begin<'c>(&mut self, lane: usize, index: usize, (traffic, crossing): (&'c Traffic, &'c Crossing)) -> Under<'c> {
         let mount = self.mount(traffic);
         let (compliance, riding) = self.mounted_step(mount, self.refinement);
+        let on_whole = || (crossing.laws(self.on.operator.connectors()), crossing.dashpots());
+        let (laws, dashpots) = self.side.and_then(|side| side.laws(crossing)).unwrap_or_else(on_whole);
         let crossing_input = CrossingInput {
             traffic: Arc::new(traffic.clone()),
             wheels: Arc::clone(&self.mounts[mount].wheels),
             compliance,
             riding,
-            laws: crossing.laws(self.solver.operator.connectors()).into(),
-            dashpots: crossing.dashpots().into(),
+            laws: laws.into(),
+            dashpots: dashpots.into(),
             dead: crossing.dead.clone(),
         };
         let h = self.solver.time_step_s(self.refinement);
         let length_m = self.solver.design.length_m();
         let span = StepSpan::new(length_m, traffic, h, crossing.tail_s);
         let start_s = span.time_s(0, h);
-        self.lanes.begin(&self.solver.operator, lane, crossing_input, start_s);
+        self.lanes.begin(&self.on.operator, lane, crossing_input, start_s);
         let design = &self.solver.design;
         let parts = (joint_parts(design), self.solver.banks.clone());
         let rides = (traffic.ride_parts(), start_s);
@@ -257,7 +338,7 @@ impl<C: StepClock> Crew<'_, C> {
         }
         let mount = Mount {
             traffic: Arc::new(traffic.clone()),
-            wheels: Arc::new(WheelLines::new(&self.solver.operator, traffic)),
+            wheels: Arc::new(WheelLines::new(&self.on.operator, traffic)),
             steps: Vec::new(),
         };
         // lanes hold what they need, so that any other may go
@@ -269,7 +350,7 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     fn mounted_step(&mut self, mount: usize, halvings: usize) -> MountedStep {
-        let (operator, level) = (&*self.solver.operator, self.solver.constants(halvings));
+        let (operator, level) = (&*self.on.operator, self.on.constants(halvings));
         let mount = &mut self.mounts[mount];
         if mount.steps.len() <= halvings {
             mount.steps.resize(halvings + 1, None);
@@ -292,10 +373,12 @@ impl<C: StepClock> Crew<'_, C> {
                 return Some(Err(error));
             }
             if let Some(solo) = &self.solo {
-                of.recorder.note(&solo.reading(0));
+                let (reading, side) = (solo.reading(0), self.side);
+                of.recorder.note(&BridgeReading { of: reading, side });
             }
         } else {
-            let reading = self.lanes.reading(lane);
+            let (reading, side) = (self.lanes.reading(lane), self.side);
+            let reading = BridgeReading { of: reading, side };
             of.recorder.take(&reading);
             of.recorder.note(&reading);
         }
@@ -317,7 +400,7 @@ impl<C: StepClock> Crew<'_, C> {
             return Ok(());
         };
         let saved = self.lanes.save(lane);
-        let (operator, limit) = (&self.solver.operator, self.solver.settings.newton_limit);
+        let (operator, limit) = (&self.on.operator, self.solver.settings.newton_limit);
         let most = input.wheels.most_nodes();
         let fits = |solo: &Crossings| solo.most_nodes() >= most;
         let mut solo = self
@@ -339,7 +422,10 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     fn response(&mut self, lane: usize, of: &mut Under<'_>) -> CrossingResponse {
-        let (peaks, design) = (self.lanes.peaks(lane), &self.solver.design);
+        let (mut peaks, design) = (self.lanes.peaks(lane), &self.solver.design);
+        if let Some(side) = self.side {
+            peaks.forces = peaks_of_bridge(&side.links, &peaks.forces, design.connectors.y_m.len());
+        }
         let positions = (1..)
             .zip(&peaks.positions)
             .map(|(position, [deflection, uplift])| PositionPeaks {
@@ -389,10 +475,12 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
         self.lane.place(0, to_s);
         let solver = self.crew.solver;
         let limit = solver.settings.newton_limit;
-        step(self.lane, &solver.operator, solver.constants(halvings), limit, &mut ());
+        let on = self.crew.on;
+        step(self.lane, &on.operator, on.constants(halvings), limit, &mut ());
         let unsettled = self.lane.unsettled(0);
         if unsettled.is_none() {
-            self.recorder.take(&self.lane.reading(0));
+            let (reading, side) = (self.lane.reading(0), self.crew.side);
+            self.recorder.take(&BridgeReading { of: reading, side });
         }
         Ok(unsettled.map_or(Ok(()), Err))
     }
@@ -404,9 +492,13 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
     }
 
     fn not_converged(&self, stuck: NotSettled, time_s: f64, bisections: usize) -> AnalysisError {
+        let link = match self.crew.side {
+            None => Some(stuck.connector),
+            Some(side) => side.links.whole(stuck.connector),
+        };
         AnalysisError::NotConverged {
             time_s,
-            link: self.crew.solver.link_places.get(stuck.connector).copied(),
+            link: link.and_then(|link| self.crew.solver.link_places.get(link)).copied(),
             bisections,
         }
     }

@@ -1,0 +1,150 @@
+//! Crossings that are their own mirror images, on one side of a bridge that is.
+//!
+//! Knows which crossings are, and how the bridge reads from its side. Does not know steps.
+
+use super::operated::Stepped;
+use super::{Crossing, CrossingSettings};
+use crate::bridge::BridgeDesign;
+use crate::contact::{Dashpot, LinkLaw};
+use crate::operator::{BridgeOperator, SideBridge, SideLinks};
+use crate::response::{ForcePeaks, JointReading, Peak, Reading, RideReading};
+use crate::traffic::{Driven, Traffic};
+use std::sync::Arc;
+
+/// One side of a bridge, made ready for crossings.
+#[derive(Debug)]
+pub(super) struct OneSide {
+    pub(super) stepped: Stepped,
+    pub(super) links: SideLinks,
+}
+
+impl OneSide {
+    /// The side of a bridge; none of one that is not its own mirror image.
+    pub(super) fn of(design: &BridgeDesign, operator: &BridgeOperator, settings: &CrossingSettings) -> Option<Self> {
+        if !design.is_own_image() {
+            return None;
+        }
+        let links = SideLinks::new(design.modules - 1, &design.connectors.y_m)?;
+        let SideBridge { operator, links } = operator.one_side(&links)?;
+        Some(Self {
+            stepped: Stepped::new(Arc::new(operator), settings),
+            links,
+        })
+    }
+
+    /// What drives on the side in a crossing; none where the crossing is not its own mirror image, rides on springs, starts from a
+    /// dead state or asks for pins.
+    pub(super) fn traffic(&self, traffic: &Traffic, crossing: &Crossing) -> Option<Traffic> {
+        if crossing.dead.is_some() || crossing.record.needs_pins() {
+            return None;
+        }
+        if !crossing.own_laws.is_empty() {
+            self.laws(crossing)?;
+        }
+        let of_side = |driven: &Driven| {
+            Some(Driven {
+                vehicle: Arc::new(driven.vehicle.one_side()?),
+                ..driven.clone()
+            })
+        };
+        Some(Traffic {
+            vehicles: traffic.vehicles.iter().map(of_side).collect::<Option<_>>()?,
+            road: traffic.road.clone(),
+        })
+    }
+
+    /// The laws and the dashpots of its links; none where a link and its image have unlike ones.
+    pub(super) fn laws(&self, crossing: &Crossing) -> Option<(Vec<LinkLaw>, Vec<Dashpot>)> {
+        let laws = self.links.laws(&crossing.laws(self.links.count()))?;
+        Some((laws, self.links.dashpots(&crossing.dashpots())?))
+    }
+}
+
+/// The peaks of joints of the bridge from those of the side: of each joint the sum, then its connectors, of which the bridge has
+/// so many a joint.
+pub(super) fn peaks_of_bridge(links: &SideLinks, of_side: &[ForcePeaks], per_joint: usize) -> Vec<ForcePeaks> {
+    let joints = links.count() / per_joint.max(1);
+    let side_per_joint = of_side.len().checked_div(joints).unwrap_or(1);
+    let of_joint = |(joint, peaks): (usize, &[ForcePeaks])| {
+        let first = joint * (side_per_joint - 1);
+        let connector = |i: usize| {
+            let (link, share) = links.of(joint * per_joint + i);
+            let of = |peak: Peak| Peak {
+                value: share * peak.value,
+                ..peak
+            };
+            let ForcePeaks { compression, tension } = peaks[1 + link - first];
+            ForcePeaks {
+                compression: of(compression),
+                tension: of(tension),
+            }
+        };
+        let sum = peaks[0];
+        std::iter::once(sum)
+            .chain((0..per_joint).map(connector))
+            .collect::<Vec<_>>()
+    };
+    of_side
+        .chunks_exact(side_per_joint)
+        .enumerate()
+        .flat_map(of_joint)
+        .collect()
+}
+
+/// The bridge as it reads from one side, whose links are given, or from itself.
+pub(super) struct BridgeReading<'a, R> {
+    pub(super) of: R,
+    pub(super) side: Option<&'a OneSide>,
+}
+
+impl<R> BridgeReading<'_, R> {
+    /// The link that stands for a connector, and its share of the force.
+    fn link(&self, connector: usize) -> (usize, f64) {
+        self.side.map_or((connector, 1.0), |side| side.links.of(connector))
+    }
+}
+
+impl<R: JointReading> JointReading for BridgeReading<'_, R> {
+    fn connector_n(&self, connector: usize) -> [f64; 2] {
+        let (link, share) = self.link(connector);
+        self.of.connector_n(link).map(|force| share * force)
+    }
+
+    fn elongation_m(&self, connector: usize) -> f64 {
+        self.of.elongation_m(self.link(connector).0)
+    }
+
+    fn pin_n(&self, pin: usize) -> [f64; 3] {
+        self.of.pin_n(pin)
+    }
+
+    fn spring_m(&self, spring: usize) -> f64 {
+        self.of.spring_m(spring)
+    }
+}
+
+impl<R: Reading> Reading for BridgeReading<'_, R> {
+    fn times_s(&self) -> [f64; 2] {
+        self.of.times_s()
+    }
+
+    fn position_m(&self, index: usize) -> f64 {
+        self.of.position_m(index)
+    }
+
+    fn place_m(&self, index: usize) -> f64 {
+        self.of.place_m(index)
+    }
+
+    fn corner_m(&self, index: usize) -> f64 {
+        self.of.corner_m(index)
+    }
+
+    fn ride(&self, vehicle: usize) -> Option<RideReading<'_>> {
+        self.of.ride(vehicle)
+    }
+
+    fn is_on(&self, vehicle: usize, wheel: usize) -> bool {
+        self.of.is_on(vehicle, wheel)
+    }
+}

@@ -1,0 +1,189 @@
+//! A crossing that is its own mirror image is solved on one side of a bridge that is, and is the crossing of the whole bridge.
+
+#![allow(clippy::expect_used)]
+
+use pontoon_core::analysis::crossing::OperatorSolver;
+use pontoon_core::bridge::{BridgeDesign, Model};
+use pontoon_core::connector::{ConnectorLaw, EndStop, Truss};
+use pontoon_core::response::{CrossingResponse, ForcePeaks, Record, Subject};
+use pontoon_core::vehicle::{Inertia, Vehicle};
+use pontoon_tests::operated::*;
+use pontoon_tests::*;
+use std::sync::Arc;
+
+/// Rounding of sums in another order, over some hundred steps and a few impacts.
+const ROUNDING: f64 = 1e-8;
+
+fn ready_with(change: impl FnOnce(&mut BridgeDesign)) -> Ready {
+    Ready::new(&with(&design("smoke"), change), Model::SuperElement)
+}
+
+/// The solver that uses the side, and the one that does not.
+fn solvers(ready: &Ready) -> [OperatorSolver; 2] {
+    let settings = settings(ready.rayleigh(), 0.02, 0.9);
+    let new = || OperatorSolver::new(&ready.bridge, &operator(ready, 3e-3), &settings);
+    [new(), new().without_sides()]
+}
+
+fn crossing(ready: &Ready) -> SingleCrossing {
+    let mut crossing = ready.crossing(gaps(0.002, 0.001), PAPER_LOAD_N, 12.0);
+    crossing.tail_s = 1.0;
+    crossing.record = Record {
+        positions: vec![2],
+        joints: vec![2],
+        more: vec![
+            Subject::Connector { joint: 2, index: 0 },
+            Subject::Connector { joint: 2, index: 1 },
+        ],
+        corners: true,
+        ..Record::default()
+    };
+    crossing
+}
+
+/// The largest difference between two answers, over the largest number of each kind.
+fn apart(a: &CrossingResponse, b: &CrossingResponse) -> f64 {
+    let forces = |of: &ForcePeaks| [of.compression.value, of.tension.value];
+    let lists = |of: &CrossingResponse| -> Vec<Vec<f64>> {
+        let joints = of.joints.iter().flat_map(|joint| {
+            let connectors = joint.connectors.iter().flat_map(|(_, peaks)| forces(peaks));
+            forces(&joint.sum).into_iter().chain(connectors).collect::<Vec<_>>()
+        });
+        let histories = of.recorded.histories.iter().map(|history| history.values.clone());
+        let mut lists = vec![
+            of.positions
+                .iter()
+                .flat_map(|position| [position.deflection.value, position.uplift.value])
+                .collect(),
+            joints.collect(),
+            vec![of.peak_edge.value],
+            vec![of.peak_trim.value],
+            vec![if of.least_contact.axle.is_some() {
+                of.least_contact.force_n
+            } else {
+                0.0
+            }],
+            of.recorded.corners.iter().map(|corner| corner.value).collect(),
+        ];
+        lists.extend(histories);
+        lists
+    };
+    let (a, b) = (lists(a), lists(b));
+    assert_eq!(a.len(), b.len());
+    let of_list = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+        assert_eq!(a.len(), b.len());
+        let most = b.iter().fold(0.0_f64, |most, x| most.max(x.abs())).max(1e-30);
+        a.iter().zip(b).map(|(a, b)| (a - b).abs() / most).fold(0.0, f64::max)
+    };
+    a.iter().zip(&b).map(of_list).fold(0.0, f64::max)
+}
+
+fn answers(solvers: &[OperatorSolver; 2], vehicle: &Vehicle, crossing: &SingleCrossing) -> [CrossingResponse; 2] {
+    let of = |solver: &OperatorSolver| solver.solve_single(vehicle, crossing).expect("a crossing");
+    [of(&solvers[0]), of(&solvers[1])]
+}
+
+fn is_on_one_side(solver: &OperatorSolver, vehicle: &Vehicle, crossing: &SingleCrossing) -> bool {
+    solver.is_on_one_side(&crossing.traffic(vehicle), &crossing.crossing())
+}
+
+/// Each kind of inertia, one patch on the centre line, patches of a width; peaks, energies, histories of both sides' connectors.
+/// A load that is 5 % off is found.
+#[test]
+fn one_side_is_the_whole_bridge() {
+    let ready = ready_with(|design| design.modules = 6);
+    let solvers = solvers(&ready);
+    let crossing = crossing(&ready);
+    for inertia in [Inertia::None, Inertia::Local, Inertia::Convective] {
+        for vehicle in [
+            footprint(&[-1.4, 1.4], inertia),
+            footprint(&[-1.4, 0.0, 1.4], inertia),
+            wide_axles(
+                &[(0.2, 0.4, 0.5, 0.3, [-1.4, 1.4]), (3.0, 0.6, 0.5, 0.2, [-1.2, 1.2])],
+                inertia,
+                3,
+            ),
+        ] {
+            assert!(is_on_one_side(&solvers[0], &vehicle, &crossing));
+            assert!(!is_on_one_side(&solvers[1], &vehicle, &crossing));
+            let [side, whole] = answers(&solvers, &vehicle, &crossing);
+            let off = apart(&side, &whole);
+            assert!(off < ROUNDING, "{inertia:?}: {off:e}");
+            assert_eq!(
+                side.statistics.contact_switches, whole.statistics.contact_switches,
+                "{inertia:?}"
+            );
+            assert!(side.energy.energy_residual < 1e-11 && side.peak_roll.value == 0.0);
+            let heavier = SingleCrossing {
+                load_n: 1.05 * crossing.load_n,
+                ..crossing.clone()
+            };
+            let [wrong, _] = answers(&solvers, &vehicle, &heavier);
+            assert!(apart(&wrong, &whole) > 1e-3, "{inertia:?}: a wrong load passes");
+        }
+    }
+}
+
+/// Joints with buffers, stops and dashpots of their own, alike on both sides; unlike sides are those of no mirror.
+#[test]
+fn laws_of_both_sides_have_to_be_alike() {
+    let ready = ready_with(|design| design.modules = 6);
+    let solvers = solvers(&ready);
+    let vehicle = footprint(&[-1.4, 1.4], Inertia::Local);
+    let law = |gap_m: f64| ConnectorLaw::Gaps {
+        tension: Truss {
+            stiffness_n_m: 2e7,
+            gap_m,
+            damping_n_s_m: 2e5,
+            stop: Some(EndStop {
+                gap_m: gap_m + 0.001,
+                stiffness_n_m: 6e7,
+            }),
+        },
+        compression: Truss {
+            stiffness_n_m: 3e7,
+            gap_m: 0.001,
+            damping_n_s_m: 0.0,
+            stop: None,
+        },
+    };
+    let with_laws = |gaps_m: [f64; 2]| SingleCrossing {
+        own_laws: Arc::from([(2, law(gaps_m[0])), (3, law(gaps_m[1]))]),
+        ..crossing(&ready)
+    };
+    let alike = with_laws([0.003; 2]);
+    assert!(is_on_one_side(&solvers[0], &vehicle, &alike));
+    let [side, whole] = answers(&solvers, &vehicle, &alike);
+    let off = apart(&side, &whole);
+    assert!(off < ROUNDING, "{off:e}");
+    let unlike = with_laws([0.003, 0.003_f64.next_up()]);
+    assert!(!is_on_one_side(&solvers[0], &vehicle, &unlike));
+    let [one, other] = answers(&solvers, &vehicle, &unlike);
+    assert_eq!(one, other);
+}
+
+/// The least asymmetry of bridge, vehicle or record takes the whole bridge.
+#[test]
+fn what_is_not_its_own_image_takes_the_whole_bridge() {
+    let ready = ready_with(|_| {});
+    let [solver, _] = solvers(&ready);
+    let (vehicle, own) = (footprint(&[-1.4, 1.4], Inertia::Local), crossing(&ready));
+    assert!(is_on_one_side(&solver, &vehicle, &own));
+    assert!(!is_on_one_side(
+        &solver,
+        &footprint(&[-1.4, 1.4_f64.next_up()], Inertia::Local),
+        &own
+    ));
+    let pins = SingleCrossing {
+        record: Record {
+            pins: true,
+            ..Record::default()
+        },
+        ..own.clone()
+    };
+    assert!(!is_on_one_side(&solver, &vehicle, &pins));
+    let y_m = ready.design.connectors.y_m.clone();
+    let shifted = ready_with(|design| design.connectors.y_m = vec![y_m[0], y_m[1].next_up()]);
+    let [solver, _] = solvers(&shifted);
+    assert!(!is_on_one_side(&solver, &vehicle, &own));
+}
