@@ -6,13 +6,15 @@
 use super::basis::BridgeOperator;
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
+use super::contact_step::{Alone, Coupling, spring_factor};
 use super::energy::{Energy, Terms};
 use super::envelope::{Envelope, LanePeaks, MOST_LANES};
 use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
+use super::lane_group::{LaneGroup, LaneGroups, UnitForce};
 use super::lane_waves::LaneWaves;
-use super::loads::{Loads, StationForce, apply_forces, sum_forces};
-use super::local_residual::LocalResidual;
+use super::loads::{Loads, StationForce, apply_forces, apply_weights, sum_forces};
+use super::local_residual::SavedResidual;
 use super::modes::Modes;
 use super::panel::InstructionPath;
 use super::pins::Pins;
@@ -42,6 +44,12 @@ pub(crate) struct Crossings {
     /// Water with memory, where the bridge has it.
     pub(super) waves: Option<LaneWaves>,
     pub(super) lanes: Vec<Lane>,
+    /// Lanes that go together in the step, and what is settled for one group of them after the other.
+    pub(super) groups: LaneGroups,
+    pub(super) coupling: Coupling,
+    pub(super) alone: Alone,
+    /// What each axle presses with beyond its weight `[N]`.
+    pub(super) beyond_weight: LaneArray,
 }
 
 /// A lane's numbers by themselves.
@@ -49,7 +57,7 @@ pub(crate) struct Crossings {
 pub(crate) struct Saved {
     numbers: Vec<f64>,
     states: Vec<State>,
-    local: LocalResidual,
+    local: SavedResidual,
     rider_forces: (Vec<StationForce>, usize),
     /// Motion of each vehicle on springs.
     rides: Vec<Ride>,
@@ -67,7 +75,7 @@ impl Crossings {
     pub(crate) fn new(operator: &BridgeOperator, most_nodes: usize, newton_limit: usize) -> Self {
         let width = InstructionPath::of_this_machine().lanes;
         let sizes = &operator.sizes;
-        let lane = || Lane::new(sizes, most_nodes, newton_limit);
+        let lane = || Lane::new(sizes, most_nodes);
         Self {
             most_nodes,
             modes: Modes::new(sizes, width),
@@ -82,6 +90,10 @@ impl Crossings {
                 .as_ref()
                 .map(|waves| LaneWaves::new(waves, sizes.modes, width)),
             lanes: (0..width).map(|_| lane()).collect(),
+            groups: LaneGroups::default(),
+            coupling: Coupling::new(sizes, most_nodes, newton_limit, width),
+            alone: Alone::new(sizes, most_nodes, newton_limit),
+            beyond_weight: LaneArray::new(0, width),
         }
     }
 
@@ -103,20 +115,18 @@ impl Crossings {
     pub(crate) fn begin(&mut self, operator: &BridgeOperator, lane: usize, crossing: CrossingInput, time_s: f64) {
         self.rest(lane);
         self.take_connectors(lane, &crossing);
+        self.forget();
+        self.coupling
+            .contact
+            .put_states(lane, crossing.laws.iter().map(|law| law.state(0.0)));
+        self.coupling.masses.local_residual().clear(lane);
         let of = &mut self.lanes[lane];
-        of.contact.forget();
-        for (state, law) in of.contact.states.iter_mut().zip(crossing.laws.iter()) {
-            *state = law.state(0.0);
-        }
         of.statistics = Statistics::default();
         of.unloaded = 0;
-        of.masses.leave();
-        of.rider_forces.clear();
-        of.first_spring = 0;
+        of.clear_riders();
+        // before the first step no vehicle is on the bridge
         of.take(crossing, operator.track.length_m());
         of.place(time_s);
-        of.place_loads(lane, operator, &mut self.loads);
-        self.loads.weights.copy_lane(lane, &self.loads.weights_now);
     }
 
     /// Takes the laws, the dashpots and the rest of a lane's connectors.
@@ -149,9 +159,8 @@ impl Crossings {
         of.crossing = None;
         of.dashpots = None;
         of.dead = None;
-        of.weights.clear();
-        of.rider_forces.clear();
-        of.first_spring = 0;
+        of.unsettled = None;
+        of.clear_riders();
         of.rides.clear();
         of.leave();
     }
@@ -186,8 +195,8 @@ impl Crossings {
         let of = &self.lanes[lane];
         Saved {
             numbers,
-            states: of.contact.states.clone(),
-            local: of.masses.local_residual().clone(),
+            states: self.coupling.contact.states(lane).to_vec(),
+            local: self.coupling.masses.local_residual().save(lane),
             rider_forces: (of.rider_forces.clone(), of.first_spring),
             rides: of.rides.iter().map(|of| of.ride.clone()).collect(),
             statistics: of.statistics,
@@ -201,14 +210,14 @@ impl Crossings {
         let places = self.carried().flat_map(|array| array.lane_mut(lane));
         places.zip(&saved.numbers).for_each(|(x, saved)| *x = *saved);
         self.envelope.placed[lane] = saved.placed;
+        self.forget();
+        self.coupling.contact.put_states(lane, saved.states.iter().copied());
+        self.coupling.masses.local_residual().restore(lane, &saved.local);
         let of = &mut self.lanes[lane];
-        of.contact.forget();
-        of.contact.states.clone_from(&saved.states);
         of.statistics = saved.statistics;
         if let Some(dashpots) = &mut of.dashpots {
             dashpots.before_s = saved.before_s;
         }
-        of.masses.put_local_residual(&saved.local);
         of.rider_forces.clone_from(&saved.rider_forces.0);
         of.first_spring = saved.rider_forces.1;
         for (of, saved) in of.rides.iter_mut().zip(&saved.rides) {
@@ -234,8 +243,8 @@ impl Crossings {
         compliance: Arc<WheelCompliance>,
         riding: &Arc<[Option<Arc<RidingStep>>]>,
     ) {
+        self.forget();
         let of = &mut self.lanes[lane];
-        of.contact.forget();
         if let Some(crossing) = &mut of.crossing {
             crossing.compliance = compliance;
             crossing.riding = Arc::clone(riding);
@@ -256,7 +265,8 @@ impl Crossings {
     #[inline(always)]
     pub(super) fn update_envelope<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator, constants: &StepConstants) {
         let motion = (&self.modes, &self.residual, &self.connectors, &self.energy);
-        self.envelope.update(o, operator, constants, motion, &self.lanes);
+        let lanes = (&self.groups, &self.lanes[..]);
+        self.envelope.update(o, operator, constants, motion, lanes);
     }
 
     /// Finds the forces of the pins where the step's balance holds.
@@ -272,7 +282,10 @@ impl Crossings {
             let Some(crossing) = &of.crossing else { continue };
             let (wheels, [weights, inertia]) = (&crossing.wheels, self.pins.loads_now());
             let width = wheels.influence_width;
-            apply_forces((&wheels.weights[..], width, first), &of.weights, weights, lane);
+            let group = &self.groups.all()[of.group];
+            let force = |of: &UnitForce| (of.line, of.station, of.share * group.load_in(of.vehicle, lane));
+            let on_lines: Vec<StationForce> = group.weights.iter().map(force).collect();
+            apply_forces((&wheels.weights[..], width, first), &on_lines, weights, lane);
             let (masses, springs) = of.rider_forces.split_at(of.first_spring);
             apply_forces((&wheels.nodes[..], width, first), masses, inertia, lane);
             if !springs.is_empty() {
@@ -315,44 +328,46 @@ impl Crossings {
         LaneReading { of: self, lane }
     }
 
-    /// Puts the weights of all vehicles where they are at the end of the step (V1).
+    /// Puts the vehicles of all lanes and their weights where they are at the end of the step (V1).
     #[inline(always)]
-    pub(super) fn place_loads(&mut self, operator: &BridgeOperator) {
-        for (lane, of) in self.lanes.iter_mut().enumerate() {
-            of.place_loads(lane, operator, &mut self.loads);
-        }
-    }
-
-    /// Solves the contact of each lane (C1); those that do not settle as they stood before the step.
-    #[inline(always)]
-    pub(super) fn solve_contact(
-        &mut self,
-        operator: &BridgeOperator,
-        constants: &StepConstants,
-        newton_limit: usize,
-        clock: &mut impl StepClock,
-    ) -> Unsettled {
-        let mut unsettled: Unsettled = None;
-        for lane in 0..self.lanes.len() {
-            let (modes, connectors) = (&self.modes, &mut self.connectors);
-            let parts = (modes, connectors, &mut self.loads);
-            let of = &mut self.lanes[lane];
-            if of.solve(lane, (operator, constants, newton_limit), parts, clock) {
-                if let Some(crossing) = &of.crossing {
-                    let placed = &mut self.envelope.placed[lane];
-                    placed.note_axles(of.time_s, &crossing.wheels, &of.axles, &of.beyond_weight);
+    pub(super) fn place_loads<S: Simd>(&mut self, o: Ops<S>, operator: &BridgeOperator) {
+        let Self {
+            groups,
+            lanes,
+            loads,
+            coupling,
+            alone,
+            ..
+        } = self;
+        groups.form(lanes, &coupling.masses, &operator.track);
+        for group in groups.all() {
+            let first = group.base + group.first();
+            if let (Some(crossing), false) = (&lanes[first].crossing, group.weights.is_empty()) {
+                match group.alone() {
+                    Some(_) => alone.apply_weights(&crossing.wheels, group, &mut loads.weights_now),
+                    None => apply_weights(o, &crossing.wheels, group, &mut loads.weights_now),
                 }
-            } else {
-                let saved = self.save(lane);
-                unsettled.get_or_insert_default().push((lane, saved));
+            }
+            for lane in group.numbers() {
+                let of = &mut lanes[lane];
+                for ride in &mut of.rides {
+                    ride.begin_step(&group.placements[ride.vehicle]); // (V4)
+                }
+                if !group.weights.is_empty() {
+                    of.unloaded = 0;
+                } else if of.unloaded < 2 || of.pressed {
+                    // springs of the last step stand where this one begins
+                    of.unloaded = if of.pressed { 0 } else { of.unloaded + 1 };
+                    loads.left().into_iter().for_each(|forces| forces.clear(lane));
+                }
             }
         }
-        unsettled
     }
 
     /// Operations of placing the weights, of all lanes.
     pub(super) fn flop_of_loads(&self) -> f64 {
-        let forces: usize = self.lanes.iter().map(|lane| lane.weights.len()).sum();
+        let of_group = |group: &LaneGroup| group.weights.len() * group.lanes.len();
+        let forces: usize = self.groups.all().iter().map(of_group).sum();
         (2 * forces * self.loads.weights.rows()) as f64
     }
 
@@ -393,8 +408,11 @@ impl Crossings {
         self.residual
             .correct(o, constants, &self.loads, &self.connectors, &mut terms);
         self.connectors.correct(o, constants, &mut terms);
-        for (lane, of) in self.lanes.iter_mut().enumerate() {
-            of.end_step(lane, constants, &mut self.loads);
+        for (lane, of) in self.lanes.iter().enumerate() {
+            // forces of springs then weigh as weights do
+            if of.pressed && of.unsettled.is_none() {
+                self.loads.end_springs(lane, &of.seen_springs, spring_factor(constants));
+            }
         }
         self.loads.end_step();
         clock.lap(StepPart::Residual, || self.residual.flop_of_correction());
@@ -458,7 +476,8 @@ impl Reading for LaneReading<'_> {
             .crossing
             .as_ref()
             .map(|crossing| &crossing.wheels.vehicles[vehicle].vehicle);
-        of.is_some_and(|of| lane.placements[vehicle].is_on(&of.patches[wheel]))
+        let placement = self.of.groups.placement(lane.group, vehicle);
+        of.is_some_and(|of| placement.is_on(&of.patches[wheel]))
     }
 
     fn times_s(&self) -> [f64; 2] {

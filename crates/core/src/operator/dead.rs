@@ -2,6 +2,7 @@
 //!
 //! Knows the forces at rest and what they would undo in a step. Does not know how the dead state was found.
 
+use super::lane_array::LaneArray;
 use super::rider_block::RiderBlock;
 use crate::response::DeadState;
 use nalgebra::{DMatrix, DVector};
@@ -40,7 +41,7 @@ impl LaneDead {
         &mut self,
         (step_s, weight): (f64, f64),
         compliance: &DMatrix<f64>,
-        e: &mut [f64],
+        (lane, e): (usize, &mut LaneArray),
         riders: &mut RiderBlock,
     ) {
         if self.step_s != step_s || self.weight != weight {
@@ -50,16 +51,16 @@ impl LaneDead {
             }
             self.held = compliance * &self.scaled;
         }
-        for (e, held) in e.iter_mut().zip(self.held.iter()) {
+        for (e, held) in e.lane_mut(lane).zip(self.held.iter()) {
             *e += held;
         }
-        riders.add_links(self.scaled.as_slice());
+        riders.add_links(lane, self.scaled.as_slice());
     }
 
     /// Leaves of the scaled forces found what they are beyond those at rest.
     #[inline(never)]
-    pub(super) fn end_step(&self, forces: &mut [f64]) {
-        for (force, at_rest) in forces.iter_mut().zip(self.scaled.iter()) {
+    pub(super) fn end_step(&self, lane: usize, forces: &mut LaneArray) {
+        for (force, at_rest) in forces.lane_mut(lane).zip(self.scaled.iter()) {
             *force -= at_rest;
         }
     }

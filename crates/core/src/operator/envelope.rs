@@ -7,6 +7,7 @@ use super::connectors::Connectors;
 use super::energy::Energy;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
+use super::lane_group::{LaneGroups, UnitForce};
 use super::modes::Modes;
 use super::panel::{lanes, lanes_mut};
 use super::placed::Placed;
@@ -154,7 +155,7 @@ impl Envelope {
         operator: &BridgeOperator,
         constants: &StepConstants,
         (modes, residual, connectors, energy): (&Modes, &Residual, &Connectors, &Energy),
-        lanes: &[Lane],
+        (groups, lanes): (&LaneGroups, &[Lane]),
     ) {
         self.now.write_row(lanes.iter().map(|lane| lane.time_s));
         self.motion.join([&modes.q, &residual.followed_force.x]);
@@ -172,7 +173,7 @@ impl Envelope {
             (false, _) => self.update_corners::<S, false, 2>(o),
         }
         self.note_corners(o, before);
-        self.update_edges(o, operator, constants, energy, lanes);
+        self.update_edges(o, operator, constants, energy, (groups, lanes));
     }
 
     /// Peaks of positions, joints and connectors.
@@ -195,9 +196,14 @@ impl Envelope {
         if connectors.any_rest {
             let rest = &connectors.rest.vectors::<S>()[..self.joint_connectors];
             for (joint, rest) in forces.chunks_exact(per_joint).zip(rest.chunks_exact(per_joint)) {
-                let whole = || joint.iter().zip(rest).map(|(force, rest)| o.add(*force, *rest));
-                peaks.update_both(whole().fold(o.splat(0.0), |sum, force| o.add(sum, force)));
-                whole().for_each(|force| peaks.update_both(force));
+                let mut sum = o.splat(0.0);
+                for i in 0..joint.len() {
+                    sum = o.add(sum, o.add(joint[i], rest[i]));
+                }
+                peaks.update_both(sum);
+                for i in 0..joint.len() {
+                    peaks.update_both(o.add(joint[i], rest[i]));
+                }
             }
             return;
         }
@@ -333,12 +339,16 @@ impl Envelope {
         operator: &BridgeOperator,
         constants: &StepConstants,
         energy: &Energy,
-        each: &[Lane],
+        (groups, each): (&LaneGroups, &[Lane]),
     ) {
         let mut loads = [0.0; MOST_LANES];
         for (load, of) in loads.iter_mut().zip(each) {
-            for (.., force) in of.weights.iter().chain(&of.rider_forces) {
-                *load += force.abs();
+            *load = of.rider_forces.iter().map(|(.., force)| force.abs()).sum();
+        }
+        for group in groups.all() {
+            for lane in group.numbers() {
+                let weight = |of: &UnitForce| of.share * group.load_in(of.vehicle, lane);
+                loads[lane] += group.weights.iter().map(weight).sum::<f64>();
             }
         }
         let modal = o.0.sqrt_f64s(energy.modal_strain.vectors::<S>()[0]);
@@ -363,7 +373,7 @@ impl Envelope {
             }
             for (lane, of) in each.iter().enumerate() {
                 if is_lower(&self.edge, lane) {
-                    self.update_edge(operator, module, lane, of);
+                    self.update_edge(operator, module, lane, (groups, of));
                 }
             }
         }
@@ -371,7 +381,13 @@ impl Envelope {
 
     /// Stations of the edges of one module in one lane.
     #[inline(always)]
-    fn update_edge(&mut self, operator: &BridgeOperator, module: usize, lane: usize, of: &Lane) {
+    fn update_edge(
+        &mut self,
+        operator: &BridgeOperator,
+        module: usize,
+        lane: usize,
+        (groups, of): (&LaneGroups, &Lane),
+    ) {
         let (Some(crossing), sizes) = (&of.crossing, &operator.sizes) else {
             return;
         };
@@ -379,13 +395,15 @@ impl Envelope {
         let corner = |i: usize| self.observed.at(self.rows.positions + 2 * edges * module + i, lane);
         let of_module = &operator.of_modules[module];
         let first = sizes.followed() + of_module.inside.start;
-        let wheels = &crossing.wheels;
+        let (wheels, group) = (&crossing.wheels, &groups.all()[of.group]);
         for i in 0..of_module.inside.len() {
             let (place, side) = (of_module.places[i / edges], i % edges);
             let straight = (1.0 - place) * corner(side) + place * corner(edges + side);
             let mut z = straight + self.inside.at(i, lane);
-            for &(line, station, force) in &of.weights {
-                z -= force * wheels.weights[line].influence[station * wheels.influence_width + first + i];
+            for weight in &group.weights {
+                let force = weight.share * group.load_in(weight.vehicle, lane);
+                let influence = &wheels.weights[weight.line].influence;
+                z -= force * influence[weight.station * wheels.influence_width + first + i];
             }
             for &(line, station, force) in &of.rider_forces {
                 z -= force * wheels.influence(DeckNode { line, station })[first + i];

@@ -23,6 +23,13 @@ impl LaneArray {
         }
     }
 
+    /// Has room for so many rows.
+    pub(super) fn ensure_rows(&mut self, rows: usize) {
+        if self.rows() < rows {
+            self.numbers.resize(rows * self.lanes, 0.0);
+        }
+    }
+
     /// Number of rows.
     pub(super) fn rows(&self) -> usize {
         self.numbers.len() / self.lanes.max(1)
@@ -52,6 +59,27 @@ impl LaneArray {
         &mut self.numbers[row * self.lanes + lane]
     }
 
+    /// A row, to be written lane by lane.
+    #[inline(always)]
+    pub(super) fn row_mut(&mut self, row: usize) -> &mut [f64] {
+        &mut self.numbers[row * self.lanes..][..self.lanes]
+    }
+
+    /// Zeros in the first so many rows.
+    #[inline(always)]
+    pub(super) fn clear_rows(&mut self, rows: usize) {
+        self.numbers[..rows * self.lanes].fill(0.0);
+    }
+
+    /// Takes a lane's numbers in the first so many rows from a lane of another array.
+    #[inline(always)]
+    pub(super) fn take_lane(&mut self, lane: usize, rows: usize, (from, of): (&Self, usize)) {
+        let from_rows = from.numbers.chunks_exact(from.lanes);
+        for (to, from) in self.numbers.chunks_exact_mut(self.lanes).zip(from_rows).take(rows) {
+            to[lane] = from[of];
+        }
+    }
+
     /// A lane's numbers, row after row.
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> impl Iterator<Item = f64> {
@@ -68,14 +96,6 @@ impl LaneArray {
     #[inline(always)]
     pub(super) fn rows_from_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
         self.numbers[first * self.lanes..].chunks_exact_mut(self.lanes)
-    }
-
-    /// Reads a lane's numbers from between those of the others.
-    #[inline(always)]
-    pub(super) fn gather(&self, lane: usize, to: &mut [f64]) {
-        for (to, row) in to.iter_mut().zip(self.numbers.chunks_exact(self.lanes)) {
-            *to = row[lane];
-        }
     }
 
     /// Writes a lane's numbers between those of the others.
@@ -100,11 +120,6 @@ impl LaneArray {
     /// Takes the numbers of another array of as many rows and lanes.
     pub(super) fn copy_all(&mut self, from: &Self) {
         self.numbers.copy_from_slice(&from.numbers);
-    }
-
-    /// Takes a lane's numbers from another array of as many rows.
-    pub(super) fn copy_lane(&mut self, lane: usize, from: &Self) {
-        self.lane_mut(lane).zip(from.lane(lane)).for_each(|(to, x)| *to = x);
     }
 
     /// Writes the rows of others, one array after the other.
@@ -148,6 +163,21 @@ impl Trace {
         [&mut self.x, &mut self.x1, &mut self.x2]
     }
 
+    /// Its arrays, to be read.
+    pub(super) fn each(&self) -> [&LaneArray; 3] {
+        [&self.x, &self.x1, &self.x2]
+    }
+
+    /// Row i.
+    #[inline(always)]
+    pub(super) fn row<S: Simd>(&self, i: usize) -> [S::f64s; 3] {
+        [
+            self.x.vectors::<S>()[i],
+            self.x1.vectors::<S>()[i],
+            self.x2.vectors::<S>()[i],
+        ]
+    }
+
     /// Its rows as vectors.
     #[inline(always)]
     pub(super) fn vectors_mut<S: Simd>(&mut self) -> TraceRows<'_, S> {
@@ -170,6 +200,16 @@ impl<S: Simd> TraceRows<'_, S> {
     #[inline(always)]
     pub(super) fn at(&self, i: usize) -> [S::f64s; 2] {
         [self.x[i], self.x1[i]]
+    }
+
+    /// Takes row i to the end of a step in which it changes by `d`, in the lanes of a mask.
+    #[inline(always)]
+    pub(super) fn advance_where(&mut self, o: Ops<S>, mask: S::m64s, by: &Newmark<Ops<S>>, i: usize, d: S::f64s) {
+        let old = [self.x[i], self.x1[i], self.x2[i]];
+        let new = by.advance(o, d, old);
+        self.x[i] = o.0.select_f64s(mask, new[0], old[0]);
+        self.x1[i] = o.0.select_f64s(mask, new[1], old[1]);
+        self.x2[i] = o.0.select_f64s(mask, new[2], old[2]);
     }
 
     /// Takes row i to the end of a step in which it changes by `d`.

@@ -164,7 +164,9 @@ impl KindStates {
         let new = self.force_now.vectors_mut::<S>();
         of.motions.multiply(o, v, new);
         if let Some(awake) = awake {
-            new.iter_mut().for_each(|new| *new = o.mul(awake, *new));
+            for new in &mut *new {
+                *new = o.mul(awake, *new);
+            }
         }
         let (velocity, slope) = (self.velocity.vectors_mut::<S>(), self.slope.vectors_mut::<S>());
         for (i, new) in new.iter().enumerate() {

@@ -4,13 +4,22 @@
 
 use super::basis::Sizes;
 use super::lane_array::LaneArray;
+use super::lane_group::LaneGroup;
+use super::local_residual::NodeForces;
+use super::vector::Ops;
 use super::wheel_lines::{DeckLines, WheelLines};
+use crate::scheme::Arithmetic;
+use pulp::Simd;
 
 /// A force on a station of a line of the deck: line, station, downward force `[N]`.
 pub(super) type StationForce = (usize, usize, f64);
 
 /// Columns that are summed at once.
 const COLUMNS: usize = 16;
+
+/// Rows that are summed at once in all lanes, and in one alone.
+const ROWS: usize = 8;
+const ROWS_OF_ONE: usize = 32;
 
 /// Forces at the last step and at the one under way, one row a mode, connector and observed row.
 #[derive(Debug, Clone)]
@@ -42,20 +51,6 @@ impl Loads {
         [&mut self.weights_now, &mut self.inertia_now]
     }
 
-    /// Weights of a lane's vehicles on stations.
-    #[inline(always)]
-    pub(super) fn apply_weights(&mut self, lane: usize, wheels: &WheelLines, weights: &[StationForce]) {
-        let to = &mut self.weights_now;
-        apply_forces((&wheels.weights[..], wheels.influence_width, 0), weights, to, lane);
-    }
-
-    /// Inertia forces of a lane's masses on stations.
-    #[inline(always)]
-    pub(super) fn apply_inertia(&mut self, lane: usize, wheels: &WheelLines, forces: &[StationForce]) {
-        let to = &mut self.inertia_now;
-        apply_forces((&wheels.nodes[..], wheels.influence_width, 0), forces, to, lane);
-    }
-
     /// Adds what the rows see of a lane's springs to the inertia forces, times a factor.
     #[inline(always)]
     pub(super) fn add_springs(&mut self, lane: usize, seen: &[f64], factor: f64) {
@@ -79,6 +74,88 @@ impl Loads {
     pub(super) fn end_step(&mut self) {
         std::mem::swap(&mut self.weights, &mut self.weights_now);
         std::mem::swap(&mut self.inertia, &mut self.inertia_now);
+    }
+}
+
+/// Weights of the vehicles of a group on stations, as the rows see them.
+#[inline(always)]
+pub(super) fn apply_weights<S: Simd>(o: Ops<S>, wheels: &WheelLines, group: &LaneGroup, to: &mut LaneArray) {
+    let force = |i: usize| {
+        let of = &group.weights[i];
+        let n = o.mul(o.splat(of.share), group.load_n::<S>(of.vehicle));
+        (wheels.weights.influences(of.line), of.station, n)
+    };
+    let lines = (wheels.influence_width, group.weights.len());
+    sum_forces_of_lanes(o, lines, force, (group.mask(o), to));
+}
+
+/// Inertia forces of masses on nodes, as the rows see them in the lanes of a mask.
+#[inline(always)]
+pub(super) fn apply_inertia<S: Simd>(
+    o: Ops<S>,
+    mask: S::m64s,
+    wheels: &WheelLines,
+    of: NodeForces<'_>,
+    to: &mut LaneArray,
+) {
+    let (factor, forces) = (o.splat(of.factor), of.forces.vectors::<S>());
+    let force = |i: usize| {
+        let node = of.nodes[i];
+        (
+            wheels.nodes.influences(node.line),
+            node.station,
+            o.mul(factor, forces[i]),
+        )
+    };
+    let lines = (wheels.influence_width, of.nodes.len());
+    sum_forces_of_lanes(o, lines, force, (mask, to));
+}
+
+/// Writes the sums of forces times the influence of their stations into the lanes of a mask: so many forces, each with the
+/// influences of its line, its station and what it is in each lane.
+#[inline(always)]
+fn sum_forces_of_lanes<'a, S: Simd>(
+    o: Ops<S>,
+    lines: (usize, usize),
+    force: impl Fn(usize) -> (&'a [f64], usize, S::f64s),
+    into: (S::m64s, &mut LaneArray),
+) {
+    // as many sums as registers hold
+    if S::F64_LANES == 1 {
+        sum_blocks::<S, ROWS_OF_ONE>(o, lines, force, into);
+    } else {
+        sum_blocks::<S, ROWS>(o, lines, force, into);
+    }
+}
+
+/// As [`sum_forces_of_lanes`], so many rows at once.
+#[inline(always)]
+fn sum_blocks<'a, S: Simd, const MANY: usize>(
+    o: Ops<S>,
+    (width, count): (usize, usize),
+    force: impl Fn(usize) -> (&'a [f64], usize, S::f64s),
+    (mask, to): (S::m64s, &mut LaneArray),
+) {
+    let mut from = 0;
+    for rows in to.vectors_mut::<S>().chunks_mut(MANY) {
+        let mut sums = [o.splat(0.0); MANY];
+        for i in 0..count {
+            let (influences, station, n) = force(i);
+            let of = &influences[station * width + from..][..rows.len()];
+            if let Some(of) = of.first_chunk::<MANY>() {
+                for row in 0..MANY {
+                    sums[row] = o.fma(o.splat(of[row]), n, sums[row]);
+                }
+            } else {
+                for (sum, x) in sums.iter_mut().zip(of) {
+                    *sum = o.fma(o.splat(*x), n, *sum);
+                }
+            }
+        }
+        for (row, sum) in rows.iter_mut().zip(&sums) {
+            *row = o.0.select_f64s(mask, *sum, *row);
+        }
+        from += MANY;
     }
 }
 

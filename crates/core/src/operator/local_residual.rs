@@ -1,16 +1,19 @@
-//! Residual (static-correction) displacement of the deck nodes near the vehicle: `x + a x' = R f`, f = wheel and connector
+//! Residual (static-correction) displacement of the deck nodes near the vehicles: `x + a x' = R f`, f = wheel and connector
 //! forces.
 //!
-//! Knows how a node follows forces in a time step. Does not know who exerts them.
+//! Knows how nodes follow forces in a time step, those of lanes that go together at once. Does not know who exerts them.
 
+use super::lane_array::{LaneArray, Trace};
+use super::lane_group::{LaneGroup, UnitForce};
 use super::loads::StationForce;
 use super::step_constants::{ResidualRule, StepConstants};
-use super::sums::{add_to, dot};
+use super::vector::{Mean, Ops};
 use super::wheel_lines::{DeckNode, WheelLines};
-use crate::scheme::{Newmark, Scalar, Scheme};
+use crate::scheme::{Arithmetic, Newmark};
+use pulp::Simd;
 
 /// Stations of a line side by side, the vehicle's own and one more at each end.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct NodeRun {
     line: usize,
     first: usize,
@@ -19,264 +22,377 @@ struct NodeRun {
     from: usize,
 }
 
-/// The nodes' motion, one entry a node. Forces are what a node sees of them, `R f`, downward and pulling positive.
+/// The nodes' motion, one row a node. Forces are what a node sees of them, `R f`, downward and pulling positive.
 /// Equation (O2).
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct LocalResidual {
-    runs: Vec<NodeRun>,
-    x: [Vec<f64>; 3],
+    /// Of each lane.
+    runs: Vec<Vec<NodeRun>>,
+    x: Trace,
     /// Of weights, inertia and connectors at the last step.
-    weights: Vec<f64>,
-    inertia: Vec<f64>,
-    contact: Vec<f64>,
+    weights: LaneArray,
+    inertia: LaneArray,
+    contact: LaneArray,
     /// Of the weights at the step under way; the change of x without new inertia and connector forces.
-    weights_now: Vec<f64>,
-    free: Vec<f64>,
-    /// Of wheels on springs at the step under way, to add them up; of the last step they are among the weights.
-    springs: Vec<f64>,
+    weights_now: LaneArray,
+    free: LaneArray,
+    /// Forces being added up.
+    sum: LaneArray,
 }
 
-impl Clone for LocalResidual {
-    fn clone(&self) -> Self {
-        let mut clone = Self::default();
-        clone.clone_from(self);
-        clone
-    }
-
-    /// Keeps the room that is there.
-    fn clone_from(&mut self, other: &Self) {
-        self.runs.clone_from(&other.runs);
-        for (own, other) in self.lists().into_iter().zip(other.listed()) {
-            own.clone_from(other);
-        }
-    }
+/// The nodes' motion in one lane.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SavedResidual {
+    runs: Vec<NodeRun>,
+    numbers: Vec<f64>,
 }
 
-/// Forces on stations: line, station, force; and of the connectors.
+/// Nodes and a row of forces for each of them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct StepForces<'a> {
-    /// Lines of the weights.
-    pub weights: &'a [StationForce],
-    /// Of masses and of wheels on springs, on lines of nodes, at the last step.
-    pub masses: &'a [StationForce],
-    pub springs: &'a [StationForce],
-    /// Connectors, at the last step.
-    pub n: &'a [f64],
+pub(super) struct NodeForces<'a> {
+    pub nodes: &'a [DeckNode],
+    pub forces: &'a LaneArray,
+    /// What the forces are multiplied by.
+    pub factor: f64,
 }
 
 impl LocalResidual {
     /// Room for vehicles of at most `nodes` nodes.
-    pub(super) fn new(nodes: usize) -> Self {
-        let mut new = Self {
-            runs: Vec::with_capacity(nodes),
-            ..Self::default()
-        };
+    pub(super) fn new(nodes: usize, lanes: usize) -> Self {
         // two more on each line, of which there are fewer than nodes
-        for list in new.lists() {
-            list.reserve(3 * nodes);
-        }
-        new
-    }
-
-    fn lists(&mut self) -> [&mut Vec<f64>; 8] {
-        let ([x, v, a], now, free) = (&mut self.x, &mut self.weights_now, &mut self.free);
-        [
-            x,
-            v,
-            a,
-            &mut self.weights,
-            &mut self.inertia,
-            &mut self.contact,
-            now,
-            free,
-        ]
-    }
-
-    fn listed(&self) -> [&Vec<f64>; 8] {
-        let ([x, v, a], now, free) = (&self.x, &self.weights_now, &self.free);
-        [x, v, a, &self.weights, &self.inertia, &self.contact, now, free]
-    }
-
-    /// No nodes.
-    pub(super) fn clear(&mut self) {
-        self.runs.clear();
-        for list in self.lists() {
-            list.clear();
+        let of = || LaneArray::new(3 * nodes, lanes);
+        Self {
+            runs: vec![Vec::with_capacity(nodes); lanes],
+            x: Trace::new(3 * nodes, lanes),
+            weights: of(),
+            inertia: of(),
+            contact: of(),
+            weights_now: of(),
+            free: of(),
+            sum: of(),
         }
     }
 
-    /// Follows the nodes near the vehicle from where they were, `old`, through the step as far as it is known: weights now
-    /// and before, inertia and connector forces before. A node that comes near has stood still until then.
+    /// What is carried from step to step.
+    fn carried(&mut self) -> [&mut LaneArray; 6] {
+        let [x, v, a] = self.x.all();
+        [x, v, a, &mut self.weights, &mut self.inertia, &mut self.contact]
+    }
+
+    /// No nodes in a lane.
+    pub(super) fn clear(&mut self, lane: usize) {
+        self.runs[lane].clear();
+    }
+
+    /// A lane's nodes.
+    pub(super) fn save(&mut self, lane: usize) -> SavedResidual {
+        let runs = self.runs[lane].clone();
+        let rows: usize = runs.iter().map(|run| run.count).sum();
+        let numbers = self
+            .carried()
+            .into_iter()
+            .flat_map(|list| list.lane(lane).take(rows).collect::<Vec<_>>());
+        SavedResidual {
+            numbers: numbers.collect(),
+            runs,
+        }
+    }
+
+    /// Puts a lane's nodes.
+    pub(super) fn restore(&mut self, lane: usize, saved: &SavedResidual) {
+        self.runs[lane].clone_from(&saved.runs);
+        let rows: usize = saved.runs.iter().map(|run| run.count).sum();
+        if rows == 0 {
+            return;
+        }
+        for (list, saved) in self.carried().into_iter().zip(saved.numbers.chunks_exact(rows)) {
+            list.lane_mut(lane).zip(saved).for_each(|(to, x)| *to = *x);
+        }
+    }
+
+    /// Takes a lane's nodes from a lane of another.
     #[inline(always)]
-    pub(super) fn follow(
+    pub(super) fn take_lane(&mut self, lane: usize, (from, of): (&Self, usize)) {
+        self.runs[lane].clone_from(&from.runs[of]);
+        let rows = self.runs[lane].iter().map(|run| run.count).sum();
+        for (to, list) in self.carried().into_iter().zip(from.listed()) {
+            to.take_lane(lane, rows, (list, of));
+        }
+    }
+
+    /// Whether two lanes have the same nodes.
+    pub(super) fn alike(&self, lane: usize, other: usize) -> bool {
+        self.runs[lane] == self.runs[other]
+    }
+
+    /// Follows the nodes near the vehicles of a group from where they were, `old`, through the step as far as it is known: weights
+    /// now and before, inertia and connector forces before, which are masses and springs of each lane and the connectors `n`. A node
+    /// that comes near has stood still until then.
+    #[inline(always)]
+    pub(super) fn follow<S: Simd>(
         &mut self,
+        o: Ops<S>,
         old: &Self,
+        group: &LaneGroup,
         nodes: &[DeckNode],
-        wheels: &WheelLines,
-        constants: &StepConstants,
-        modes: usize,
-        pressing: StepForces,
+        (wheels, constants): (&WheelLines, &StepConstants),
+        (before, n): (&[[&[StationForce]; 2]], &LaneArray),
     ) {
-        self.runs.clear();
+        let first = group.first();
+        let count = self.find_runs(group, nodes, wheels.stations());
+        let (mask, modes) = (group.mask(o), constants.c.len());
+        self.sum.clear_rows(count);
+        for &UnitForce {
+            line,
+            station,
+            vehicle,
+            share,
+        } in &group.weights
+        {
+            let force = o.mul(o.splat(share), group.load_n::<S>(vehicle));
+            for &line in &wheels.weights[line].lines {
+                press(o, &self.runs[first], &mut self.sum, (wheels, line, station), force);
+            }
+        }
+        set(o, mask, &mut self.weights_now, &self.sum, count);
+        for i in 0..self.runs[first].len() {
+            let run = self.runs[first][i];
+            let known = self.take_over(o, mask, run, (old, first));
+            for station in (run.first..known[0]).chain(known[1]..run.first + run.count) {
+                let at = run.from + station - run.first;
+                for (&lane, forces) in group.lanes.iter().zip(before) {
+                    self.stand(
+                        lane,
+                        at,
+                        DeckNode {
+                            line: run.line,
+                            station,
+                        },
+                        (wheels, modes),
+                        (forces, n),
+                    );
+                }
+            }
+        }
+        let s = &constants.scheme;
+        let (f, m_old) = (Mean::<S>::of(o, s.alpha_f), o.splat(s.alpha_m));
+        let rule = ResidualRule::of(o, constants);
+        let (now, weights) = (self.weights_now.vectors::<S>(), self.weights.vectors::<S>());
+        let (inertia, contact) = (self.inertia.vectors::<S>(), self.contact.vectors::<S>());
+        let x = self.x.vectors_mut::<S>();
+        for (i, free) in self.free.vectors_mut::<S>()[..count].iter_mut().enumerate() {
+            let force = o.fma(f.old, contact[i], o.fma(m_old, inertia[i], f.at(o, now[i], weights[i])));
+            *free = o.0.select_f64s(mask, x.change(o, &rule, i, o.neg(force)), *free);
+        }
+    }
+
+    /// The stations near the nodes of a group; how many there are.
+    #[inline(always)]
+    fn find_runs(&mut self, group: &LaneGroup, nodes: &[DeckNode], stations: usize) -> usize {
+        let (first, rest) = (group.first(), &group.lanes[1..]);
+        let runs = &mut self.runs[first];
+        runs.clear();
         for node in nodes {
-            let mut new = true;
-            for run in &mut self.runs {
-                if run.line == node.line {
+            match runs.iter_mut().find(|run| run.line == node.line) {
+                Some(run) => {
                     let end = (run.first + run.count).max(node.station + 1);
                     run.first = run.first.min(node.station);
                     run.count = end - run.first;
-                    new = false;
                 }
-            }
-            if new {
-                self.runs.push(NodeRun {
+                None => runs.push(NodeRun {
                     line: node.line,
                     first: node.station,
                     count: 1,
                     from: 0,
-                });
+                }),
             }
         }
         let mut count = 0;
-        for run in &mut self.runs {
-            let end = (run.first + run.count + 1).min(wheels.stations());
+        for run in runs {
+            let end = (run.first + run.count + 1).min(stations);
             run.first = run.first.saturating_sub(1);
             run.count = end - run.first;
             run.from = count;
             count += run.count;
         }
-        for list in self.lists() {
-            list.clear();
-            list.resize(count, 0.0);
+        for &lane in rest {
+            // the first lane stands before the others
+            let (head, tail) = self.runs.split_at_mut(lane);
+            tail[0].clone_from(&head[first]);
         }
-        for &(group, at, force) in pressing.weights {
-            for &line in &wheels.weights[group].lines {
-                press(&self.runs, &mut self.weights_now, wheels, line, at, force);
-            }
-        }
-        for i in 0..self.runs.len() {
-            self.take_over(self.runs[i], old, wheels, modes, pressing);
-        }
-        let s = &constants.scheme;
-        let (now, before) = (&self.weights_now[..count], &self.weights[..count]);
-        let (inertia, contact) = (&self.inertia[..count], &self.contact[..count]);
-        let [x, v, a] = self.x.each_ref().map(|x| &x[..count]);
-        let rule = ResidualRule::of(Scalar, constants);
-        for (i, free) in self.free[..count].iter_mut().enumerate() {
-            let force = -(s.at_f(now[i], before[i]) + s.alpha_m * inertia[i] + s.alpha_f * contact[i]);
-            *free = rule.change(Scalar, force, [x[i], v[i], a[i]]);
-        }
+        count
     }
 
-    /// A run's motion: that of nodes known before, rest of the others.
+    /// The motion of a run's nodes that were known before; from which station to which they are.
     #[inline(always)]
-    fn take_over(&mut self, run: NodeRun, old: &Self, wheels: &WheelLines, modes: usize, pressing: StepForces) {
-        let (mut lo, mut hi) = (run.first, run.first);
-        for before in &old.runs {
-            if before.line == run.line {
-                let first = run.first.max(before.first);
-                let end = (run.first + run.count).min(before.first + before.count);
-                if first < end {
-                    (lo, hi) = (first, end);
-                    let (to, from) = (run.from + lo - run.first, before.from + lo - before.first);
-                    for (to_list, from_list) in self.lists().into_iter().zip(old.listed()).take(6) {
-                        to_list[to..][..hi - lo].copy_from_slice(&from_list[from..][..hi - lo]);
-                    }
+    fn take_over<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        mask: S::m64s,
+        run: NodeRun,
+        (old, lane): (&Self, usize),
+    ) -> [usize; 2] {
+        let mut known = [run.first; 2];
+        for before in old.runs[lane].iter().filter(|before| before.line == run.line) {
+            let first = run.first.max(before.first);
+            let end = (run.first + run.count).min(before.first + before.count);
+            if first >= end {
+                continue;
+            }
+            known = [first, end];
+            let (to, from) = (run.from + first - run.first, before.from + first - before.first);
+            let many = end - first;
+            for (to_list, from_list) in self.carried().into_iter().zip(old.listed()) {
+                let to_rows = &mut to_list.vectors_mut::<S>()[to..][..many];
+                for (to, from) in to_rows.iter_mut().zip(&from_list.vectors::<S>()[from..][..many]) {
+                    *to = o.0.select_f64s(mask, *from, *to);
                 }
             }
         }
-        for station in (run.first..lo).chain(hi..run.first + run.count) {
-            let (i, line) = (run.from + station - run.first, run.line);
-            self.weights[i] = self.weights_now[i];
-            for (forces, to) in [
-                (pressing.masses, &mut self.inertia[i]),
-                (pressing.springs, &mut self.weights[i]),
-            ] {
-                for &(other, at, force) in forces {
-                    let row = wheels.residual(other, at, line);
-                    let seen = row.get((station + wheels.residual_band()).wrapping_sub(at));
-                    *to += force * seen.copied().unwrap_or(0.0);
-                }
-            }
-            self.contact[i] = of_connectors(wheels, line, station, modes, pressing.n);
-            self.x[0][i] = -(self.weights[i] + self.inertia[i] + self.contact[i]);
-        }
+        known
     }
 
-    /// Takes the nodes to the end of the step, forces of masses, springs and connectors found.
+    fn listed(&self) -> [&LaneArray; 6] {
+        let [x, v, a] = self.x.each();
+        [x, v, a, &self.weights, &self.inertia, &self.contact]
+    }
+
+    /// A node that comes near in one lane, at rest under the forces that the last step had on other nodes.
+    fn stand(
+        &mut self,
+        lane: usize,
+        at: usize,
+        node: DeckNode,
+        (wheels, modes): (&WheelLines, usize),
+        ([masses, springs], n): (&[&[StationForce]; 2], &LaneArray),
+    ) {
+        let seen = |forces: &[StationForce]| -> f64 {
+            let of = |&(line, station, force): &StationForce| {
+                let row = wheels.residual(line, station, node.line);
+                let seen = row.get((node.station + wheels.residual_band()).wrapping_sub(station));
+                force * seen.copied().unwrap_or(0.0)
+            };
+            forces.iter().map(of).sum()
+        };
+        let weights = self.weights_now.at(at, lane) + seen(springs);
+        let inertia = seen(masses);
+        let of_links = &wheels.influence(node)[modes..][..n.rows()];
+        let contact = of_links.iter().zip(n.lane(lane)).map(|(seen, n)| seen * n).sum::<f64>();
+        *self.weights.at_mut(at, lane) = weights;
+        *self.inertia.at_mut(at, lane) = inertia;
+        *self.contact.at_mut(at, lane) = contact;
+        let [x, v, a] = self.x.all();
+        *x.at_mut(at, lane) = -(weights + inertia + contact);
+        (*v.at_mut(at, lane), *a.at_mut(at, lane)) = (0.0, 0.0);
+    }
+
+    /// Takes the nodes of a group's settled lanes to the end of the step, forces of masses, springs and connectors found.
     #[inline(always)]
-    pub(super) fn lead(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, found: StepForces) {
-        let n = found.n;
-        self.inertia.fill(0.0);
-        for &(line, at, force) in found.masses {
-            press(&self.runs, &mut self.inertia, wheels, line, at, force);
-        }
-        for run in &self.runs {
-            for (i, contact) in self.contact[run.from..][..run.count].iter_mut().enumerate() {
-                *contact = of_connectors(wheels, run.line, run.first + i, modes, n);
+    pub(super) fn lead<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        (lane, mask): (usize, S::m64s),
+        (wheels, constants): (&WheelLines, &StepConstants),
+        [masses, springs]: [NodeForces<'_>; 2],
+        n: &LaneArray,
+    ) {
+        let s = &constants.scheme;
+        let runs = &self.runs[lane];
+        let count: usize = runs.iter().map(|run| run.count).sum();
+        self.sum.clear_rows(count);
+        press_all(o, runs, &mut self.sum, wheels, masses);
+        set(o, mask, &mut self.inertia, &self.sum, count);
+        let (n, modes) = (n.vectors::<S>(), constants.c.len());
+        let contact = self.contact.vectors_mut::<S>();
+        for run in runs {
+            for (i, contact) in contact[run.from..][..run.count].iter_mut().enumerate() {
+                let (line, station) = (run.line, run.first + i);
+                let of_links = &wheels.influence(DeckNode { line, station })[modes..];
+                let mut sum = o.splat(0.0);
+                for (seen, n) in of_links.iter().zip(n) {
+                    sum = o.fma(o.splat(*seen), *n, sum);
+                }
+                *contact = o.0.select_f64s(mask, sum, *contact);
             }
         }
-        let s = &constants.scheme;
-        if !found.springs.is_empty() {
-            self.press_springs(wheels, constants, found.springs);
+        if !springs.nodes.is_empty() {
+            // with the connectors in this step, with the weights in the next
+            self.sum.clear_rows(count);
+            press_all(o, runs, &mut self.sum, wheels, springs);
+            let factor = o.splat(constants.rho * (1.0 - s.alpha_f));
+            let (free, now) = (self.free.vectors_mut::<S>(), self.weights_now.vectors_mut::<S>());
+            for (i, spring) in self.sum.vectors::<S>()[..count].iter().enumerate() {
+                free[i] = o.0.select_f64s(mask, o.less(free[i], factor, *spring), free[i]);
+                now[i] = o.0.select_f64s(mask, o.add(now[i], *spring), now[i]);
+            }
         }
-        let count = self.free.len();
-        let (inertia, contact, free) = (&self.inertia[..count], &self.contact[..count], &self.free[..count]);
-        let [x, v, a] = self.x.each_mut().map(|x| &mut x[..count]);
-        let newmark = Newmark::of(Scalar, s);
+        let (by_m, by_f) = (o.splat(1.0 - s.alpha_m), o.splat(1.0 - s.alpha_f));
+        let (rho, newmark) = (o.splat(constants.rho), Newmark::of(o, s));
+        let (inertia, contact) = (self.inertia.vectors::<S>(), self.contact.vectors::<S>());
+        let free = self.free.vectors::<S>();
+        let mut x = self.x.vectors_mut::<S>();
         for i in 0..count {
-            let late = (1.0 - s.alpha_m) * inertia[i] + (1.0 - s.alpha_f) * contact[i];
-            [x[i], v[i], a[i]] = newmark.advance(Scalar, free[i] - constants.rho * late, [x[i], v[i], a[i]]);
+            let late = o.fma(by_m, inertia[i], o.mul(by_f, contact[i]));
+            x.advance_where(o, mask, &newmark, i, o.less(free[i], rho, late));
         }
-        self.weights.copy_from_slice(&self.weights_now);
+        set(o, mask, &mut self.weights, &self.weights_now, count);
     }
 
-    /// Forces of wheels on springs: with the connectors in this step, with the weights in the next.
-    fn press_springs(&mut self, wheels: &WheelLines, constants: &StepConstants, springs: &[StationForce]) {
-        self.springs.clear();
-        self.springs.resize(self.free.len(), 0.0);
-        for &(line, at, force) in springs {
-            press(&self.runs, &mut self.springs, wheels, line, at, force);
-        }
-        let factor = constants.rho * (1.0 - constants.scheme.alpha_f);
-        for ((free, now), spring) in self.free.iter_mut().zip(&mut self.weights_now).zip(&self.springs) {
-            *free -= factor * spring;
-            *now += spring;
-        }
-    }
-
-    /// A node's acceleration, velocity and displacement at the end of the step without new inertia and connector forces.
+    /// A node's acceleration, velocity and displacement at the end of the step without new inertia and connector forces, in the lanes
+    /// of a group.
     #[inline(always)]
-    pub(super) fn free(&self, node: DeckNode, s: &Scheme) -> [f64; 3] {
-        for run in &self.runs {
-            if run.line == node.line {
-                let i = run.from + node.station - run.first;
-                let old = [self.x[0][i], self.x[1][i], self.x[2][i]];
-                let [x, v, a] = Newmark::of(Scalar, s).advance(Scalar, self.free[i], old);
-                return [a, v, x];
-            }
-        }
-        [0.0; 3]
+    pub(super) fn free<S: Simd>(
+        &self,
+        o: Ops<S>,
+        lane: usize,
+        node: DeckNode,
+        newmark: &Newmark<Ops<S>>,
+    ) -> [S::f64s; 3] {
+        let Some(run) = self.runs[lane].iter().find(|run| run.line == node.line) else {
+            return [o.splat(0.0); 3];
+        };
+        let i = run.from + node.station - run.first;
+        let [x, v, a] = newmark.advance(o, self.free.vectors::<S>()[i], self.x.row::<S>(i));
+        [a, v, x]
+    }
+}
+
+/// Takes the first so many rows in the lanes of a mask.
+#[inline(always)]
+fn set<S: Simd>(o: Ops<S>, mask: S::m64s, to: &mut LaneArray, from: &LaneArray, rows: usize) {
+    let (to, from) = (&mut to.vectors_mut::<S>()[..rows], &from.vectors::<S>()[..rows]);
+    for (to, from) in to.iter_mut().zip(from) {
+        *to = o.0.select_f64s(mask, *from, *to);
+    }
+}
+
+/// Adds what nodes see of forces on nodes.
+#[inline(always)]
+fn press_all<S: Simd>(o: Ops<S>, runs: &[NodeRun], seen: &mut LaneArray, wheels: &WheelLines, of: NodeForces<'_>) {
+    let factor = o.splat(of.factor);
+    for (node, force) in of.nodes.iter().zip(of.forces.vectors::<S>()) {
+        press(o, runs, seen, (wheels, node.line, node.station), o.mul(factor, *force));
     }
 }
 
 /// Adds what nodes see of a force on a station.
 #[inline(always)]
-fn press(runs: &[NodeRun], seen: &mut [f64], wheels: &WheelLines, line: usize, station: usize, force: f64) {
-    let band = wheels.residual_band();
+fn press<S: Simd>(
+    o: Ops<S>,
+    runs: &[NodeRun],
+    seen: &mut LaneArray,
+    (wheels, line, station): (&WheelLines, usize, usize),
+    force: S::f64s,
+) {
+    let (band, seen) = (wheels.residual_band(), seen.vectors_mut::<S>());
     for run in runs {
         let lo = run.first.max(station.saturating_sub(band));
         let hi = (run.first + run.count).min(station + band + 1);
         if lo < hi {
             let row = &wheels.residual(line, station, run.line)[lo + band - station..hi + band - station];
-            add_to(&mut seen[run.from + lo - run.first..][..hi - lo], force, row);
+            for (seen, r) in seen[run.from + lo - run.first..].iter_mut().zip(row) {
+                *seen = o.fma(o.splat(*r), force, *seen);
+            }
         }
     }
-}
-
-/// What a node sees of the connectors.
-#[inline(always)]
-fn of_connectors(wheels: &WheelLines, line: usize, station: usize, modes: usize, n: &[f64]) -> f64 {
-    let influence = wheels.influence(DeckNode { line, station });
-    dot(&influence[modes..][..n.len()], n)
 }

@@ -1,80 +1,72 @@
-//! What rides along in one lane, masses and wheels on springs: what they see of each other and of the connectors.
+//! What rides along in lanes that go together, masses and wheels on springs: what they see of each other and of the connectors.
 //!
 //! Knows flexibilities, laid out once so that a step allocates nothing. Does not know the scheme but for its factors, nor where
 //! vehicles are: that is for `riding_places`.
 
+use super::envelope::MOST_LANES;
+use super::lane::Lane;
 use super::lane_array::LaneArray;
+use super::lane_group::LaneGroup;
 use super::loads::StationForce;
-use super::local_residual::{LocalResidual, StepForces};
+use super::local_residual::{LocalResidual, NodeForces};
 use super::rider_block::RiderBlock;
-use super::rides::{LaneRide, WheelOnDeck};
-use super::riding_places::RidingPlaces;
+use super::rides::WheelOnDeck;
+use super::riding_places::{MovingMass, RidingPlaces};
 use super::step_constants::StepConstants;
-use super::sums::{add_to, dot};
+use super::sums::add_to;
+use super::vector::Ops;
 use super::wheel_lines::{DeckNode, WheelCompliance, WheelLines};
-use crate::bridge::{Track, VehiclePlacement};
-use crate::scheme::Scheme;
+use crate::bridge::Track;
+use crate::scheme::{Arithmetic, Newmark};
+use pulp::Simd;
 
-/// Free motion of the modes at the end of a step: `q, v, a` as they would be without connector and mass forces.
-#[derive(Debug, Default)]
-pub(super) struct FreeMotion {
-    pub q: Vec<f64>,
-    pub v: Vec<f64>,
-    pub a: Vec<f64>,
-}
-
-impl FreeMotion {
-    /// Rest of so many modes.
-    pub(super) fn new(modes: usize) -> Self {
-        let zeros = || vec![0.0; modes];
-        Self {
-            q: zeros(),
-            v: zeros(),
-            a: zeros(),
-        }
-    }
-
-    /// Reads a lane; accelerations alone where no more is asked for.
-    #[inline(always)]
-    pub(super) fn gather(&mut self, lane: usize, [q, v, a]: &[LaneArray; 3], accelerations_alone: bool) {
-        if !accelerations_alone {
-            q.gather(lane, &mut self.q);
-            v.gather(lane, &mut self.v);
-        }
-        a.gather(lane, &mut self.a);
-    }
-}
-
-/// What rides along in one lane.
+/// What rides along in a group of lanes after another, and the nodes near it in all of them.
 #[derive(Debug)]
 pub(super) struct MovingMasses {
     connectors: usize,
-    places: RidingPlaces,
+    pub(super) places: RidingPlaces,
     /// Free motion of each node: acceleration, velocity, displacement.
-    dots: Vec<[f64; 3]>,
+    dots: [LaneArray; 3],
     /// What a node sees of a unit force of each mass.
     seen: Vec<f64>,
-    /// Their rows in the contact system.
+    /// Their rows in the contact systems.
     pub(super) block: RiderBlock,
-    /// Nodes' motion local the modes, near the vehicle; and room for the next list.
+    /// Wheels on springs of each lane.
+    wheels: Vec<Vec<WheelOnDeck>>,
+    /// Nodes' motion beside the modes, near the vehicles; and that at the end of the step under way.
     local: LocalResidual,
     next: LocalResidual,
-    /// Scaled force on each node.
-    on_nodes: Vec<f64>,
+    /// Scaled force on each node, of masses and of wheels on springs, and what it has of motion.
+    by_masses: LaneArray,
+    by_springs: LaneArray,
+    on_nodes: LaneArray,
+}
+
+/// What is known where riders of a group are looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OfGroup<'a> {
+    pub group: &'a LaneGroup,
+    pub wheels: &'a WheelLines,
+    pub compliance: &'a WheelCompliance,
+    pub constants: &'a StepConstants,
 }
 
 impl MovingMasses {
-    /// Room for vehicles of at most `nodes` nodes.
-    pub(super) fn new(connectors: usize, nodes: usize) -> Self {
+    /// Room for vehicles of at most `nodes` nodes in each lane.
+    pub(super) fn new(connectors: usize, nodes: usize, lanes: usize) -> Self {
+        let of = || LaneArray::new(nodes, lanes);
         Self {
             connectors,
             places: RidingPlaces::new(nodes),
-            dots: Vec::with_capacity(nodes),
+            dots: [of(), of(), of()],
             seen: vec![0.0; nodes * nodes],
-            block: RiderBlock::new(nodes, connectors),
-            local: LocalResidual::new(nodes),
-            next: LocalResidual::new(nodes),
-            on_nodes: vec![0.0; nodes],
+            block: RiderBlock::new(nodes, connectors, lanes),
+            wheels: vec![Vec::new(); lanes],
+            local: LocalResidual::new(nodes, lanes),
+            next: LocalResidual::new(nodes, lanes),
+            by_masses: of(),
+            by_springs: of(),
+            on_nodes: of(),
         }
     }
 
@@ -82,7 +74,7 @@ impl MovingMasses {
         self.places.list.len()
     }
 
-    /// Operations of [`MovingMasses::follow`] and [`MovingMasses::couple`] on so many modes.
+    /// Operations of [`MovingMasses::follow`] and [`MovingMasses::couple`] on so many modes, a lane.
     pub(super) fn flop_of_coupling(&self, modes: usize) -> f64 {
         let (n, r, c) = (self.places.nodes.len(), self.places.list.len(), self.connectors);
         let motions = if self.needs_motion() { 3 } else { 1 };
@@ -90,25 +82,34 @@ impl MovingMasses {
         (2 * motions * modes * n + 2 * n * r + entries * 2 * (r + c) + 12 * n) as f64
     }
 
-    /// Operations of the masses' forces on so many rows and of [`MovingMasses::lead`].
+    /// Operations of the masses' forces on so many rows and of [`MovingMasses::lead`], a lane.
     pub(super) fn flop_of_leading(&self, rows: usize) -> f64 {
         let (n, r, c) = (self.places.nodes.len(), self.places.list.len(), self.connectors);
         (2 * n * rows + 2 * n * (r + c) + 2 * n * c + 2 * self.places.force.len() + 14 * n) as f64
     }
 
-    /// Puts what rides along where it is.
+    /// Puts what rides along in a group where it is.
     #[inline(always)]
-    pub(super) fn place(
-        &mut self,
-        wheels: &WheelLines,
-        track: &Track,
-        loads_n: impl Fn(usize) -> f64,
-        placements: &[VehiclePlacement],
-        rides: &[LaneRide],
-    ) {
-        self.places.place(wheels, track, loads_n, placements, rides);
+    pub(super) fn place(&mut self, wheels: &WheelLines, track: &Track, group: &LaneGroup, lanes: &[Lane]) {
+        let rides = &lanes[group.first()].rides;
+        if group.is_still {
+            self.places.clear();
+        } else {
+            self.places.place(wheels, track, &group.placements, rides);
+        }
         let (riders, symmetric) = (self.places.list.len(), self.places.slopes.is_empty());
-        self.block.begin(riders, symmetric);
+        self.block.begin(riders, symmetric, self.places.first_wheel);
+        if riders == self.places.first_wheel {
+            return;
+        }
+        for &lane in &group.lanes {
+            let of = &mut self.wheels[lane];
+            of.clear();
+            for ride in lanes[lane].rides.iter().filter(|ride| ride.is_awake()) {
+                let placement = &group.placements[ride.vehicle];
+                of.extend((0..ride.wheels()).map(|wheel| ride.wheel(wheel, placement)));
+            }
+        }
     }
 
     /// Whether rows ask for velocities and displacements too.
@@ -117,78 +118,111 @@ impl MovingMasses {
         self.places.needs_motion()
     }
 
-    /// The part of the small system that rides along, from the free motion at the step's end. Masses are measured in displacement:
+    /// The part of the small systems that rides along, from the free motion `[q, v, a]` of the modes at the step's end. Masses are
+    /// measured in displacement:
     /// `q' / ((1 - alpha_m) m c_a) = r u'' / c_a + (2 V / c_a) r_x u' + ((V^2 r_xx + V' r_x) / c_a) u` with
     /// `q' = (1 - alpha_m) q`; wheels on springs by [`WheelOnDeck`].
     #[inline(always)]
-    pub(super) fn couple(
-        &mut self,
-        wheels: &WheelLines,
-        compliance: &WheelCompliance,
-        constants: &StepConstants,
-        modes: usize,
-        rides: &[LaneRide],
-        free: &FreeMotion,
-    ) {
+    pub(super) fn couple<S: Simd>(&mut self, o: Ops<S>, of: OfGroup<'_>, lanes: &[Lane], free: &[LaneArray; 3]) {
         let nr = self.places.list.len();
         if nr == 0 {
             return;
         }
-        let s = &constants.scheme;
-        self.free_nodes(wheels, constants, modes, free);
+        self.free_nodes(o, of, free);
         if self.places.runs.is_empty() {
-            self.see_rows(compliance);
+            self.see_rows(of.compliance);
         } else {
-            self.see_pairs(compliance);
+            self.see_pairs(of.compliance);
         }
-        for (i, mass) in self.places.list[..self.places.first_wheel].iter().enumerate() {
-            let row = self.block.row_mut(i);
-            let mut free = 0.0;
-            for &(node, w) in &self.places.force[mass.force.0..mass.force.1] {
-                let DeckNode { line, station } = self.places.nodes[node];
-                add_to(row.among, w, &self.seen[node * nr..][..nr]);
-                let there = compliance.with_connectors(line, station);
-                add_to(row.of_links, w, there);
-                add_to(row.on_links, w, there);
-                free += w * self.dots[node][0] / s.c_a;
-            }
-            let (speed, rate) = (mass.heading.speed_m_s, mass.heading.acceleration_m_s2);
-            let (on_x, on_xx) = (2.0 * speed / s.c_a, speed * speed / s.c_a);
-            for &(node, r_x, r_xx) in &self.places.slopes[mass.slopes.0..mass.slopes.1] {
-                let of_u = on_xx * r_xx + rate / s.c_a * r_x;
-                let (w, DeckNode { line, station }) = (on_x * s.c_v * r_x + of_u, self.places.nodes[node]);
-                add_to(row.among, w, &self.seen[node * nr..][..nr]);
-                add_to(row.of_links, w, compliance.with_connectors(line, station));
-                free += on_x * r_x * self.dots[node][1] + of_u * self.dots[node][2];
-            }
-            row.among[i] += 1.0 / ((1.0 - s.alpha_m) * mass.mass_kg * s.c_a);
-            *row.free = free;
+        for i in 0..self.places.first_wheel {
+            let mass = self.places.list[i];
+            self.couple_mass(o, of, i, &mass);
         }
-        for (i, wheel) in (self.places.first_wheel..).zip(&self.places.wheels) {
-            let (row, of) = (self.block.row_mut(i), self.places.list[i]);
-            let mut free = wheel.known;
-            let slopes = &self.places.slopes[of.slopes.0..of.slopes.1];
-            for (&(node, w), (_, r_x, _)) in self.places.force[of.force.0..of.force.1].iter().zip(slopes) {
-                let DeckNode { line, station } = self.places.nodes[node];
-                let (there, damped) = (compliance.with_connectors(line, station), wheel.by_slope * r_x);
-                add_to(row.among, w + damped, &self.seen[node * nr..][..nr]);
-                add_to(row.of_links, w + damped, there);
-                add_to(row.on_links, w, there);
-                let [_, v, x] = self.dots[node];
-                free += (w * wheel.of_spring + damped) * x + w * wheel.of_damper * v;
-            }
-            *row.free = free;
+        for i in self.places.first_wheel..nr {
+            self.couple_wheel(o, of, i);
         }
-        let mut from = self.places.first_wheel;
-        for ride in rides.iter().filter(|ride| ride.is_awake()) {
-            let many = ride.wheels();
-            for w in 0..many {
-                let row = self.block.row_mut(from + w);
-                ride.add_among(w, &mut row.among[from..][..many]);
-                row.among[from + w] += self.places.wheels[from + w - self.places.first_wheel].own;
+        let first = self.places.first_wheel;
+        for &lane in &of.group.lanes {
+            let mut from = first;
+            for ride in lanes[lane].rides.iter().filter(|ride| ride.is_awake()) {
+                let many = ride.wheels();
+                for w in 0..many {
+                    for other in 0..many {
+                        if let Some(at) = self.block.beside_at(from + w, from + other) {
+                            *self.block.beside.at_mut(at, lane) = ride.among(w, other);
+                        }
+                    }
+                    *self.block.own.at_mut(from + w, lane) = self.wheels[lane][from + w - first].own;
+                }
+                from += many;
             }
-            from += many;
         }
+    }
+
+    #[inline(always)]
+    fn couple_mass<S: Simd>(&mut self, o: Ops<S>, of: OfGroup<'_>, i: usize, mass: &MovingMass) {
+        let (nr, s) = (self.places.list.len(), &of.constants.scheme);
+        let row = self.block.row_mut(i);
+        let [accelerations, velocities, places] = self.dots.each_ref().map(|of| of.vectors::<S>());
+        let mut free = o.splat(0.0);
+        for &(node, w) in &self.places.force[mass.force.0..mass.force.1] {
+            let DeckNode { line, station } = self.places.nodes[node];
+            add_to(row.among, w, &self.seen[node * nr..][..nr]);
+            let there = of.compliance.with_connectors(line, station);
+            add_to(row.of_links, w, there);
+            add_to(row.on_links, w, there);
+            free = o.fma(o.splat(w / s.c_a), accelerations[node], free);
+        }
+        let (speed, rate) = (mass.heading.speed_m_s, mass.heading.acceleration_m_s2);
+        let (on_x, on_xx) = (2.0 * speed / s.c_a, speed * speed / s.c_a);
+        for &(node, r_x, r_xx) in &self.places.slopes[mass.slopes.0..mass.slopes.1] {
+            let of_u = on_xx * r_xx + rate / s.c_a * r_x;
+            let (w, DeckNode { line, station }) = (on_x * s.c_v * r_x + of_u, self.places.nodes[node]);
+            add_to(row.among, w, &self.seen[node * nr..][..nr]);
+            add_to(row.of_links, w, of.compliance.with_connectors(line, station));
+            free = o.fma(
+                o.splat(on_x * r_x),
+                velocities[node],
+                o.fma(o.splat(of_u), places[node], free),
+            );
+        }
+        let per_load = o.splat((1.0 - s.alpha_m) * s.c_a * mass.mass_kg_n);
+        let own =
+            o.0.div_f64s(o.splat(1.0), o.mul(per_load, of.group.load_n::<S>(mass.vehicle)));
+        // lanes of other groups have no load
+        let mask = of.group.mask(o);
+        self.block.own.vectors_mut::<S>()[i] = o.0.select_f64s(mask, own, o.splat(1.0));
+        self.block.free.vectors_mut::<S>()[i] = o.0.select_f64s(mask, free, o.splat(0.0));
+    }
+
+    #[inline(always)]
+    fn couple_wheel<S: Simd>(&mut self, o: Ops<S>, group: OfGroup<'_>, i: usize) {
+        let nr = self.places.list.len();
+        let (number, of) = (i - self.places.first_wheel, self.places.list[i]);
+        let (wheel, row) = (&self.places.wheels[number], self.block.row_mut(i));
+        let [_, velocities, places] = self.dots.each_ref().map(|of| of.vectors::<S>());
+        let mut known = [0.0; MOST_LANES];
+        for &lane in &group.group.lanes {
+            known[lane] = self.wheels[lane][number].known;
+        }
+        let mut free = super::panel::lanes::<S>(&known)[0];
+        let slopes = &self.places.slopes[of.slopes.0..of.slopes.1];
+        for (&(node, w), (_, r_x, _)) in self.places.force[of.force.0..of.force.1].iter().zip(slopes) {
+            let DeckNode { line, station } = self.places.nodes[node];
+            let (there, damped) = (group.compliance.with_connectors(line, station), wheel.by_slope * r_x);
+            add_to(row.among, w + damped, &self.seen[node * nr..][..nr]);
+            add_to(row.of_links, w + damped, there);
+            add_to(row.on_links, w, there);
+            let of_place = o.splat(w * wheel.of_spring + damped);
+            free = o.fma(
+                o.splat(w * wheel.of_damper),
+                velocities[node],
+                o.fma(of_place, places[node], free),
+            );
+        }
+        let mask = group.group.mask(o);
+        self.block.own.vectors_mut::<S>()[i] = o.splat(1.0);
+        self.block.free.vectors_mut::<S>()[i] = o.0.select_f64s(mask, free, o.splat(0.0));
     }
 
     /// Number of wheels on springs; they are the last riders.
@@ -197,50 +231,47 @@ impl MovingMasses {
         self.places.wheels.len()
     }
 
-    /// Height of the deck under each wheel on springs at the step's end and its rate `[m, m/s]`, given the scaled forces of riders
-    /// and connectors.
+    /// Tells of each wheel on springs in a lane how high the deck under it is at the step's end, and its rate `[m, m/s]`; the nodes have
+    /// moved, see [`Self::move_nodes`].
     #[inline(always)]
     pub(super) fn under_wheels(
-        &mut self,
-        compliance: &WheelCompliance,
+        &self,
+        lane: usize,
         constants: &StepConstants,
-        scaled: &[f64],
-        connectors: &[f64],
         mut tell: impl FnMut(usize, &WheelOnDeck, [f64; 2]),
     ) {
-        let (nr, s) = (self.places.list.len(), &constants.scheme);
-        for (node, DeckNode { line, station }) in self.places.nodes.iter().enumerate() {
-            let from_riders = dot(&self.seen[node * nr..][..nr], scaled);
-            let from_connectors = dot(compliance.with_connectors(*line, *station), connectors);
-            self.on_nodes[node] = from_riders + from_connectors;
-        }
+        let c_v = constants.scheme.c_v;
+        let at = |of: &LaneArray, node: usize| of.at(node, lane);
+        let [_, velocities, places] = &self.dots;
         for (number, of) in self.places.list[self.places.first_wheel..].iter().enumerate() {
             let (mut height_m, mut rate_m_s) = (0.0, 0.0);
             for &(node, w) in &self.places.force[of.force.0..of.force.1] {
-                let ([_, v, x], down) = (self.dots[node], self.on_nodes[node]);
-                height_m += w * (x - down);
-                rate_m_s += w * (v - s.c_v * down);
+                let down = at(&self.on_nodes, node);
+                height_m += w * (at(places, node) - down);
+                rate_m_s += w * (at(velocities, node) - c_v * down);
             }
             for &(node, r_x, _) in &self.places.slopes[of.slopes.0..of.slopes.1] {
-                rate_m_s += of.heading.speed_m_s * r_x * (self.dots[node][2] - self.on_nodes[node]);
+                rate_m_s += of.heading.speed_m_s * r_x * (at(places, node) - at(&self.on_nodes, node));
             }
-            tell(number, &self.places.wheels[number], [height_m, rate_m_s]);
+            tell(number, &self.wheels[lane][number], [height_m, rate_m_s]);
         }
     }
 
     /// Free motion of the nodes, without new connector and inertia forces.
     #[inline(always)]
-    fn free_nodes(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, free: &FreeMotion) {
-        let all = self.needs_motion();
-        self.dots.clear();
-        for node in &self.places.nodes {
-            let phi = &wheels.influence(*node)[..modes];
-            let [a, v, x] = self.local.free(*node, &constants.scheme);
-            self.dots.push(if all {
-                [a + dot(phi, &free.a), v + dot(phi, &free.v), x + dot(phi, &free.q)]
-            } else {
-                [a + dot(phi, &free.a), 0.0, 0.0]
-            });
+    fn free_nodes<S: Simd>(&mut self, o: Ops<S>, of: OfGroup<'_>, [q, v, a]: &[LaneArray; 3]) {
+        let (all, m) = (self.needs_motion(), of.constants.c.len());
+        let newmark = Newmark::of(o, &of.constants.scheme);
+        let lane = of.group.first();
+        let [to_a, to_v, to_x] = self.dots.each_mut().map(|of| of.vectors_mut::<S>());
+        for (i, node) in self.places.nodes.iter().enumerate() {
+            let phi = &of.wheels.influence(*node)[..m];
+            let [local_a, local_v, local_x] = self.next.free(o, lane, *node, &newmark);
+            to_a[i] = o.add(local_a, sum_of_modes(o, phi, a));
+            if all {
+                to_v[i] = o.add(local_v, sum_of_modes(o, phi, v));
+                to_x[i] = o.add(local_x, sum_of_modes(o, phi, q));
+            }
         }
     }
 
@@ -292,123 +323,171 @@ impl MovingMasses {
         }
     }
 
-    /// Follows the nodes near the vehicle, see [`LocalResidual::follow`].
+    /// Follows the nodes near the vehicles of a group, see [`LocalResidual::follow`]; of each of its lanes the forces of masses and of
+    /// springs in the last step, and those of the connectors.
     #[inline(always)]
-    pub(super) fn follow(
-        &mut self,
-        wheels: &WheelLines,
-        constants: &StepConstants,
-        modes: usize,
-        pressing: StepForces,
-    ) {
-        self.next
-            .follow(&self.local, &self.places.nodes, wheels, constants, modes, pressing);
-        std::mem::swap(&mut self.local, &mut self.next);
-    }
-
-    /// Back to before [`MovingMasses::follow`], for a step that did not settle.
-    pub(super) fn unfollow(&mut self) {
-        std::mem::swap(&mut self.local, &mut self.next);
-    }
-
-    /// Takes the nodes near the vehicle to the end of the step, see [`LocalResidual::lead`].
-    #[inline(always)]
-    pub(super) fn lead(&mut self, wheels: &WheelLines, constants: &StepConstants, modes: usize, found: StepForces) {
-        self.local.lead(wheels, constants, modes, found);
-    }
-
-    /// The nodes near the vehicle.
-    pub(super) fn local_residual(&self) -> &LocalResidual {
-        &self.local
-    }
-
-    /// Puts them back.
-    pub(super) fn put_local_residual(&mut self, saved: &LocalResidual) {
-        self.local.clone_from(saved);
-    }
-
-    /// No nodes near a vehicle.
-    pub(super) fn leave(&mut self) {
-        self.local.clear();
-    }
-
-    /// Force on each node from the masses' scaled forces times `factor`: line, station, force.
-    #[inline(always)]
-    pub(super) fn masses_on_nodes(&mut self, scaled: &[f64], factor: f64, forces: &mut Vec<StationForce>) {
-        self.put_on_nodes((0, self.places.first_wheel), scaled, factor, forces);
-    }
-
-    /// Force on each node from the scaled forces of wheels on springs times `factor`.
-    #[inline(always)]
-    pub(super) fn springs_on_nodes(&mut self, scaled: &[f64], factor: f64, forces: &mut Vec<StationForce>) {
-        self.put_on_nodes(
-            (self.places.first_wheel, self.places.list.len()),
-            scaled,
-            factor,
-            forces,
-        );
-    }
-
-    #[inline(always)]
-    fn put_on_nodes(
-        &mut self,
-        (from, end): (usize, usize),
-        scaled: &[f64],
-        factor: f64,
-        forces: &mut Vec<StationForce>,
-    ) {
-        if from == end {
-            return;
+    pub(super) fn follow<S: Simd>(&mut self, o: Ops<S>, of: OfGroup<'_>, lanes: &[Lane], n: &LaneArray) {
+        let mut before: [[&[StationForce]; 2]; MOST_LANES] = [[&[]; 2]; MOST_LANES];
+        for (before, &lane) in before.iter_mut().zip(&of.group.lanes) {
+            let (masses, springs) = lanes[lane].rider_forces.split_at(lanes[lane].first_spring);
+            *before = [masses, springs];
         }
-        let nn = self.places.nodes.len();
-        self.on_nodes[..nn].fill(0.0);
-        for (mass, q) in self.places.list[from..end].iter().zip(&scaled[from..end]) {
-            for &(node, w) in &self.places.force[mass.force.0..mass.force.1] {
-                self.on_nodes[node] += w * q;
+        let nodes = &self.places.nodes;
+        self.next
+            .follow(o, &self.local, of.group, nodes, (of.wheels, of.constants), (&before, n));
+    }
+
+    /// No nodes near a lane's vehicles at the end of the step.
+    pub(super) fn leave(&mut self, lane: usize) {
+        self.next.clear(lane);
+    }
+
+    /// Begins a step in the only lane with the nodes of a lane of others.
+    #[inline(always)]
+    pub(super) fn begin_alone(&mut self, (from, lane): (&Self, usize)) {
+        self.local.take_lane(0, (&from.local, lane));
+        self.next.clear(0);
+    }
+
+    /// Takes what the only lane of others has at the end of the step.
+    #[inline(always)]
+    pub(super) fn take_alone(&mut self, lane: usize, from: &Self) {
+        self.next.take_lane(lane, (&from.next, 0));
+    }
+
+    /// Ends the step of all lanes.
+    pub(super) fn end_step(&mut self) {
+        std::mem::swap(&mut self.local, &mut self.next);
+    }
+
+    /// Whether two lanes have the same nodes before the step.
+    pub(super) fn alike(&self, lane: usize, other: usize) -> bool {
+        self.local.alike(lane, other)
+    }
+
+    /// Puts the scaled forces of the riders on nodes, and moves these by them and by the scaled forces of the links that are active.
+    #[inline(always)]
+    pub(super) fn move_nodes<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        compliance: &WheelCompliance,
+        scaled: &LaneArray,
+        (active, links): (&[usize], &LaneArray),
+    ) {
+        let (nr, nodes) = (self.places.list.len(), &self.places.nodes);
+        let (scaled, links) = (&scaled.vectors::<S>()[..nr], links.vectors::<S>());
+        let (masses, springs) = (self.by_masses.vectors_mut::<S>(), self.by_springs.vectors_mut::<S>());
+        let zero = o.splat(0.0);
+        masses[..nodes.len()].fill(zero);
+        springs[..nodes.len()].fill(zero);
+        for (i, (of, q)) in self.places.list.iter().zip(scaled).enumerate() {
+            let to = if i < self.places.first_wheel {
+                &mut *masses
+            } else {
+                &mut *springs
+            };
+            for &(node, w) in &self.places.force[of.force.0..of.force.1] {
+                to[node] = o.fma(o.splat(w), *q, to[node]);
             }
         }
-        for (node, f) in self.places.nodes.iter().zip(&self.on_nodes) {
-            forces.push((node.line, node.station, factor * f));
-        }
-    }
-
-    /// Adds each axle's force beyond its weight to `axles`: inertia force `m u''`, force of springs, given the scaled forces of
-    /// riders and connectors.
-    #[inline(always)]
-    pub(super) fn add_forces(
-        &mut self,
-        compliance: &WheelCompliance,
-        constants: &StepConstants,
-        scaled: &[f64],
-        connectors: &[f64],
-        axles: &mut [f64],
-    ) {
-        let (nr, s) = (self.places.list.len(), &constants.scheme);
-        if self.places.needs_motion() {
-            self.add_own_forces(s, scaled, axles);
-        }
-        if self.places.points.is_empty() {
+        if self.places.points.is_empty() && self.places.wheels.is_empty() {
             return;
         }
-        for (node, DeckNode { line, station }) in self.places.nodes.iter().enumerate() {
-            let from_riders = dot(&self.seen[node * nr..][..nr], scaled);
-            let from_connectors = dot(compliance.with_connectors(*line, *station), connectors);
-            self.on_nodes[node] = self.dots[node][0] - s.c_a * (from_riders + from_connectors);
-        }
-        for p in &self.places.points {
-            let (left, right) = (self.on_nodes[p.node], self.on_nodes[p.node + 1]);
-            axles[p.axle] += p.mass_kg * ((1.0 - p.part) * left + p.part * right);
+        let moved = self.on_nodes.vectors_mut::<S>();
+        for (i, DeckNode { line, station }) in nodes.iter().enumerate() {
+            let mut down = zero;
+            for (seen, q) in self.seen[i * nr..][..nr].iter().zip(scaled) {
+                down = o.fma(o.splat(*seen), *q, down);
+            }
+            let seen = compliance.with_connectors(*line, *station);
+            for &link in active {
+                down = o.fma(o.splat(seen[link]), links[link], down);
+            }
+            moved[i] = down;
         }
     }
 
-    /// Adds forces that riders have by themselves: of patches and of wheels on springs.
-    fn add_own_forces(&self, s: &Scheme, scaled: &[f64], axles: &mut [f64]) {
-        for (wheel, q) in self.places.list.iter().zip(scaled).skip(self.places.first_wheel) {
-            axles[wheel.axle] += q / (1.0 - s.alpha_f);
+    /// Adds each axle's force beyond its weight to `axles`: inertia force `m u''`, force of springs, given the scaled forces of riders.
+    #[inline(always)]
+    pub(super) fn add_forces<S: Simd>(&self, o: Ops<S>, of: OfGroup<'_>, scaled: &LaneArray, axles: &mut LaneArray) {
+        let s = &of.constants.scheme;
+        let (axles, scaled) = (axles.vectors_mut::<S>(), scaled.vectors::<S>());
+        let [by_m, by_f] = [1.0 / (1.0 - s.alpha_m), 1.0 / (1.0 - s.alpha_f)].map(|factor| o.splat(factor));
+        for (i, rider) in self.places.list.iter().enumerate() {
+            // patches and wheels on springs have forces by themselves
+            let factor = match i < self.places.first_wheel {
+                true if rider.slopes.0 == rider.slopes.1 => continue,
+                true => by_m,
+                false => by_f,
+            };
+            axles[rider.axle] = o.fma(factor, scaled[i], axles[rider.axle]);
         }
-        let patches = self.places.list[..self.places.first_wheel].iter().zip(scaled);
-        for (mass, q) in patches.filter(|(mass, _)| mass.slopes.0 != mass.slopes.1) {
-            axles[mass.axle] += q / (1.0 - s.alpha_m);
+        let (free, moved, c_a) = (
+            self.dots[0].vectors::<S>(),
+            self.on_nodes.vectors::<S>(),
+            o.splat(s.c_a),
+        );
+        for p in &self.places.points {
+            let left = o.less(free[p.node], c_a, moved[p.node]);
+            let right = o.less(free[p.node + 1], c_a, moved[p.node + 1]);
+            let between = o.fma(o.splat(1.0 - p.part), left, o.mul(o.splat(p.part), right));
+            let mass = o.mul(o.splat(p.mass_kg_n), of.group.load_n::<S>(p.vehicle));
+            axles[p.axle] = o.fma(mass, between, axles[p.axle]);
         }
     }
+
+    /// Forces of masses and of wheels on springs on nodes.
+    pub(super) fn forces(&self, constants: &StepConstants) -> [NodeForces<'_>; 2] {
+        node_forces(&self.places, [&self.by_masses, &self.by_springs], constants)
+    }
+
+    /// Takes the nodes near the vehicles to the end of the step in the lanes of a mask, see [`LocalResidual::lead`].
+    #[inline(always)]
+    pub(super) fn lead<S: Simd>(&mut self, o: Ops<S>, of: OfGroup<'_>, mask: S::m64s, n: &LaneArray) {
+        let forces = node_forces(&self.places, [&self.by_masses, &self.by_springs], of.constants);
+        let lane = of.group.first();
+        self.next.lead(o, (lane, mask), (of.wheels, of.constants), forces, n);
+    }
+
+    /// The nodes near vehicles.
+    pub(super) fn local_residual(&mut self) -> &mut LocalResidual {
+        &mut self.local
+    }
+}
+
+/// Forces of masses and of wheels on springs on nodes.
+#[inline(always)]
+fn node_forces<'a>(
+    places: &'a RidingPlaces,
+    [masses, springs]: [&'a LaneArray; 2],
+    constants: &StepConstants,
+) -> [NodeForces<'a>; 2] {
+    let s = &constants.scheme;
+    let of = |there: bool, forces: &'a LaneArray, alpha: f64| NodeForces {
+        nodes: if there { &places.nodes } else { &[] },
+        forces,
+        factor: 1.0 / (1.0 - alpha),
+    };
+    [
+        of(places.first_wheel > 0, masses, s.alpha_m),
+        of(!places.wheels.is_empty(), springs, s.alpha_f),
+    ]
+}
+
+/// `phi x` over the modes, in four running sums.
+#[inline(always)]
+fn sum_of_modes<S: Simd>(o: Ops<S>, phi: &[f64], x: &LaneArray) -> S::f64s {
+    let x = x.vectors::<S>();
+    let mut sums = [o.splat(0.0); 4];
+    let (phi_4, phi_rest) = phi.as_chunks::<4>();
+    let (x_4, x_rest) = x[..phi.len()].as_chunks::<4>();
+    for (phi, x) in phi_4.iter().zip(x_4) {
+        for i in 0..4 {
+            sums[i] = o.fma(o.splat(phi[i]), x[i], sums[i]);
+        }
+    }
+    for (phi, x) in phi_rest.iter().zip(x_rest) {
+        sums[0] = o.fma(o.splat(*phi), *x, sums[0]);
+    }
+    o.add(o.add(sums[0], sums[1]), o.add(sums[2], sums[3]))
 }

@@ -127,7 +127,7 @@ impl Pins {
     ) {
         let s = &constants.scheme;
         let (f, m) = (Mean::<S>::of(o, s.alpha_f), Mean::<S>::of(o, s.alpha_m));
-        let [a, b] = [constants.rayleigh.a, constants.rayleigh.b].map(|x| o.splat(x));
+        let (a, b) = (o.splat(constants.rayleigh.a), o.splat(constants.rayleigh.b));
         let [q, v, acceleration] = modes.motion().map(|of| of.vectors::<S>());
         let [old_q, old_v, old_a] = self.old.each_ref().map(|of| of.vectors::<S>());
         let count = q.len();

@@ -2,6 +2,8 @@
 //!
 //! Knows one lane's deck corners in plain numbers. Does not know vectors: these tell when there is something to note.
 
+use super::lane_array::LaneArray;
+use super::lane_group::LaneGroup;
 use super::wheel_lines::WheelLines;
 use crate::response::{LeastContact, PlacedPeak};
 
@@ -41,13 +43,19 @@ impl Placed {
         }
     }
 
-    /// Notes the smallest force of an axle that is whole on the bridge: weight and whether it has settled, inertia.
+    /// Notes the smallest force of an axle that is whole on the bridge in a lane of a group: its weight, and what is beyond that.
     #[inline(always)]
-    pub(super) fn note_axles(&mut self, time_s: f64, wheels: &WheelLines, axles: &[(f64, bool)], inertia: &[f64]) {
-        for (axle, (&(weight, whole), inertia)) in axles.iter().zip(inertia).enumerate() {
-            if whole {
-                self.least_contact
-                    .take(weight + inertia, time_s, || wheels.axle_place(axle));
+    pub(super) fn note_axles(
+        &mut self,
+        time_s: f64,
+        wheels: &WheelLines,
+        (lane, group): (usize, &LaneGroup),
+        beyond: &LaneArray,
+    ) {
+        for (axle, of) in group.axles.iter().enumerate() {
+            if of.is_settled {
+                let force_n = of.share * group.load_in(of.vehicle, lane) + beyond.at(axle, lane);
+                self.least_contact.take(force_n, time_s, || wheels.axle_place(axle));
             }
         }
     }

@@ -1,9 +1,12 @@
-//! What rides along, as the contact system sees it: one dense block of rows a vehicle.
+//! What rides along, as the contact system sees it: one dense block of rows for vehicles at one place.
 //!
-//! Knows rows on riders and on links. Does not know what rides or what a link is.
+//! Knows rows on riders and on links, which hang on places alone, and what lanes have of their own. Does not know what rides or what
+//! a link is.
 
-/// The rows of one vehicle's riders, each measured in displacement: `A q' + A_links N' = free`, q' and N' the scaled forces of
-/// riders and links; links see `A_on q'` of the riders.
+use super::lane_array::LaneArray;
+
+/// The rows of riders, each measured in displacement: `A q' + A_links N' = free`, q' and N' the scaled forces of riders and links;
+/// links see `A_on q'` of the riders.
 /// Equation (C1).
 #[derive(Debug)]
 pub(super) struct RiderBlock {
@@ -13,7 +16,12 @@ pub(super) struct RiderBlock {
     among: Vec<f64>,
     of_links: Vec<f64>,
     on_links: Vec<f64>,
-    free: Vec<f64>,
+    /// What each lane has beside: on the diagonal of A, and among the riders from `first_beside` on.
+    pub(super) own: LaneArray,
+    pub(super) beside: LaneArray,
+    first_beside: usize,
+    /// The riders' measures without new forces.
+    pub(super) free: LaneArray,
 }
 
 /// One rider's row, to be written.
@@ -24,13 +32,11 @@ pub(super) struct RiderRow<'a> {
     pub of_links: &'a mut [f64],
     /// What links see of it; empty where that is what it sees of them.
     pub on_links: &'a mut [f64],
-    /// Its measure without new forces.
-    pub free: &'a mut f64,
 }
 
 impl RiderBlock {
     /// Room for so many riders beside so many links.
-    pub(super) fn new(riders: usize, links: usize) -> Self {
+    pub(super) fn new(riders: usize, links: usize, lanes: usize) -> Self {
         Self {
             riders: 0,
             links,
@@ -38,19 +44,24 @@ impl RiderBlock {
             among: vec![0.0; riders * riders],
             of_links: vec![0.0; riders * links],
             on_links: vec![0.0; riders * links],
-            free: vec![0.0; riders],
+            own: LaneArray::new(riders, lanes),
+            beside: LaneArray::new(riders * riders, lanes),
+            first_beside: 0,
+            free: LaneArray::new(riders, lanes),
         }
     }
 
-    /// Begins a block of zeros; a symmetric one sees of links what they see of it.
+    /// Begins a block of zeros; a symmetric one sees of links what they see of it. Lanes have something beside from a rider on.
     #[inline(always)]
-    pub(super) fn begin(&mut self, riders: usize, symmetric: bool) {
-        (self.riders, self.symmetric) = (riders, symmetric);
+    pub(super) fn begin(&mut self, riders: usize, symmetric: bool, first_beside: usize) {
+        (self.riders, self.symmetric, self.first_beside) = (riders, symmetric, first_beside);
         self.among[..riders * riders].fill(0.0);
         self.of_links[..riders * self.links].fill(0.0);
         if !symmetric {
             self.on_links[..riders * self.links].fill(0.0);
         }
+        let many = riders - first_beside;
+        self.beside.clear_rows(many * many);
     }
 
     /// A rider's row, to be written.
@@ -61,15 +72,21 @@ impl RiderBlock {
             among: &mut self.among[i * self.riders..][..self.riders],
             of_links: &mut self.of_links[i * self.links..][..self.links],
             on_links: &mut self.on_links[i * self.links..][..on_links],
-            free: &mut self.free[i],
         }
     }
 
-    /// Adds to the measure of each rider what it sees of scaled forces of links.
-    pub(super) fn add_links(&mut self, scaled: &[f64]) {
+    /// Row of what lanes have beside between two riders; none where they have nothing.
+    #[inline(always)]
+    pub(super) fn beside_at(&self, i: usize, j: usize) -> Option<usize> {
+        let (i, j) = (i.checked_sub(self.first_beside)?, j.checked_sub(self.first_beside)?);
+        Some(i * (self.riders - self.first_beside) + j)
+    }
+
+    /// Adds to the measure of each rider what it sees of scaled forces of links, in one lane.
+    pub(super) fn add_links(&mut self, lane: usize, scaled: &[f64]) {
         for i in 0..self.riders {
             let of_links = &self.of_links[i * self.links..][..self.links];
-            self.free[i] += of_links
+            *self.free.at_mut(i, lane) += of_links
                 .iter()
                 .zip(scaled)
                 .map(|(seen, force)| seen * force)
@@ -108,11 +125,5 @@ impl RiderBlock {
             return self.of_links(i);
         }
         &self.on_links[i * self.links..][..self.links]
-    }
-
-    /// The riders' measures without new forces.
-    #[inline(always)]
-    pub(super) fn free(&self) -> &[f64] {
-        &self.free[..self.riders]
     }
 }

@@ -72,10 +72,15 @@ impl LaneRide {
         self.step = Arc::clone(step);
     }
 
-    /// Begins a step that ends at a time: the vehicle's motion without new forces of its wheels.
+    /// Looks whether it is there at a time, the end of the coming step.
     #[inline(always)]
-    pub(super) fn begin_step(&mut self, time_s: f64, placement: &VehiclePlacement) {
+    pub(super) fn wake(&mut self, time_s: f64) {
         self.awake = self.presence.holds(time_s);
+    }
+
+    /// Begins a step: the vehicle's motion without new forces of its wheels.
+    #[inline(always)]
+    pub(super) fn begin_step(&mut self, placement: &VehiclePlacement) {
         if self.awake {
             self.step.predict(&self.ride, driven_m_s2(placement), &mut self.free);
         }
@@ -118,12 +123,10 @@ impl LaneRide {
         }
     }
 
-    /// Adds what a wheel sees of each of the vehicle's wheels beside the deck (V4).
+    /// What a wheel sees of another of the vehicle's wheels beside the deck (V4).
     #[inline(always)]
-    pub(super) fn add_among(&self, wheel: usize, row: &mut [f64]) {
-        for (other, to) in row.iter_mut().enumerate() {
-            *to += self.step.among[(wheel, other)] / self.scale;
-        }
+    pub(super) fn among(&self, wheel: usize, other: usize) -> f64 {
+        self.step.among[(wheel, other)] / self.scale
     }
 
     /// Whether each wheel pressed at the last step.

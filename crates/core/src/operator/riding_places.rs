@@ -1,4 +1,4 @@
-//! Where what rides along in one lane is: nodes of the deck, masses, wheels on springs, and their rows on nodes.
+//! Where what rides along in lanes that go together is: nodes of the deck, masses, wheels on springs, and their rows on nodes.
 //!
 //! Knows the vehicles' places at one instant, laid out once so that a step allocates nothing. Does not know flexibilities or the
 //! scheme.
@@ -12,8 +12,9 @@ use crate::vehicle::{GRAVITY_M_S2, Inertia};
 /// A mass or a wheel on its spring, and its rows on nodes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MovingMass {
-    /// Mass; 0 of a wheel `[kg]`.
-    pub mass_kg: f64,
+    /// Mass for a unit load of its vehicle; 0 of a wheel `[kg/N]`.
+    pub mass_kg_n: f64,
+    pub vehicle: usize,
     pub axle: usize,
     /// Speed and acceleration along x.
     pub heading: Heading,
@@ -38,7 +39,9 @@ pub(super) struct MassRun {
 pub(super) struct MassPoint {
     pub node: usize,
     pub part: f64,
-    pub mass_kg: f64,
+    /// Mass for a unit load of its vehicle `[kg/N]`.
+    pub mass_kg_n: f64,
+    pub vehicle: usize,
     pub axle: usize,
 }
 
@@ -49,6 +52,7 @@ pub(super) struct RidingPlaces {
     /// Masses, behind them wheels on springs; the first of these.
     pub(super) list: Vec<MovingMass>,
     pub(super) first_wheel: usize,
+    /// Wheels of the lane that stands for its group: what of them is no lane's own.
     pub(super) wheels: Vec<WheelOnDeck>,
     pub(super) points: Vec<MassPoint>,
     pub(super) force: Vec<(usize, f64)>,
@@ -70,16 +74,9 @@ impl RidingPlaces {
         }
     }
 
-    /// Puts what rides along where it is: nodes, masses, wheels on springs and their rows.
+    /// Nothing rides along.
     #[inline(always)]
-    pub(super) fn place(
-        &mut self,
-        wheels: &WheelLines,
-        track: &Track,
-        loads_n: impl Fn(usize) -> f64,
-        placements: &[VehiclePlacement],
-        rides: &[LaneRide],
-    ) {
+    pub(super) fn clear(&mut self) {
         self.nodes.clear();
         self.list.clear();
         self.wheels.clear();
@@ -88,15 +85,28 @@ impl RidingPlaces {
         self.slopes.clear();
         self.runs.clear();
         self.nexts.clear();
+        self.first_wheel = 0;
+    }
+
+    /// Puts what rides along where it is: nodes, masses, wheels on springs and their rows.
+    #[inline(always)]
+    pub(super) fn place(
+        &mut self,
+        wheels: &WheelLines,
+        track: &Track,
+        placements: &[VehiclePlacement],
+        rides: &[LaneRide],
+    ) {
+        self.clear();
         for (number, (of, placement)) in wheels.vehicles.iter().zip(placements).enumerate() {
             match of.vehicle.inertia {
                 Inertia::None => {}
                 Inertia::Local => {
                     for (line, points) in &of.masses {
-                        self.place_line(*line, points, loads_n(number), placement);
+                        self.place_line(*line, points, number, placement);
                     }
                 }
-                Inertia::Convective => self.place_patches(of, track, loads_n(number), placement),
+                Inertia::Convective => self.place_patches(of, track, number, placement),
             }
         }
         // rows of any form are looked at one by one
@@ -141,7 +151,8 @@ impl RidingPlaces {
                 }
             }
             self.list.push(MovingMass {
-                mass_kg: 0.0,
+                mass_kg_n: 0.0,
+                vehicle: ride.vehicle,
                 axle: of.first_axle + patch.axle,
                 heading: placement.heading,
                 force: (forces, self.force.len()),
@@ -159,22 +170,23 @@ impl RidingPlaces {
 
     /// `u''` of the deck under each point: the line's mass matrix and its factors.
     #[inline(always)]
-    fn place_line(&mut self, line: usize, points: &[LinePoint], load_n: f64, placement: &VehiclePlacement) {
-        let first = self.gather_line(points, load_n, placement);
+    fn place_line(&mut self, line: usize, points: &[LinePoint], vehicle: usize, placement: &VehiclePlacement) {
+        let first = self.gather_line(points, vehicle, placement);
         let base = self.nodes.len();
         for at in 0..self.line.stations() {
             let station = first + at;
             self.nodes.push(DeckNode { line, station });
-            let [mass_kg, next] = self.line.factor(at);
-            if mass_kg > 0.0 {
-                self.add_mass(DeckNode { line, station }, base + at, mass_kg, next, placement.heading);
+            let [mass_kg_n, next] = self.line.factor(at);
+            if mass_kg_n > 0.0 {
+                let mass = (vehicle, mass_kg_n, placement.heading);
+                self.add_mass(DeckNode { line, station }, base + at, mass, next);
             }
         }
     }
 
-    /// The mass matrix of a line's points, and its first station.
+    /// The mass matrix of a line's points for a unit load of their vehicle, and its first station.
     #[inline(always)]
-    fn gather_line(&mut self, points: &[LinePoint], load_n: f64, placement: &VehiclePlacement) -> usize {
+    fn gather_line(&mut self, points: &[LinePoint], vehicle: usize, placement: &VehiclePlacement) -> usize {
         self.line.clear();
         let base = self.nodes.len();
         let mut first = 0;
@@ -185,12 +197,13 @@ impl RidingPlaces {
             if self.line.stations() == 0 {
                 first = cell.station;
             }
-            let (at, mass_kg) = (cell.station - first, point.share * load_n / GRAVITY_M_S2);
-            self.line.add(at, cell.fraction, mass_kg);
+            let (at, mass_kg_n) = (cell.station - first, point.share / GRAVITY_M_S2);
+            self.line.add(at, cell.fraction, mass_kg_n);
             self.points.push(MassPoint {
                 node: base + at,
                 part: cell.fraction,
-                mass_kg,
+                mass_kg_n,
+                vehicle,
                 axle: point.axle,
             });
         }
@@ -203,14 +216,13 @@ impl RidingPlaces {
         &mut self,
         DeckNode { line, station }: DeckNode,
         node: usize,
-        mass_kg: f64,
+        (vehicle, mass_kg_n, heading): (usize, f64, Heading),
         next: f64,
-        heading: Heading,
     ) {
         let from = self.force.len();
         self.force.push((node, 1.0));
         if next != 0.0 {
-            self.force.push((node + 1, next / mass_kg));
+            self.force.push((node + 1, next / mass_kg_n));
         }
         match self.runs.last_mut() {
             Some(run) if run.line == line && run.first + run.count == station => run.count += 1,
@@ -221,9 +233,10 @@ impl RidingPlaces {
                 count: 1,
             }),
         }
-        self.nexts.push(next / mass_kg);
+        self.nexts.push(next / mass_kg_n);
         self.list.push(MovingMass {
-            mass_kg,
+            mass_kg_n,
+            vehicle,
             axle: 0,
             heading,
             force: (from, self.force.len()),
@@ -234,7 +247,7 @@ impl RidingPlaces {
     /// The patches' means, measured by `r u'' + 2 V r_x u' + V^2 r_xx u`; the derivatives are differences of the row and of
     /// its slope between the ends of the patch.
     #[inline(always)]
-    fn place_patches(&mut self, of: &VehicleLines, track: &Track, load_n: f64, placement: &VehiclePlacement) {
+    fn place_patches(&mut self, of: &VehicleLines, track: &Track, vehicle: usize, placement: &VehiclePlacement) {
         for (patch, lines) in of.vehicle.patches.iter().zip(&of.points) {
             let share = placement.share_on(patch);
             if share <= 0.0 || patch.rigid == 0.0 {
@@ -275,7 +288,8 @@ impl RidingPlaces {
                 }
             }
             self.list.push(MovingMass {
-                mass_kg: load_n * (share * patch.rigid) / GRAVITY_M_S2,
+                mass_kg_n: share * patch.rigid / GRAVITY_M_S2,
+                vehicle,
                 axle: of.first_axle + patch.axle,
                 heading: placement.heading,
                 force: (forces, self.force.len()),

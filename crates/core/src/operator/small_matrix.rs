@@ -1,134 +1,82 @@
-//! A small dense matrix that is factored without pivots, in memory laid out once.
+//! Small dense matrices side by side, one a lane, that are factored without pivots in memory laid out once.
 //!
 //! Knows rows and factors. Does not know what the numbers mean.
+//!
+//! A row and column that couple with no other change nothing else, to the last bit: a lane may leave unknowns out by them.
 
-/// Entries that are computed at once.
-const CHUNK: usize = 4;
+use super::lane_array::LaneArray;
+use super::vector::Ops;
+use crate::scheme::Arithmetic;
+use pulp::Simd;
 
-/// Room for a matrix of the largest order, and for its factors. Rows are `stride` apart, a multiple of [`CHUNK`]. Row
-/// operations run over whole chunks: what they do beyond the order asked for is never read.
+/// Room for matrices of the largest order, and for their factors.
 #[derive(Debug)]
 pub(super) struct SmallMatrix {
-    /// The matrix, then U.
-    entries: Vec<f64>,
-    /// L by columns, without its unit diagonal.
-    lower: Vec<f64>,
+    /// The matrix, then U with L below it, without its unit diagonal.
+    entries: LaneArray,
+    /// One over the diagonal of U.
+    inverse: LaneArray,
     stride: usize,
 }
 
 impl SmallMatrix {
     /// Room for matrices up to an order.
-    pub(super) fn new(order: usize) -> Self {
-        let stride = order.next_multiple_of(CHUNK);
+    pub(super) fn new(order: usize, lanes: usize) -> Self {
         Self {
-            entries: vec![0.0; stride * stride],
-            lower: vec![0.0; stride * stride],
-            stride,
+            entries: LaneArray::new(order * order, lanes),
+            inverse: LaneArray::new(order, lanes),
+            stride: order,
         }
     }
 
     /// The first `n` entries of a row, to be written.
     #[inline(always)]
-    pub(super) fn row_mut(&mut self, i: usize, n: usize) -> &mut [f64] {
-        &mut self.entries[i * self.stride..][..n]
+    pub(super) fn row_mut<S: Simd>(&mut self, i: usize, n: usize) -> &mut [S::f64s] {
+        &mut self.entries.vectors_mut::<S>()[i * self.stride..][..n]
     }
 
-    /// `A = L U` of the matrix of order `n` that was written. Of a symmetric one the upper half is enough.
+    /// `A = L U` of the matrices of order `n` that were written. Of symmetric ones the upper half is enough.
     #[inline(always)]
-    pub(super) fn factor(&mut self, n: usize, symmetric: bool) {
-        let (a, lower) = (&mut self.entries[..], &mut self.lower[..]);
-        if symmetric {
-            factor_symmetric(a, lower, self.stride, n);
-        } else {
-            factor(a, lower, self.stride, n);
+    pub(super) fn factor<S: Simd>(&mut self, o: Ops<S>, n: usize, symmetric: bool) {
+        let (stride, one) = (self.stride, o.splat(1.0));
+        let (a, inverse) = (self.entries.vectors_mut::<S>(), self.inverse.vectors_mut::<S>());
+        for p in 0..n {
+            let pivot = o.0.div_f64s(one, a[p * stride + p]);
+            inverse[p] = pivot;
+            let (upper, below) = a.split_at_mut((p + 1) * stride);
+            let row = &upper[p * stride..][..n];
+            for (i, other) in (p + 1..n).zip(below.chunks_mut(stride)) {
+                let (first, l) = if symmetric {
+                    (i, o.mul(row[i], pivot))
+                } else {
+                    (p + 1, o.mul(other[p], pivot))
+                };
+                for (x, y) in other[first..n].iter_mut().zip(&row[first..]) {
+                    *x = o.less(*x, l, *y);
+                }
+                other[p] = l;
+            }
         }
     }
 
-    /// `x := (L U)^-1 x`, of the order that x has.
+    /// `x := (L U)^-1 x`, of the order that x has. Unknown after unknown, so that one that is left out does not change the order of
+    /// a sum.
     #[inline(always)]
-    pub(super) fn solve(&self, x: &mut [f64]) {
+    pub(super) fn solve<S: Simd>(&self, o: Ops<S>, x: &mut [S::f64s]) {
         let (n, stride) = (x.len(), self.stride);
+        let (a, inverse) = (self.entries.vectors::<S>(), self.inverse.vectors::<S>());
         for p in 0..n {
-            let (known, left) = x.split_at_mut(p + 1);
-            subtract(left, known[p], &self.lower[p * stride + p + 1..][..n - p - 1]);
+            let known = x[p];
+            for i in p + 1..n {
+                x[i] = o.less(x[i], a[i * stride + p], known);
+            }
         }
         for i in (0..n).rev() {
-            let row = &self.entries[i * stride..][..n];
-            let sum = dot_in_chunks(&row[i + 1..], &x[i + 1..]);
-            x[i] = (x[i] - sum) / row[i];
-        }
-    }
-}
-
-/// `x := x - w y`.
-#[inline(always)]
-pub(super) fn subtract(x: &mut [f64], w: f64, y: &[f64]) {
-    for (x, y) in x.iter_mut().zip(y) {
-        *x = (-w).mul_add(*y, *x);
-    }
-}
-
-/// `a . x` in as many running sums as a chunk has.
-#[inline(always)]
-fn dot_in_chunks(a: &[f64], x: &[f64]) -> f64 {
-    let mut sums = [0.0; CHUNK];
-    let (a, a_rest) = a.as_chunks::<CHUNK>();
-    let (x, x_rest) = x.as_chunks::<CHUNK>();
-    for (a, x) in a.iter().zip(x) {
-        for k in 0..CHUNK {
-            sums[k] = f64::mul_add(a[k], x[k], sums[k]);
-        }
-    }
-    let mut sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-    for (a, x) in a_rest.iter().zip(x_rest) {
-        sum = a.mul_add(*x, sum);
-    }
-    sum
-}
-
-/// `A = L U` of any matrix whose leading minors are not zero.
-#[inline(always)]
-fn factor(a: &mut [f64], lower: &mut [f64], stride: usize, n: usize) {
-    for p in 0..n {
-        let (above, below) = a.split_at_mut((p + 1) * stride);
-        let chunks = (p + 1) / CHUNK * CHUNK..n.next_multiple_of(CHUNK).max(p + 1);
-        let pivot_row = &above[p * stride..][..stride];
-        let reciprocal = 1.0 / pivot_row[p];
-        let column = &mut lower[p * stride..][..n];
-        let pivots = pivot_row[chunks.clone()].as_chunks::<CHUNK>().0;
-        for (row, ratio_kept) in below.chunks_exact_mut(stride).zip(&mut column[p + 1..]) {
-            let ratio = row[p] * reciprocal;
-            *ratio_kept = ratio;
-            subtract_chunks(row[chunks.clone()].as_chunks_mut::<CHUNK>().0, ratio, pivots);
-        }
-    }
-}
-
-/// `A = L U` of a symmetric matrix from its upper half.
-#[inline(always)]
-fn factor_symmetric(a: &mut [f64], lower: &mut [f64], stride: usize, n: usize) {
-    let end = n.next_multiple_of(CHUNK);
-    for p in 0..n {
-        let (above, below) = a.split_at_mut((p + 1) * stride);
-        let pivot_row = &above[p * stride..][..stride];
-        let reciprocal = 1.0 / pivot_row[p];
-        let column = &mut lower[p * stride..][..stride];
-        for ((row, ratio_kept), i) in below.chunks_exact_mut(stride).zip(&mut column[p + 1..n]).zip(p + 1..) {
-            let ratio = pivot_row[i] * reciprocal;
-            *ratio_kept = ratio;
-            let chunks = i / CHUNK * CHUNK..end;
-            let pivots = pivot_row[chunks.clone()].as_chunks::<CHUNK>().0;
-            subtract_chunks(row[chunks].as_chunks_mut::<CHUNK>().0, ratio, pivots);
-        }
-    }
-}
-
-/// `row := row - ratio pivots`.
-#[inline(always)]
-fn subtract_chunks(row: &mut [[f64; CHUNK]], ratio: f64, pivots: &[[f64; CHUNK]]) {
-    for (entries, pivots) in row.iter_mut().zip(pivots) {
-        for k in 0..CHUNK {
-            entries[k] = (-ratio).mul_add(pivots[k], entries[k]);
+            let known = o.mul(x[i], inverse[i]);
+            x[i] = known;
+            for j in 0..i {
+                x[j] = o.less(x[j], a[j * stride + i], known);
+            }
         }
     }
 }
@@ -136,7 +84,11 @@ fn subtract_chunks(row: &mut [[f64; CHUNK]], ratio: f64, pivots: &[[f64; CHUNK]]
 #[cfg(test)]
 mod tests {
     use super::SmallMatrix;
+    use crate::operator::lane_array::LaneArray;
+    use crate::operator::vector::Ops;
+    use crate::scheme::Arithmetic;
     use nalgebra::{DMatrix, DVector};
+    use pulp::{Arch, Simd, WithSimd};
 
     /// A matrix of order `n` with a heavy diagonal, so that no pivots are needed, and a right side.
     fn system(n: usize, symmetric: bool) -> (DMatrix<f64>, DVector<f64>) {
@@ -149,30 +101,60 @@ mod tests {
         (a, DVector::from_fn(n, |i, _| (i as f64 + 0.3).cos()))
     }
 
-    /// Largest residual `|A x - b|` of a solution in room for a larger matrix, that was used before.
-    fn residual(n: usize, symmetric: bool, factor: f64) -> f64 {
-        let mut small = SmallMatrix::new(n + 3);
-        for i in 0..n + 3 {
-            small.row_mut(i, n + 3).fill(1e3);
-        }
-        let (a, b) = system(n, symmetric);
-        for i in 0..n {
-            let from = if symmetric { i } else { 0 };
-            for j in from..n {
-                small.row_mut(i, n)[j] = a[(i, j)];
-            }
-        }
-        if n > 1 {
-            small.row_mut(0, n)[1] *= factor;
-        }
-        small.factor(n, symmetric);
-        let mut x = b.as_slice().to_vec();
-        small.solve(&mut x);
-        (a * DVector::from_vec(x) - b).amax()
+    /// Solves a system in every lane, in room for a larger one that was used before; the unknowns in `out` are left out.
+    struct Solution<'a> {
+        a: &'a DMatrix<f64>,
+        b: &'a DVector<f64>,
+        symmetric: bool,
+        out: &'a [usize],
     }
 
-    /// Both kinds of factors solve their system at every remainder of the order by the chunk, whatever lies beside it;
-    /// 1e-14: rounding of order n of numbers below 1. An entry that is 5 % off is found.
+    impl WithSimd for Solution<'_> {
+        type Output = Vec<f64>;
+
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+            let (o, n) = (Ops(simd), self.b.len());
+            let mut small = SmallMatrix::new(n + 3, S::F64_LANES);
+            for i in 0..n + 3 {
+                small.row_mut::<S>(i, n + 3).fill(o.splat(1e3));
+            }
+            let is_out = |i: usize| self.out.contains(&i);
+            for i in 0..n {
+                let from = if self.symmetric { i } else { 0 };
+                for j in from..n {
+                    let coupled = if is_out(i) || is_out(j) { 0.0 } else { self.a[(i, j)] };
+                    let entry = if i == j && is_out(i) { 1.0 } else { coupled };
+                    small.row_mut::<S>(i, n)[j] = o.splat(entry);
+                }
+            }
+            small.factor(o, n, self.symmetric);
+            let mut x = LaneArray::new(n, S::F64_LANES);
+            for i in 0..n {
+                x.vectors_mut::<S>()[i] = o.splat(if is_out(i) { 0.0 } else { self.b[i] });
+            }
+            small.solve(o, &mut x.vectors_mut::<S>()[..n]);
+            x.lane(S::F64_LANES - 1).collect()
+        }
+    }
+
+    /// Largest residual `|A x - b|`, in which `factor` multiplies an entry.
+    fn residual(n: usize, symmetric: bool, factor: f64) -> f64 {
+        let (a, b) = system(n, symmetric);
+        let mut wrong = a.clone();
+        if n > 1 {
+            wrong[(0, 1)] *= factor;
+        }
+        let solution = Solution {
+            a: &wrong,
+            b: &b,
+            symmetric,
+            out: &[],
+        };
+        (a * DVector::from_vec(Arch::new().dispatch(solution)) - b).amax()
+    }
+
+    /// Both kinds of factors solve their system, whatever lies beside it; 1e-14: rounding of order n of numbers below 1. An entry
+    /// that is 5 % off is found.
     #[test]
     fn factors_solve_their_system() {
         for n in 0..=13 {
@@ -182,6 +164,23 @@ mod tests {
                 let wrong = residual(n, symmetric, 1.05);
                 assert!(n < 2 || wrong > 1e-6, "order {n}: a wrong entry passes, {wrong:e}");
             }
+        }
+    }
+
+    /// To the last bit: lanes with other unknowns are solved together.
+    #[test]
+    fn unknowns_that_are_left_out_change_nothing() {
+        for symmetric in [true, false] {
+            let (a, b) = system(7, symmetric);
+            let solve = |a: &DMatrix<f64>, b: &DVector<f64>, out: &[usize]| {
+                Arch::new().dispatch(Solution { a, b, symmetric, out })
+            };
+            let with = solve(&a, &b, &[2, 5]);
+            let kept = [0, 1, 3, 4, 6];
+            let alone = solve(&a.select_rows(&kept).select_columns(&kept), &b.select_rows(&kept), &[]);
+            let of_kept: Vec<f64> = kept.iter().map(|&i| with[i]).collect();
+            assert_eq!(of_kept, alone, "symmetric {symmetric}");
+            assert_eq!((with[2], with[5]), (0.0, 0.0));
         }
     }
 }

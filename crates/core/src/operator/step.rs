@@ -44,7 +44,7 @@ impl<C: StepClock> WithSimd for Step<'_, C> {
         let (o, operator, constants) = (Ops(simd), self.operator, self.constants);
         let (c, clock) = (self.crossings, self.clock);
         clock.begin();
-        c.place_loads(operator); // (V1)
+        c.place_loads(o, operator); // (V1)
         clock.lap(StepPart::Loads, || c.flop_of_loads());
         if let Some(waves) = &mut c.waves {
             waves.predict(o, constants); // (W7)
@@ -57,7 +57,7 @@ impl<C: StepClock> WithSimd for Step<'_, C> {
         c.residual.predict(o, constants, &c.loads, &c.connectors); // (O7)
         c.connectors.predict(o, constants, &c.modes.d, c.residual.changes()); // (O4)
         clock.lap(StepPart::Residual, || c.residual.flop_of_prediction(c.modes.count()));
-        let unsettled = c.solve_contact(operator, constants, self.newton_limit, clock); // (C1), (C2)
+        let unsettled = c.solve_contact(o, (operator, constants, self.newton_limit), clock); // (C1), (C2)
         let terms = c.correct(o, operator, constants, clock); // (O6), (O7)
         let ridden = c.lanes.iter().map(|lane| lane.ridden);
         c.energy

@@ -71,10 +71,10 @@ pub(crate) struct WheelLines {
     /// Stations farther apart than this never carry the vehicles at once.
     pub(super) band: usize,
     stations: usize,
-    /// Axles of all vehicles.
-    pub(super) axles: usize,
     /// Nodes that may be under the vehicles at once.
     most_nodes: usize,
+    /// Whether what rides along asks for velocities and displacements too.
+    pub(super) needs_motion: bool,
 }
 
 impl WheelLines {
@@ -178,12 +178,12 @@ impl WheelLines {
             residual,
             residual_band,
             most_nodes: Self::most_nodes_of(operator, traffic),
+            needs_motion: traffic.vehicles.iter().any(|driven| needs_motion(&driven.vehicle)),
             vehicles,
             weights,
             nodes: if ride { influences } else { Vec::new() },
             influence_width: operator.sizes.influence(),
             stations: track.stations(),
-            axles,
         }
     }
 
@@ -211,6 +211,11 @@ impl WheelLines {
 /// Whether anything of a vehicle rides along: masses or wheels on springs.
 fn rides(vehicle: &Vehicle) -> bool {
     vehicle.springs.is_some() || vehicle.inertia != Inertia::None
+}
+
+/// Whether what rides along asks for velocities and displacements of the deck.
+fn needs_motion(vehicle: &Vehicle) -> bool {
+    vehicle.springs.is_some() || vehicle.inertia == Inertia::Convective
 }
 
 /// Places of a vehicle's points across, in their order, each once `[m]`.
