@@ -2,20 +2,10 @@
 //! document: `speed [seconds for each figure]`. scripts/bench reads it.
 //!
 //! Knows a clock, which no test does. Does not know what another code needs, nor what is asked.
-//!
-//! Floating-point operations of a step of one crossing, of m modes, c connectors of which a pull or push, and v observed
-//! rows, a fused multiply-add being two:
-//!
-//! `2 (m c + m a + c a + (m + c) v) + 73 m + 110 c + 25 v`
-//!
-//! elongations `B q`, forces on the modes `B^T N` and residual `R_BB N`, readings `V [q; s]`; then what the step does for each
-//! mode, connector and row to advance and account for it, counted in the source. Settling the contact, comparisons, copies
-//! and the vehicle's own numbers are left out, so that the share of the peak is rather too low.
 
 #![allow(clippy::expect_used)]
 
 use pontoon_core::operator::{InstructionPath, StepClock, StepPart};
-use pontoon_core::response::{CrossingResponse, Quantity};
 use pontoon_core::vehicle::{Inertia, Vehicle};
 use pontoon_tests::scenario::{OPERATOR_TOLERANCE, Scenario, TAIL_S, TIME_STEP_S, truck, vehicle, vehicle_off_centre};
 use pontoon_tests::{SingleCrossing, SolvesSingle, solve_side_by_side};
@@ -32,12 +22,18 @@ fn main() {
     let start = Instant::now();
     let scenario = Scenario::new();
     let ready_s = start.elapsed().as_secs_f64();
-    let sizes = Sizes::of(&scenario);
     let mut crossings = Vec::new();
     for speed_m_s in [15.0, 7.0] {
-        for inertia in [Inertia::None, Inertia::Local] {
-            let crossing = scenario.crossing(speed_m_s, scenario.everything());
-            crossings.push(figures(&scenario, &sizes, &vehicle(inertia), &crossing, seconds));
+        let crossing = scenario.crossing(speed_m_s, scenario.everything());
+        for (inertia, place, vehicle) in [
+            (Inertia::None, "centred", vehicle(Inertia::None)),
+            (Inertia::Local, "centred", vehicle(Inertia::Local)),
+            (Inertia::Convective, "centred", vehicle(Inertia::Convective)),
+            (Inertia::Local, "off the centre", vehicle_off_centre(Inertia::Local)),
+        ] {
+            let mut of = figures(&scenario, &vehicle, &crossing, seconds);
+            (of["inertia"], of["place"]) = (json!(inertia), json!(place));
+            crossings.push(of);
         }
     }
     let report = json!({
@@ -48,9 +44,7 @@ fn main() {
         "ready_s": ready_s,
         "operator": {
             "tolerance": OPERATOR_TOLERANCE,
-            "modes": sizes.modes,
-            "connectors": sizes.connectors,
-            "observed_rows": sizes.observed,
+            "modes": scenario.solver.operator().cutoff().modes,
         },
         "crossings": crossings,
         "trucks": trucks(&scenario, seconds),
@@ -60,51 +54,26 @@ fn main() {
     println!("{report}");
 }
 
-/// Sizes of the operator's matrices.
-struct Sizes {
-    modes: usize,
-    connectors: usize,
-    observed: usize,
-}
-
-impl Sizes {
-    fn of(scenario: &Scenario) -> Self {
-        let design = &scenario.ready.design;
-        // four corners of each module's deck and, where the draft is known, of its bottom
-        let corners = 4 * design.modules * if design.draft_m.is_some() { 2 } else { 1 };
-        Self {
-            modes: scenario.solver.operator().cutoff().modes,
-            connectors: design.connectors.y_m.len() * (design.modules - 1),
-            observed: design.positions() + corners,
-        }
-    }
-
-    fn flop_per_step(&self, active: f64) -> f64 {
-        let [m, c, v] = [self.modes, self.connectors, self.observed].map(|count| count as f64);
-        2.0 * (m * c + m * active + c * active + (m + c) * v) + 73.0 * m + 110.0 * c + 25.0 * v
-    }
-}
-
-/// Seconds a step of a crossing alone and beside its likes.
-fn figures(scenario: &Scenario, sizes: &Sizes, vehicle: &Vehicle, crossing: &SingleCrossing, seconds: f64) -> Value {
-    let solver = &scenario.solver;
-    let answer = solver.solve_single(vehicle, crossing).expect("a crossing");
-    let steps = answer.statistics.steps as f64;
-    let jobs = vec![(vehicle, crossing); ROUNDS * InstructionPath::of_this_machine().lanes];
-    let lone_s = least_s(seconds, || drop(black_box(solver.solve_single(vehicle, crossing))));
-    let full_s = least_s(seconds, || drop(black_box(solve_side_by_side(solver, &jobs, 0))));
-    let active = mean_active(
-        &answer,
-        sizes.connectors as f64 / (scenario.ready.design.modules - 1) as f64,
-    );
+/// Seconds a step of a crossing alone, beside its likes, and beside crossings of other speeds, whose vehicles are at other places.
+fn figures(scenario: &Scenario, vehicle: &Vehicle, crossing: &SingleCrossing, seconds: f64) -> Value {
+    let (solver, lanes) = (&scenario.solver, InstructionPath::of_this_machine().lanes);
+    let solve = |jobs: &[(&Vehicle, &SingleCrossing)]| drop(black_box(solve_side_by_side(solver, jobs, 0)));
+    let steps = |crossing: &SingleCrossing| scenario.steps(vehicle, crossing) as f64;
+    let jobs = vec![(vehicle, crossing); ROUNDS * lanes];
+    let lone_s = least_s(seconds, || solve(&jobs[..1]));
+    let full_s = least_s(seconds, || solve(&jobs));
+    let with_speed = |i: usize| SingleCrossing {
+        speed_m_s: crossing.speed_m_s * (1.0 + 0.001 * i as f64),
+        ..crossing.clone()
+    };
+    let mixed: Vec<SingleCrossing> = (0..jobs.len()).map(with_speed).collect();
+    let mixed_jobs: Vec<_> = mixed.iter().map(|crossing| (vehicle, crossing)).collect();
+    let mixed_s = least_s(seconds, || solve(&mixed_jobs));
     json!({
         "speed_m_s": crossing.speed_m_s,
-        "inertia": vehicle.inertia,
-        "steps": answer.statistics.steps,
-        "mean_active_connectors": active,
-        "lone_step_s": lone_s / steps,
-        "full_step_s": full_s / steps / jobs.len() as f64,
-        "flop_per_step": sizes.flop_per_step(active),
+        "lone_step_s": lone_s / steps(crossing),
+        "full_step_s": full_s / steps(crossing) / jobs.len() as f64,
+        "mixed_step_s": mixed_s / mixed.iter().map(steps).sum::<f64>(),
     })
 }
 
@@ -252,18 +221,6 @@ impl StepClock for Laps {
 
 /// Crossings that a lane takes one after the other.
 const ROUNDS: usize = 8;
-
-/// Connectors that pull or push, on the mean over the steps: those of a joint do so together, the load being centric.
-fn mean_active(answer: &CrossingResponse, connectors_of_a_joint: f64) -> f64 {
-    let at_work = |values: &[f64]| values.iter().filter(|force| **force != 0.0).count();
-    let joints = answer
-        .recorded
-        .histories
-        .iter()
-        .filter(|history| history.subject.quantity() == Quantity::Force);
-    let instants: usize = joints.map(|history| at_work(&history.values)).sum();
-    connectors_of_a_joint * instants as f64 / answer.recorded.history_time_s.len() as f64
-}
 
 /// Least time of something that is done again and again for a while.
 fn least_s(seconds: f64, work: impl Fn()) -> f64 {

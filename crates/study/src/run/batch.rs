@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 /// Most crossings of a lane batch: eight for each of four lanes, so that few lanes stand empty when the last ones end.
 const LANE_BATCH: usize = 32;
 
+/// Lanes of the vectors that most machines have.
+const LANES: usize = 4;
+
 /// Lane batches that a thread should find, where there are jobs enough.
 const LANE_BATCHES_A_THREAD: usize = 4;
 
@@ -83,8 +86,8 @@ fn solve_together(
     records
 }
 
-/// Places of jobs that are solved together: crossings that share a solver, the long ones first so that the lanes of a batch
-/// end together; any other job by itself.
+/// Places of jobs that are solved together: crossings that share a solver, those of equally many steps side by side so that
+/// the lanes of a batch stay in step and end together; any other job by itself.
 fn lane_batches(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
     let mut lane_batches = Vec::new();
     let mut operated: BTreeMap<_, Vec<usize>> = BTreeMap::new();
@@ -95,14 +98,32 @@ fn lane_batches(jobs: &[(&Study, &Job)], largest: usize) -> Vec<Vec<usize>> {
             None => lane_batches.push(vec![place]),
         }
     }
-    for mut places in operated.into_values() {
-        places.sort_by_key(|&place| std::cmp::Reverse(jobs[place].1.steps()));
+    for places in operated.into_values() {
         let most = places
             .len()
             .div_ceil(LANE_BATCHES_A_THREAD * rayon::current_num_threads());
-        lane_batches.extend(places.chunks(most.clamp(1, largest)).map(<[usize]>::to_vec));
+        let most = most.clamp(1, largest);
+        let of_steps = |place: &usize| jobs[*place].1.steps();
+        let (in_step, others) = in_step(places, of_steps);
+        // whole vectors of lanes where there are so many
+        let whole = most.next_multiple_of(LANES).min(largest.max(1));
+        lane_batches.extend(in_step.chunks(whole).map(<[usize]>::to_vec));
+        lane_batches.extend(others.chunks(most).map(<[usize]>::to_vec));
     }
     lane_batches
+}
+
+/// Places with the most steps first: as many of each number of steps as fill whole vectors of lanes, so that vehicles of one speed stand
+/// at one place in all of them, and those that are left.
+fn in_step(mut places: Vec<usize>, steps: impl Fn(&usize) -> usize) -> (Vec<usize>, Vec<usize>) {
+    places.sort_by_cached_key(|place| std::cmp::Reverse(steps(place)));
+    let (mut in_step, mut others) = (Vec::new(), Vec::new());
+    for alike in places.chunk_by(|a, b| steps(a) == steps(b)) {
+        let (whole, rest) = alike.split_at(alike.len() / LANES * LANES);
+        in_step.extend(whole);
+        others.extend(rest);
+    }
+    (in_step, others)
 }
 
 /// The records of the jobs at some places: crossings by the operator that share a solver, or one job of another kind.
@@ -186,5 +207,20 @@ fn histories(study: &Study, job: &Job) -> Record {
             record
         }
         None => study.record.of_bridge(&job.bridge.design),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_step;
+
+    /// Fives of ten steps, one more of twelve: whole vectors of each number of steps come first, the longest in front.
+    #[test]
+    fn jobs_of_one_length_fill_whole_vectors() {
+        let steps = [10, 12, 10, 8, 10, 12, 10, 12, 10, 12, 8];
+        let (whole, rest) = in_step((0..steps.len()).collect(), |place| steps[*place]);
+        let lengths = |of: &[usize]| of.iter().map(|place| steps[*place]).collect::<Vec<_>>();
+        assert_eq!(lengths(&whole), [12, 12, 12, 12, 10, 10, 10, 10]);
+        assert_eq!(lengths(&rest), [10, 8, 8]);
     }
 }
