@@ -106,6 +106,8 @@ fn one_side_is_the_whole_bridge() {
         ] {
             assert!(is_on_one_side(&solvers[0], &vehicle, &crossing));
             assert!(!is_on_one_side(&solvers[1], &vehicle, &crossing));
+            let whole = solvers[0].operator().cutoff().modes;
+            assert!(solvers[0].one_side_modes().is_some_and(|modes| modes < whole));
             let [side, whole] = answers(&solvers, &vehicle, &crossing);
             let off = apart(&side, &whole);
             assert!(off < ROUNDING, "{inertia:?}: {off:e}");

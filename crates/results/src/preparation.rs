@@ -74,6 +74,9 @@ pub struct BridgeReport {
     pub operator_tolerance: Option<f64>,
     /// Error left: the largest share by which that flexibility is off.
     pub operator_error: Option<f64>,
+    /// Modes of one side of it, on which crossings are solved that are their own mirror images; absent where it is not its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub one_side_modes: Option<usize>,
     /// Its water with memory; absent in other waters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub water: Option<WaterReport>,

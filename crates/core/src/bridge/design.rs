@@ -21,6 +21,7 @@ use crate::input::{InvalidInput, Problem, SAME_PLACE_M, positive, within};
 use crate::module::{MeshSize, ModuleDesign, ModuleMesh, Outline, lines_across, mesh_module, mesh_size};
 use crate::water::WaterDistribution;
 pub use condensation::Condensation;
+pub(crate) use image::is_own_image;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -35,6 +35,7 @@ pub use assembly::Bridge;
 pub use ballast::{BallastSpec, DeadSpec};
 pub use banks::{BankPlace, BankSpec, BridgeEnd, Toward};
 pub use buoyancy::{DraftBuoyancy, Todd};
+pub(crate) use design::is_own_image;
 pub use design::{BridgeDesign, Condensation, Variants};
 pub use joints::{Connectors, Hinges, JointConnectors, JointGaps, JointRange, JointSpec, Joints, StopSpec};
 pub use kinds::{ModuleKind, ModuleRow, ModuleRun};

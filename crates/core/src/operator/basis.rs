@@ -281,6 +281,11 @@ impl BridgeOperator {
         self.waves.as_ref().map(OperatorWaves::told)
     }
 
+    /// Number of modes.
+    pub(crate) fn modes(&self) -> usize {
+        self.sizes.modes
+    }
+
     /// Number of connectors.
     pub(crate) fn connectors(&self) -> usize {
         self.sizes.connectors

@@ -6,15 +6,13 @@ use super::basis::{BridgeOperator, Sizes};
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
 use super::contact_system::{ContactInput, ContactSystem, LaneLaws};
-use super::crossings::{Crossings, Unsettled};
 use super::dashpots::LaneDashpots;
-use super::envelope::MOST_LANES;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::lane_group::LaneGroup;
 use super::loads::{apply_inertia, apply_weights, sum_forces};
 use super::moving_masses::{MovingMasses, OfGroup};
-use super::panel::lanes;
+use super::panel::{MOST_LANES, lanes};
 use super::rides::LaneRide;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
@@ -33,16 +31,16 @@ pub(super) struct Coupling {
 
 /// Numbers of lanes that contact reads and writes.
 #[derive(Debug)]
-struct Ports<'a> {
+pub(super) struct Ports<'a> {
     /// Free motion of the modes.
-    free: &'a [LaneArray; 3],
+    pub(super) free: &'a [LaneArray; 3],
     /// Connectors: forces at the last step, elongations without new forces and then with them, forces.
-    n: &'a LaneArray,
-    e_now: &'a mut LaneArray,
-    n_now: &'a mut LaneArray,
+    pub(super) n: &'a LaneArray,
+    pub(super) e_now: &'a mut LaneArray,
+    pub(super) n_now: &'a mut LaneArray,
     /// What masses do, and what axles press with beyond their weight `[N]`.
-    inertia_now: &'a mut LaneArray,
-    beyond_weight: &'a mut LaneArray,
+    pub(super) inertia_now: &'a mut LaneArray,
+    pub(super) beyond_weight: &'a mut LaneArray,
 }
 
 /// What is settled with one lane alone: its numbers side by side, so that vectors run along them.
@@ -61,10 +59,10 @@ pub(super) struct Alone {
 
 /// What a step is solved with.
 #[derive(Clone, Copy)]
-struct OfStep<'a> {
-    operator: &'a BridgeOperator,
-    constants: &'a StepConstants,
-    newton_limit: usize,
+pub(super) struct OfStep<'a> {
+    pub(super) operator: &'a BridgeOperator,
+    pub(super) constants: &'a StepConstants,
+    pub(super) newton_limit: usize,
 }
 
 impl Coupling {
@@ -78,7 +76,7 @@ impl Coupling {
 
     /// Settles a group of `lanes`, which count from its base on; what became of each, and its forces on nodes.
     #[inline(always)]
-    fn settle<S: Simd>(
+    pub(super) fn settle<S: Simd>(
         &mut self,
         o: Ops<S>,
         group: &LaneGroup,
@@ -247,7 +245,7 @@ impl Alone {
 
     /// Settles a lane by itself, and writes its numbers between those of the others.
     #[inline(always)]
-    fn settle(
+    pub(super) fn settle(
         &mut self,
         (group, lane): (&LaneGroup, usize),
         each: &mut [Lane],
@@ -304,115 +302,6 @@ impl Alone {
             }
         }
         clock.lap(StepPart::GatherAndScatter, || 0.0);
-    }
-}
-
-impl Crossings {
-    /// Solves the contact of each lane (C1); those that do not settle as they stood before the step.
-    #[inline(always)]
-    pub(super) fn solve_contact<S: Simd>(
-        &mut self,
-        o: Ops<S>,
-        of_step: (&BridgeOperator, &StepConstants, usize),
-        clock: &mut impl StepClock,
-    ) -> Unsettled {
-        let (operator, constants, newton_limit) = of_step;
-        let of_step = OfStep {
-            operator,
-            constants,
-            newton_limit,
-        };
-        self.begin_dashpots(constants.scheme.h);
-        let Self {
-            groups,
-            lanes,
-            coupling,
-            alone,
-            modes,
-            connectors,
-            loads,
-            beyond_weight,
-            ..
-        } = self;
-        (0..lanes.len()).for_each(|lane| coupling.masses.leave(lane));
-        let axles = groups.all().iter().map(|group| group.axles.len()).max().unwrap_or(0);
-        beyond_weight.ensure_rows(axles);
-        beyond_weight.clear_rows(axles);
-        for group in groups.settled() {
-            let ports = Ports {
-                free: &modes.free,
-                n: &connectors.n,
-                e_now: &mut connectors.e_now,
-                n_now: &mut connectors.n_now,
-                inertia_now: &mut loads.inertia_now,
-                beyond_weight: &mut *beyond_weight,
-            };
-            match group.alone() {
-                Some(lane) => alone.settle((group, lane), lanes, (coupling, ports), of_step, clock),
-                None => coupling.settle(o, group, lanes, ports, of_step, clock),
-            }
-        }
-        for (lane, of) in lanes.iter().enumerate() {
-            if of.pressed && of.unsettled.is_none() {
-                loads.add_springs(lane, &of.seen_springs, spring_factor(constants));
-            }
-        }
-        for group in groups.all() {
-            for lane in group.numbers() {
-                if let (Some(crossing), None) = (&lanes[lane].crossing, lanes[lane].unsettled) {
-                    let placed = &mut self.envelope.placed[lane];
-                    placed.note_axles(lanes[lane].time_s, &crossing.wheels, (lane, group), beyond_weight);
-                }
-            }
-        }
-        self.end_dashpots(constants.scheme.h);
-        let mut unsettled: Unsettled = None;
-        for lane in 0..self.lanes.len() {
-            if self.lanes[lane].unsettled.is_some() {
-                let saved = self.save(lane);
-                unsettled.get_or_insert_default().push((lane, saved));
-            }
-        }
-        self.coupling.masses.end_step();
-        clock.lap(StepPart::GatherAndScatter, || 0.0);
-        unsettled
-    }
-
-    /// The laws of dashpots in a step of length `h` `[s]`.
-    #[inline(always)]
-    fn begin_dashpots(&mut self, h: f64) {
-        for lane in 0..self.lanes.len() {
-            let connectors = &self.connectors;
-            if let Some(dashpots) = &mut self.lanes[lane].dashpots
-                && dashpots.begin_step(lane, h, &connectors.e, &connectors.dashpots)
-            {
-                self.forget();
-            }
-        }
-    }
-
-    /// What dashpots give in the step.
-    #[inline(always)]
-    fn end_dashpots(&mut self, h: f64) {
-        for (lane, of) in self.lanes.iter_mut().enumerate() {
-            if let (Some(dashpots), None) = (&mut of.dashpots, of.unsettled) {
-                let Connectors {
-                    e,
-                    e_now,
-                    n_now,
-                    dashpots: given,
-                    rest,
-                    ..
-                } = &mut self.connectors;
-                dashpots.end_step(lane, h, [e, e_now, n_now, rest], given);
-            }
-        }
-    }
-
-    /// Forgets what was factored for other laws or another step length.
-    pub(super) fn forget(&mut self) {
-        self.coupling.contact.forget();
-        self.alone.forget();
     }
 }
 
@@ -476,6 +365,36 @@ fn press_springs(masses: &MovingMasses, (lane, of): (usize, &mut Lane), group: O
         from += many;
     }
     of.ridden = sum;
+}
+
+/// Changes to the laws of dashpots in a step of length `h` `[s]`; whether the stiffnesses of any are others than before.
+#[inline(always)]
+pub(super) fn begin_dashpots(lanes: &mut [Lane], connectors: &Connectors, h: f64) -> bool {
+    let mut changed = false;
+    for (lane, of) in lanes.iter_mut().enumerate() {
+        if let Some(dashpots) = &mut of.dashpots {
+            changed |= dashpots.begin_step(lane, h, &connectors.e, &connectors.dashpots);
+        }
+    }
+    changed
+}
+
+/// Leaves what dashpots give in the step.
+#[inline(always)]
+pub(super) fn end_dashpots(lanes: &mut [Lane], connectors: &mut Connectors, h: f64) {
+    let Connectors {
+        e,
+        e_now,
+        n_now,
+        dashpots: given,
+        rest,
+        ..
+    } = connectors;
+    for (lane, of) in lanes.iter_mut().enumerate() {
+        if let (Some(dashpots), None) = (&mut of.dashpots, of.unsettled) {
+            dashpots.end_step(lane, h, [e, e_now, n_now, rest], given);
+        }
+    }
 }
 
 /// What forces of springs are multiplied by to stand among inertia forces in the balance at alpha.

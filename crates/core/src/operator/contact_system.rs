@@ -6,8 +6,8 @@
 //! Lanes are solved together, each on its own active set: a link that is open in a lane is left out of that lane's matrix, which
 //! changes no bit of the others.
 
-use super::envelope::MOST_LANES;
 use super::lane_array::LaneArray;
+use super::panel::MOST_LANES;
 use super::rider_block::RiderBlock;
 use super::small_matrix::SmallMatrix;
 use super::vector::Ops;

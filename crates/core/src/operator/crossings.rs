@@ -6,17 +6,18 @@
 use super::basis::BridgeOperator;
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
-use super::contact_step::{Alone, Coupling, spring_factor};
+use super::contact_step::{Alone, Coupling, OfStep, Ports, begin_dashpots, end_dashpots, spring_factor};
+use super::deck_forces::StationForce;
 use super::energy::{Energy, Terms};
-use super::envelope::{Envelope, LanePeaks, MOST_LANES};
+use super::envelope::{Envelope, LanePeaks};
 use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
 use super::lane_group::{LaneGroup, LaneGroups, UnitForce};
 use super::lane_waves::LaneWaves;
-use super::loads::{Loads, StationForce, apply_forces, apply_weights, sum_forces};
+use super::loads::{Loads, apply_forces, apply_weights, sum_forces};
 use super::local_residual::SavedResidual;
 use super::modes::Modes;
-use super::panel::InstructionPath;
+use super::panel::{InstructionPath, MOST_LANES};
 use super::pins::Pins;
 use super::placed::Placed;
 use super::residual::Residual;
@@ -339,7 +340,7 @@ impl Crossings {
             alone,
             ..
         } = self;
-        groups.form(lanes, &coupling.masses, &operator.track);
+        groups.form(lanes, |lane, other| coupling.masses.alike(lane, other), &operator.track);
         for group in groups.all() {
             let first = group.base + group.first();
             if let (Some(crossing), false) = (&lanes[first].crossing, group.weights.is_empty()) {
@@ -362,6 +363,85 @@ impl Crossings {
                 }
             }
         }
+    }
+
+    /// Solves the contact of each lane (C1); those that do not settle as they stood before the step.
+    #[inline(always)]
+    pub(super) fn solve_contact<S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        of_step: (&BridgeOperator, &StepConstants, usize),
+        clock: &mut impl StepClock,
+    ) -> Unsettled {
+        let (operator, constants, newton_limit) = of_step;
+        let of_step = OfStep {
+            operator,
+            constants,
+            newton_limit,
+        };
+        let h = constants.scheme.h;
+        if begin_dashpots(&mut self.lanes, &self.connectors, h) {
+            self.forget();
+        }
+        let Self {
+            groups,
+            lanes,
+            coupling,
+            alone,
+            modes,
+            connectors,
+            loads,
+            beyond_weight,
+            ..
+        } = self;
+        (0..lanes.len()).for_each(|lane| coupling.masses.leave(lane));
+        let axles = groups.all().iter().map(|group| group.axles.len()).max().unwrap_or(0);
+        beyond_weight.ensure_rows(axles);
+        beyond_weight.clear_rows(axles);
+        for group in groups.settled() {
+            let ports = Ports {
+                free: &modes.free,
+                n: &connectors.n,
+                e_now: &mut connectors.e_now,
+                n_now: &mut connectors.n_now,
+                inertia_now: &mut loads.inertia_now,
+                beyond_weight: &mut *beyond_weight,
+            };
+            match group.alone() {
+                Some(lane) => alone.settle((group, lane), lanes, (coupling, ports), of_step, clock),
+                None => coupling.settle(o, group, lanes, ports, of_step, clock),
+            }
+        }
+        for (lane, of) in lanes.iter().enumerate() {
+            if of.pressed && of.unsettled.is_none() {
+                loads.add_springs(lane, &of.seen_springs, spring_factor(constants));
+            }
+        }
+        for group in groups.all() {
+            for lane in group.numbers() {
+                if let (Some(crossing), None) = (&lanes[lane].crossing, lanes[lane].unsettled) {
+                    let placed = &mut self.envelope.placed[lane];
+                    placed.note_axles(lanes[lane].time_s, &crossing.wheels, (lane, group), beyond_weight);
+                }
+            }
+        }
+        end_dashpots(lanes, connectors, h);
+        let mut unsettled: Unsettled = None;
+        for lane in 0..self.lanes.len() {
+            if self.lanes[lane].unsettled.is_some() {
+                let saved = self.save(lane);
+                unsettled.get_or_insert_default().push((lane, saved));
+            }
+        }
+        self.coupling.masses.end_step();
+        clock.lap(StepPart::GatherAndScatter, || 0.0);
+        unsettled
+    }
+
+    /// Forgets what was factored for other laws or another step length.
+    pub(super) fn forget(&mut self) {
+        self.coupling.contact.forget();
+        self.alone.forget();
     }
 
     /// Operations of placing the weights, of all lanes.

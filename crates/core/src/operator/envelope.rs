@@ -9,7 +9,7 @@ use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::lane_group::{LaneGroups, UnitForce};
 use super::modes::Modes;
-use super::panel::{lanes, lanes_mut};
+use super::panel::{MOST_LANES, lanes, lanes_mut};
 use super::placed::Placed;
 use super::residual::Residual;
 use super::step_constants::StepConstants;
@@ -18,9 +18,6 @@ use super::wheel_lines::DeckNode;
 use crate::response::{DeadState, EnergySummary, ForcePeaks, JointPeaks, Peak};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
-
-/// More lanes than any vector has.
-pub(super) const MOST_LANES: usize = 16;
 
 /// Running extremes of every lane.
 #[derive(Debug, Clone)]

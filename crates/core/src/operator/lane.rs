@@ -5,8 +5,7 @@
 use super::basis::Sizes;
 use super::dashpots::LaneDashpots;
 use super::dead::LaneDead;
-use super::lane_group::alike;
-use super::loads::StationForce;
+use super::deck_forces::StationForce;
 use super::rides::LaneRide;
 use super::wheel_lines::{WheelCompliance, WheelLines};
 use crate::bridge::{Heading, Track};
@@ -156,4 +155,17 @@ impl Lane {
             && awake(self) == awake(other)
             && same_stations()
     }
+}
+
+/// Whether vehicles are at the same places and move there alike.
+fn alike(a: &[Heading], b: &[Heading]) -> bool {
+    let bits = |of: &Heading| {
+        (
+            of.front_x_m.to_bits(),
+            of.speed_m_s.to_bits(),
+            of.acceleration_m_s2.to_bits(),
+            of.backward,
+        )
+    };
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
 }

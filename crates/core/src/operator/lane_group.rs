@@ -4,13 +4,11 @@
 //!
 //! What a lane computes is the same to the last bit whichever lanes go with it: all of them run through the same operations.
 
-use super::envelope::MOST_LANES;
 use super::lane::Lane;
-use super::moving_masses::MovingMasses;
-use super::panel::lanes;
+use super::panel::{MOST_LANES, lanes};
 use super::vector::Ops;
 use super::wheel_lines::{VehicleLines, WheelLine};
-use crate::bridge::{Heading, Track, VehiclePlacement};
+use crate::bridge::{Track, VehiclePlacement};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -165,16 +163,16 @@ pub(super) struct LaneGroups {
 }
 
 impl LaneGroups {
-    /// Puts the lanes that are at work into groups, and their vehicles where they are.
+    /// Puts the lanes that are at work into groups, and their vehicles where they are; lanes that go together have the same nodes.
     #[inline(always)]
-    pub(super) fn form(&mut self, each: &mut [Lane], masses: &MovingMasses, track: &Track) {
+    pub(super) fn form(&mut self, each: &mut [Lane], same_nodes: impl Fn(usize, usize) -> bool, track: &Track) {
         self.count = 0;
         for lane in 0..each.len() {
             if !each[lane].head(track) {
                 continue;
             }
             let own = &each[lane];
-            let fits = |group: &LaneGroup| masses.alike(lane, group.first()) && own.goes_with(&each[group.first()]);
+            let fits = |group: &LaneGroup| same_nodes(lane, group.first()) && own.goes_with(&each[group.first()]);
             let known = self.groups[..self.count].iter_mut().enumerate();
             let number = match known.into_iter().find(|(_, group)| fits(group)) {
                 Some((number, group)) => {
@@ -225,19 +223,6 @@ impl LaneGroups {
     pub(super) fn placement(&self, group: usize, vehicle: usize) -> &VehiclePlacement {
         &self.groups[group].placements[vehicle]
     }
-}
-
-/// Whether vehicles are at the same places and move there alike.
-pub(super) fn alike(a: &[Heading], b: &[Heading]) -> bool {
-    let bits = |of: &Heading| {
-        (
-            of.front_x_m.to_bits(),
-            of.speed_m_s.to_bits(),
-            of.acceleration_m_s2.to_bits(),
-            of.backward,
-        )
-    };
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
 }
 
 /// Whether the contact forces of the axles of a vehicle on springs have settled.

@@ -3,16 +3,13 @@
 //! Knows weights at their places and inertia forces of masses that ride along. Does not know how masses are solved for.
 
 use super::basis::Sizes;
+use super::deck_forces::{NodeForces, StationForce};
 use super::lane_array::LaneArray;
 use super::lane_group::LaneGroup;
-use super::local_residual::NodeForces;
 use super::vector::Ops;
 use super::wheel_lines::{DeckLines, WheelLines};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
-
-/// A force on a station of a line of the deck: line, station, downward force `[N]`.
-pub(super) type StationForce = (usize, usize, f64);
 
 /// Columns that are summed at once.
 const COLUMNS: usize = 16;

@@ -3,9 +3,9 @@
 //!
 //! Knows how nodes follow forces in a time step, those of lanes that go together at once. Does not know who exerts them.
 
+use super::deck_forces::{NodeForces, StationForce};
 use super::lane_array::{LaneArray, Trace};
 use super::lane_group::{LaneGroup, UnitForce};
-use super::loads::StationForce;
 use super::step_constants::{ResidualRule, StepConstants};
 use super::vector::{Mean, Ops};
 use super::wheel_lines::{DeckNode, WheelLines};
@@ -45,15 +45,6 @@ pub(super) struct LocalResidual {
 pub(super) struct SavedResidual {
     runs: Vec<NodeRun>,
     numbers: Vec<f64>,
-}
-
-/// Nodes and a row of forces for each of them.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NodeForces<'a> {
-    pub nodes: &'a [DeckNode],
-    pub forces: &'a LaneArray,
-    /// What the forces are multiplied by.
-    pub factor: f64,
 }
 
 impl LocalResidual {

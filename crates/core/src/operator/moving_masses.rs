@@ -3,12 +3,12 @@
 //! Knows flexibilities, laid out once so that a step allocates nothing. Does not know the scheme but for its factors, nor where
 //! vehicles are: that is for `riding_places`.
 
-use super::envelope::MOST_LANES;
+use super::deck_forces::{NodeForces, StationForce};
 use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::lane_group::LaneGroup;
-use super::loads::StationForce;
-use super::local_residual::{LocalResidual, NodeForces};
+use super::local_residual::LocalResidual;
+use super::panel::{MOST_LANES, lanes};
 use super::rider_block::RiderBlock;
 use super::rides::WheelOnDeck;
 use super::riding_places::{MovingMass, RidingPlaces};
@@ -205,7 +205,7 @@ impl MovingMasses {
         for &lane in &group.group.lanes {
             known[lane] = self.wheels[lane][number].known;
         }
-        let mut free = super::panel::lanes::<S>(&known)[0];
+        let mut free = lanes::<S>(&known)[0];
         let slopes = &self.places.slopes[of.slopes.0..of.slopes.1];
         for (&(node, w), (_, r_x, _)) in self.places.force[of.force.0..of.force.1].iter().zip(slopes) {
             let DeckNode { line, station } = self.places.nodes[node];

@@ -6,6 +6,9 @@ use super::vector::Ops;
 use crate::scheme::Arithmetic;
 use pulp::{Arch, Simd, WithSimd};
 
+/// More lanes than any vector has.
+pub(super) const MOST_LANES: usize = 16;
+
 /// Rows that are summed side by side.
 const ROWS: usize = 8;
 

@@ -130,13 +130,24 @@ impl Rows {
     }
 }
 
-impl BridgeOperator {
-    /// One side of the bridge, without pins; none of a bridge that is not its own image: where a mode is neither its own image nor
-    /// its opposite, links answer otherwise than their images, or springs of banks are observed.
-    /// Equation (O10).
-    pub(crate) fn one_side(&self, links: &SideLinks) -> Option<SideBridge> {
-        let (sizes, rows) = (&self.sizes, &self.rows);
-        if links.of_link.len() != sizes.connectors || rows.springs > 0 || !self.answers_alike(links) {
+/// A bridge with its mirror image.
+struct Mirrored<'a> {
+    whole: &'a BridgeOperator,
+    links: &'a SideLinks,
+}
+
+/// One side of the bridge, without pins; none of a bridge that is not its own image: where a mode is neither its own image nor
+/// its opposite, links answer otherwise than their images, or springs of banks are observed.
+/// Equation (O10).
+pub(crate) fn one_side(whole: &BridgeOperator, links: &SideLinks) -> Option<SideBridge> {
+    Mirrored { whole, links }.side()
+}
+
+impl Mirrored<'_> {
+    fn side(&self) -> Option<SideBridge> {
+        let (whole, links) = (self.whole, self.links);
+        let (sizes, rows) = (&whole.sizes, &whole.rows);
+        if links.of_link.len() != sizes.connectors || rows.springs > 0 || !self.answers_alike() {
             return None;
         }
         let link_rows = Rows {
@@ -163,9 +174,9 @@ impl BridgeOperator {
             inside: module.inside.start / 2..module.inside.end / 2,
             ..module.clone()
         };
-        let r_bb = link_rows.means_among(&self.r_bb, &link_rows);
+        let r_bb = link_rows.means_among(&whole.r_bb, &link_rows);
         let n = r_bb.nrows();
-        let operator = Self {
+        let operator = BridgeOperator {
             sizes: side_sizes,
             rows: Observed {
                 corners: rows.corners / 2,
@@ -173,24 +184,24 @@ impl BridgeOperator {
                 edges: 1,
                 ..*rows
             },
-            cutoff: self.cutoff,
-            omega2: of_mode(&self.omega2),
-            omega2_water: of_mode(&self.omega2_water),
-            b: link_rows.means(&self.b, &modes),
+            cutoff: whole.cutoff,
+            omega2: of_mode(&whole.omega2),
+            omega2_water: of_mode(&whole.omega2_water),
+            b: link_rows.means(&whole.b, &modes),
             r_bb: DMatrix::from_fn(n, n, |i, j| r_bb[(i.min(j), i.max(j))]),
-            v: observed.means(&self.v, &modes),
-            r_vb: observed.means_among(&self.r_vb, &link_rows),
-            inside: inside.means(&self.inside, &modes),
-            r_inside_b: inside.means_among(&self.r_inside_b, &link_rows),
-            inside_bounds: self.inside_bounds.clone(),
-            of_modules: self.of_modules.iter().map(of_module).collect(),
+            v: observed.means(&whole.v, &modes),
+            r_vb: observed.means_among(&whole.r_vb, &link_rows),
+            inside: inside.means(&whole.inside, &modes),
+            r_inside_b: inside.means_among(&whole.r_inside_b, &link_rows),
+            inside_bounds: whole.inside_bounds.clone(),
+            of_modules: whole.of_modules.iter().map(of_module).collect(),
             pins: PinRows::default(),
-            waves: self.waves.as_ref().map(|waves| waves.of_side(&modes)),
+            waves: whole.waves.as_ref().map(|waves| waves.of_side(&modes)),
             deck: self.side_deck(&modes, [&link_rows, &observed, &inside]),
             r_deck: self.side_residual(),
-            near: self.near,
-            track: self.track.clone(),
-            breadth_m: self.breadth_m,
+            near: whole.near,
+            track: whole.track.clone(),
+            breadth_m: whole.breadth_m,
         };
         Some(SideBridge {
             operator,
@@ -199,23 +210,32 @@ impl BridgeOperator {
     }
 
     /// Whether links answer links as their images do.
-    fn answers_alike(&self, links: &SideLinks) -> bool {
+    fn answers_alike(&self) -> bool {
+        let (whole, links) = (self.whole, self.links);
         let image = |link: usize| {
             let [a, b] = links.images[links.of_link[link]];
             if a == link { b } else { a }
         };
-        let n = self.sizes.connectors;
+        let n = self.whole.sizes.connectors;
         let off = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-        let off = off.map(|(i, j)| (self.r_bb[(i, j)] - self.r_bb[(image(i), image(j))]).abs());
-        off.fold(0.0, f64::max) <= OTHER_FLEXIBILITY * self.r_bb.amax()
+        let off = off.map(|(i, j)| (whole.r_bb[(i, j)] - whole.r_bb[(image(i), image(j))]).abs());
+        off.fold(0.0, f64::max) <= OTHER_FLEXIBILITY * whole.r_bb.amax()
     }
 
     /// The modes that are their own images; none where one is neither that nor its opposite.
     fn own_images(&self, links: &Rows, observed: &Rows, inside: &Rows) -> Option<Vec<usize>> {
-        let (m, stations, width) = (self.sizes.modes, self.track.stations(), self.sizes.influence());
+        let (m, stations, width) = (
+            self.whole.sizes.modes,
+            self.whole.track.stations(),
+            self.whole.sizes.influence(),
+        );
         // squares of what keeps its sign in the mirror and of what changes it
         let mut parities = vec![[0.0_f64; 2]; m];
-        for (rows, of) in [(links, &self.b), (observed, &self.v), (inside, &self.inside)] {
+        for (rows, of) in [
+            (links, &self.whole.b),
+            (observed, &self.whole.v),
+            (inside, &self.whole.inside),
+        ] {
             for &[a, b] in &rows.images {
                 for (k, [same, other]) in parities.iter_mut().enumerate() {
                     *same += (of[(a, k)] + of[(b, k)]).powi(2);
@@ -223,9 +243,11 @@ impl BridgeOperator {
                 }
             }
         }
-        for column in 0..self.track.columns() {
+        for column in 0..self.whole.track.columns() {
             let of_image = self.image_of_column(column, stations) * width;
-            let pairs = self.deck[column * width..][..m].iter().zip(&self.deck[of_image..][..m]);
+            let pairs = self.whole.deck[column * width..][..m]
+                .iter()
+                .zip(&self.whole.deck[of_image..][..m]);
             for ((a, b), [same, other]) in pairs.zip(&mut parities) {
                 *same += (a + b).powi(2);
                 *other += (a - b).powi(2);
@@ -247,22 +269,23 @@ impl BridgeOperator {
 
     /// The column of the deck that mirrors one.
     fn image_of_column(&self, column: usize, stations: usize) -> usize {
-        (self.track.lines() - 1 - column / stations) * stations + column % stations
+        (self.whole.track.lines() - 1 - column / stations) * stations + column % stations
     }
 
     /// The deck's influences, each the mean over a column and its image.
     fn side_deck(&self, modes: &[usize], rows: [&Rows; 3]) -> Vec<f64> {
-        let (stations, width) = (self.track.stations(), self.sizes.influence());
+        let (stations, width) = (self.whole.track.stations(), self.whole.sizes.influence());
         let mut deck = Vec::new();
-        for column in 0..self.track.columns() {
+        for column in 0..self.whole.track.columns() {
             let [own, other] =
-                [column, self.image_of_column(column, stations)].map(|c| &self.deck[c * width..][..width]);
+                [column, self.image_of_column(column, stations)].map(|c| &self.whole.deck[c * width..][..width]);
             deck.extend(modes.iter().map(|&k| 0.5 * (own[k] + other[k])));
-            let mut first = self.sizes.modes;
-            for (rows, count) in rows
-                .into_iter()
-                .zip([self.sizes.connectors, self.sizes.observed, self.sizes.inside])
-            {
+            let mut first = self.whole.sizes.modes;
+            for (rows, count) in rows.into_iter().zip([
+                self.whole.sizes.connectors,
+                self.whole.sizes.observed,
+                self.whole.sizes.inside,
+            ]) {
                 let of_row = |&[a, b]: &[usize; 2]| {
                     let [a, b] = [first + a, first + b];
                     0.25 * ((own[a] + own[b]) + (other[a] + other[b]))
@@ -276,10 +299,14 @@ impl BridgeOperator {
 
     /// The residual among the deck's nodes, each the mean over two columns and their images.
     fn side_residual(&self) -> Vec<f64> {
-        let (lines, stations, width) = (self.track.lines(), self.track.stations(), 2 * self.near + 1);
-        let mut of_side = Vec::with_capacity(self.r_deck.len());
-        let of = |column: usize, line: usize| &self.r_deck[(column * lines + line) * width..][..width];
-        for column in 0..self.track.columns() {
+        let (lines, stations, width) = (
+            self.whole.track.lines(),
+            self.whole.track.stations(),
+            2 * self.whole.near + 1,
+        );
+        let mut of_side = Vec::with_capacity(self.whole.r_deck.len());
+        let of = |column: usize, line: usize| &self.whole.r_deck[(column * lines + line) * width..][..width];
+        for column in 0..self.whole.track.columns() {
             let image = self.image_of_column(column, stations);
             for line in 0..lines {
                 let other = lines - 1 - line;

@@ -4,48 +4,46 @@
 
 use super::{Patch, Vehicle, WheelPoint};
 
-impl Vehicle {
-    /// What of the vehicle lies on the side of higher y or on the centre line, each point of that side with the weight of its image
-    /// as well; none of a vehicle that is not its own mirror image to the last bit, or that rides on springs.
-    pub(crate) fn one_side(&self) -> Option<Self> {
-        if self.springs.is_some() {
+/// What of the vehicle lies on the side of higher y or on the centre line, each point of that side with the weight of its image
+/// as well; none of a vehicle that is not its own mirror image to the last bit, or that rides on springs.
+pub(crate) fn one_side(vehicle: &Vehicle) -> Option<Vehicle> {
+    if vehicle.springs.is_some() {
+        return None;
+    }
+    let mut patches = Vec::new();
+    for patch in &vehicle.patches {
+        let mut images = vehicle.patches.iter().filter(|other| is_image(patch, other));
+        images.next()?;
+        if images.next().is_some() {
             return None;
         }
-        let mut patches = Vec::new();
-        for patch in &self.patches {
-            let mut images = self.patches.iter().filter(|other| is_image(patch, other));
-            images.next()?;
-            if images.next().is_some() {
-                return None;
-            }
-            if patch.y_m < 0.0 {
-                continue;
-            }
-            // of a patch on the centre line its own other side is the image
-            let points = patch.points.iter().filter(|point| patch.y_m > 0.0 || point.y_m >= 0.0);
-            let with_image = |point: &WheelPoint| WheelPoint {
-                share: if patch.y_m > 0.0 || point.y_m > 0.0 {
-                    2.0 * point.share
-                } else {
-                    point.share
-                },
-                ..*point
-            };
-            patches.push(Patch {
-                share: if patch.y_m > 0.0 {
-                    2.0 * patch.share
-                } else {
-                    patch.share
-                },
-                points: points.map(with_image).collect(),
-                ..patch.clone()
-            });
+        if patch.y_m < 0.0 {
+            continue;
         }
-        Some(Self {
-            patches,
-            ..self.clone()
-        })
+        // of a patch on the centre line its own other side is the image
+        let points = patch.points.iter().filter(|point| patch.y_m > 0.0 || point.y_m >= 0.0);
+        let with_image = |point: &WheelPoint| WheelPoint {
+            share: if patch.y_m > 0.0 || point.y_m > 0.0 {
+                2.0 * point.share
+            } else {
+                point.share
+            },
+            ..*point
+        };
+        patches.push(Patch {
+            share: if patch.y_m > 0.0 {
+                2.0 * patch.share
+            } else {
+                patch.share
+            },
+            points: points.map(with_image).collect(),
+            ..patch.clone()
+        });
     }
+    Some(Vehicle {
+        patches,
+        ..vehicle.clone()
+    })
 }
 
 /// Whether a patch is the mirror image of another, point by point.
@@ -64,9 +62,9 @@ mod tests {
     use crate::vehicle::VehicleDesign;
     use serde_json::{Value, json};
 
-    fn one_side(design: Value) -> Option<crate::vehicle::Vehicle> {
+    fn side_of(design: Value) -> Option<crate::vehicle::Vehicle> {
         let design: VehicleDesign = serde_json::from_value(design).unwrap();
-        design.check(8.0).unwrap().one_side()
+        super::one_side(&design.check(8.0).unwrap())
     }
 
     /// Two tracks become one with the weight of both, patches of a width keep the points of one side, and shares sum to 1.
@@ -80,7 +78,7 @@ mod tests {
             (json!([-1.4, 0.0, 1.4]), 0.0, 8),
         ] {
             let vehicle = json!({ "axles": [{ "share": 1.0, "track_y_m": tracks, "behind_front_m": 1.0, "patch_length_m": 1.0, "patch_width_m": widths }], "patch_points": 4 });
-            let side = one_side(vehicle.clone()).unwrap();
+            let side = side_of(vehicle.clone()).unwrap();
             assert_eq!(side.points().count(), points, "{vehicle}");
             let sum: f64 = side.points().map(|point| point.share).sum();
             let of_patches: f64 = side.patches.iter().map(|patch| patch.share).sum();
@@ -95,8 +93,8 @@ mod tests {
     /// An asymmetry of one bit is one.
     #[test]
     fn a_vehicle_off_the_centre_has_no_side() {
-        assert!(one_side(json!({ "track_y_m": [-1.4, 1.4_f64.next_up()] })).is_none());
-        assert!(one_side(json!({ "track_y_m": [-1.0, 1.8] })).is_none());
-        assert!(one_side(json!({ "track_y_m": [1.4] })).is_none());
+        assert!(side_of(json!({ "track_y_m": [-1.4, 1.4_f64.next_up()] })).is_none());
+        assert!(side_of(json!({ "track_y_m": [-1.0, 1.8] })).is_none());
+        assert!(side_of(json!({ "track_y_m": [1.4] })).is_none());
     }
 }

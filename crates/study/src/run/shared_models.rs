@@ -514,6 +514,7 @@ impl SharedModels {
             let crossing = job.as_crossing();
             let damping = crossing.and_then(|crossing| shared(&self.damping, &damping_key(&crossing)).ok());
             let operator = crossing.and_then(|crossing| self.operator_of(&crossing).ok());
+            let solver = crossing.and_then(|crossing| self.operated(&crossing).ok());
             let waves = operator.as_ref().and_then(|operator| operator.wave_states());
             let operator = operator.map(|operator| operator.cutoff());
             let report = BridgeReport {
@@ -532,6 +533,7 @@ impl SharedModels {
                 operator_cutoff_hz: operator.map(|o| o.frequency_hz),
                 operator_tolerance: operator.map(|o| o.tolerance),
                 operator_error: operator.map(|o| o.error),
+                one_side_modes: solver.and_then(|solver| solver.one_side_modes()),
                 water: job.bridge.water.as_ref().map(|water| water_report(job, water, waves)),
             };
             if !reports.contains(&report) {

@@ -8,12 +8,14 @@ mod free_bodies;
 mod halving;
 #[cfg(test)]
 mod in_waves;
+mod mounts;
 mod observe;
 mod one_side;
 mod operated;
 mod riders;
 mod run;
 mod step;
+mod stepped;
 
 use super::AnalysisError;
 use super::modes::Rayleigh;
@@ -28,10 +30,11 @@ use crate::riding::RidingStep;
 use crate::scheme::Scheme;
 use crate::traffic::{Driven, Traffic};
 use observe::Observer;
-pub use operated::{OperatorSolver, REFINEMENTS};
+pub use operated::OperatorSolver;
 pub use run::CrossingRun;
 use std::sync::{Arc, OnceLock};
 use step::Stepper;
+pub use stepped::REFINEMENTS;
 
 /// What all crossings of a solver share.
 #[derive(Debug, Clone, Copy, PartialEq)]

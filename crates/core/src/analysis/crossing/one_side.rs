@@ -2,32 +2,36 @@
 //!
 //! Knows which crossings are, and how the bridge reads from its side. Does not know steps.
 
-use super::operated::Stepped;
+use super::mounts::Mounts;
+use super::stepped::Stepped;
 use super::{Crossing, CrossingSettings};
-use crate::bridge::BridgeDesign;
+use crate::bridge::{BridgeDesign, is_own_image};
 use crate::contact::{Dashpot, LinkLaw};
-use crate::operator::{BridgeOperator, SideBridge, SideLinks};
+use crate::operator::{BridgeOperator, SideBridge, SideLinks, one_side};
 use crate::response::{ForcePeaks, JointReading, Peak, Reading, RideReading};
 use crate::traffic::{Driven, Traffic};
+use crate::vehicle;
 use std::sync::Arc;
 
 /// One side of a bridge, made ready for crossings.
 #[derive(Debug)]
 pub(super) struct OneSide {
     pub(super) stepped: Stepped,
+    pub(super) mounts: Mounts,
     pub(super) links: SideLinks,
 }
 
 impl OneSide {
     /// The side of a bridge; none of one that is not its own mirror image.
     pub(super) fn of(design: &BridgeDesign, operator: &BridgeOperator, settings: &CrossingSettings) -> Option<Self> {
-        if !design.is_own_image() {
+        if !is_own_image(design) {
             return None;
         }
         let links = SideLinks::new(design.modules - 1, &design.connectors.y_m)?;
-        let SideBridge { operator, links } = operator.one_side(&links)?;
+        let SideBridge { operator, links } = one_side(operator, &links)?;
         Some(Self {
             stepped: Stepped::new(Arc::new(operator), settings),
+            mounts: Mounts::default(),
             links,
         })
     }
@@ -43,7 +47,7 @@ impl OneSide {
         }
         let of_side = |driven: &Driven| {
             Some(Driven {
-                vehicle: Arc::new(driven.vehicle.one_side()?),
+                vehicle: Arc::new(vehicle::one_side(&driven.vehicle)?),
                 ..driven.clone()
             })
         };

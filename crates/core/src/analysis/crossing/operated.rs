@@ -3,19 +3,18 @@
 //! Knows when a crossing begins, is halved and ends, and what a lane leaves behind. Does not know the step's arithmetic.
 
 use super::halving::{Halving, halve};
+use super::mounts::{Mount, MountedStep, Mounts};
 use super::one_side::{BridgeReading, OneSide, peaks_of_bridge};
+use super::stepped::{REFINEMENTS, Stepped};
 use super::{Crossing, CrossingSettings, StepSpan};
 use crate::analysis::AnalysisError;
 use crate::bridge::{Bridge, BridgeDesign, LinkPlace, joint_parts};
 use crate::contact::NotSettled;
-use crate::operator::{
-    BridgeOperator, CrossingInput, Crossings, StepClock, StepConstants, WheelCompliance, WheelLines, step,
-};
+use crate::operator::{BridgeOperator, CrossingInput, Crossings, StepClock, WheelLines, step};
 use crate::response::{
     BankPart, CrossingResponse, DeadState, JointReading, PositionPeaks, Reading, Record, Recorder, RideReading,
 };
-use crate::riding::RidingStep;
-use crate::traffic::{Driven, Traffic};
+use crate::traffic::Traffic;
 use std::sync::{Arc, OnceLock};
 
 /// A bridge operator made ready for crossings at one time step and its halves. Shared read-only between threads.
@@ -30,72 +29,10 @@ pub struct OperatorSolver {
     link_places: Vec<LinkPlace>,
     settings: CrossingSettings,
     whole: Stepped,
+    mounts: Mounts,
     /// Its side for crossings that are their own mirror images, made when the first one comes; none where the bridge is not its own,
     /// or no side is to be used.
     side: OnceLock<Option<OneSide>>,
-}
-
-/// An operator, and what each step length makes of it.
-#[derive(Debug)]
-pub(super) struct Stepped {
-    operator: Arc<BridgeOperator>,
-    settings: CrossingSettings,
-    constants: Vec<OnceLock<StepConstants>>,
-}
-
-impl Stepped {
-    /// An operator at one time step and its halves.
-    pub(super) fn new(operator: Arc<BridgeOperator>, settings: &CrossingSettings) -> Self {
-        Self {
-            operator,
-            settings: *settings,
-            constants: (0..=settings.bisection_limit + REFINEMENTS)
-                .map(|_| OnceLock::new())
-                .collect(),
-        }
-    }
-
-    /// The time step after some halvings `[s]`.
-    fn time_step_s(&self, halvings: usize) -> f64 {
-        self.settings.time_step_s / (1_u64 << halvings) as f64
-    }
-
-    fn constants(&self, halvings: usize) -> &StepConstants {
-        self.constants[halvings].get_or_init(|| {
-            let CrossingSettings {
-                spectral_radius,
-                rayleigh,
-                ..
-            } = self.settings;
-            StepConstants::new(&self.operator, self.time_step_s(halvings), spectral_radius, rayleigh)
-        })
-    }
-}
-
-/// Vehicles that are kept ready at once.
-const VEHICLES_KEPT: usize = 8;
-
-/// How often a whole crossing may be asked for at half the time step.
-pub const REFINEMENTS: usize = 6;
-
-/// Vehicles on the deck, with their small flexibilities and springs at each step length asked for.
-#[derive(Debug)]
-struct Mount {
-    traffic: Arc<Traffic>,
-    wheels: Arc<WheelLines>,
-    steps: Vec<Option<MountedStep>>,
-}
-
-/// What a step length makes of vehicles on the deck.
-type MountedStep = (Arc<WheelCompliance>, Arc<[Option<Arc<RidingStep>>]>);
-
-impl Mount {
-    /// Whether the vehicles of another traffic see the deck as these do, whatever they weigh and however fast they are.
-    fn fits(&self, traffic: &Traffic) -> bool {
-        let alike = |(a, b): (&Driven, &Driven)| a.vehicle == b.vehicle && a.drive.backward == b.drive.backward;
-        let (own, other) = (&self.traffic.vehicles, &traffic.vehicles);
-        own.len() == other.len() && own.iter().zip(other).all(alike)
-    }
 }
 
 /// Crossings under way.
@@ -103,8 +40,8 @@ struct Crew<'a, C> {
     solver: &'a OperatorSolver,
     /// What they step on, and where that is one side of the bridge its links.
     on: &'a Stepped,
+    mounts: &'a Mounts,
     side: Option<&'a OneSide>,
-    mounts: Vec<Mount>,
     lanes: Crossings,
     /// One lane by itself, for steps that are halved.
     solo: Option<Crossings>,
@@ -134,6 +71,7 @@ impl OperatorSolver {
             link_places: bridge.links.iter().map(|link| link.place).collect(),
             settings: *settings,
             whole: Stepped::new(Arc::clone(operator), settings),
+            mounts: Mounts::default(),
             side: OnceLock::new(),
         }
     }
@@ -149,13 +87,19 @@ impl OperatorSolver {
 
     /// The operator.
     pub fn operator(&self) -> &BridgeOperator {
-        &self.whole.operator
+        self.whole.operator()
     }
 
     /// The side of the bridge.
     fn side(&self) -> Option<&OneSide> {
-        let of = || OneSide::of(&self.design, &self.whole.operator, &self.settings);
+        let of = || OneSide::of(&self.design, self.whole.operator(), &self.settings);
         self.side.get_or_init(of).as_ref()
+    }
+
+    /// Modes of one side of the bridge, on which crossings are solved that are their own mirror images; none of a bridge that is not
+    /// its own.
+    pub fn one_side_modes(&self) -> Option<usize> {
+        self.side().map(|side| side.stepped.operator().modes())
     }
 
     /// Whether a crossing is its own mirror image on a bridge that is, so that it is solved on one side.
@@ -223,18 +167,19 @@ impl OperatorSolver {
         if numbered.is_empty() {
             return Vec::new();
         }
-        let on = side.map_or(&self.whole, |side| &side.stepped);
+        let whole = (&self.whole, &self.mounts);
+        let (on, mounts) = side.map_or(whole, |side| (&side.stepped, &side.mounts));
         let (numbers, crossings): (Vec<usize>, Vec<_>) = numbered.iter().copied().unzip();
         let most_nodes = crossings
             .iter()
-            .map(|(traffic, _)| WheelLines::most_nodes_of(&on.operator, traffic));
+            .map(|(traffic, _)| WheelLines::most_nodes_of(on.operator(), traffic));
         let most_nodes = most_nodes.max().unwrap_or(0);
         let mut crew = Crew {
             solver: self,
             on,
+            mounts,
             side,
-            mounts: Vec::new(),
-            lanes: Crossings::new(&on.operator, most_nodes, self.settings.newton_limit),
+            lanes: Crossings::new(on.operator(), most_nodes, self.settings.newton_limit),
             solo: None,
             refinement: refinement.min(REFINEMENTS),
             clock,
@@ -272,7 +217,7 @@ impl<C: StepClock> Crew<'_, C> {
             }
             let level = self.on.constants(self.refinement);
             let limit = self.solver.settings.newton_limit;
-            step(&mut self.lanes, &self.on.operator, level, limit, self.clock);
+            step(&mut self.lanes, self.on.operator(), level, limit, self.clock);
             for (lane, slot) in under.iter_mut().enumerate() {
                 let Some(of) = slot else {
                     continue;
@@ -295,13 +240,13 @@ impl<C: StepClock> Crew<'_, C> {
     }
 
     fn begin<'c>(&mut self, lane: usize, index: usize, (traffic, crossing): (&'c Traffic, &'c Crossing)) -> Under<'c> {
-        let mount = self.mount(traffic);
-        let (compliance, riding) = self.mounted_step(mount, self.refinement);
-        let on_whole = || (crossing.laws(self.on.operator.connectors()), crossing.dashpots());
+        let mount = self.mounts.of(self.on, traffic);
+        let MountedStep { compliance, riding } = mount.step(self.on, self.refinement);
+        let on_whole = || (crossing.laws(self.on.operator().connectors()), crossing.dashpots());
         let (laws, dashpots) = self.side.and_then(|side| side.laws(crossing)).unwrap_or_else(on_whole);
         let crossing_input = CrossingInput {
             traffic: Arc::new(traffic.clone()),
-            wheels: Arc::clone(&self.mounts[mount].wheels),
+            wheels: Arc::clone(&mount.wheels),
             compliance,
             riding,
             laws: laws.into(),
@@ -312,7 +257,7 @@ impl<C: StepClock> Crew<'_, C> {
         let length_m = self.solver.design.length_m();
         let span = StepSpan::new(length_m, traffic, h, crossing.tail_s);
         let start_s = span.time_s(0, h);
-        self.lanes.begin(&self.on.operator, lane, crossing_input, start_s);
+        self.lanes.begin(self.on.operator(), lane, crossing_input, start_s);
         let design = &self.solver.design;
         let parts = (joint_parts(design), self.solver.banks.clone());
         let rides = (traffic.ride_parts(), start_s);
@@ -331,45 +276,13 @@ impl<C: StepClock> Crew<'_, C> {
         }
     }
 
-    /// The place of a traffic's vehicles among those kept ready.
-    fn mount(&mut self, traffic: &Traffic) -> usize {
-        if let Some(known) = self.mounts.iter().position(|mount| mount.fits(traffic)) {
-            return known;
-        }
-        let mount = Mount {
-            traffic: Arc::new(traffic.clone()),
-            wheels: Arc::new(WheelLines::new(&self.on.operator, traffic)),
-            steps: Vec::new(),
-        };
-        // lanes hold what they need, so that any other may go
-        if self.mounts.len() == VEHICLES_KEPT {
-            self.mounts.remove(0);
-        }
-        self.mounts.push(mount);
-        self.mounts.len() - 1
-    }
-
-    fn mounted_step(&mut self, mount: usize, halvings: usize) -> MountedStep {
-        let (operator, level) = (&*self.on.operator, self.on.constants(halvings));
-        let mount = &mut self.mounts[mount];
-        if mount.steps.len() <= halvings {
-            mount.steps.resize(halvings + 1, None);
-        }
-        let (compliance, riding) = mount.steps[halvings].get_or_insert_with(|| {
-            let compliance = WheelCompliance::new(operator, level, &mount.wheels);
-            let of = |driven: &Driven| Some(Arc::new(level.riding(driven.vehicle.springs.as_ref()?)));
-            (Arc::new(compliance), mount.traffic.vehicles.iter().map(of).collect())
-        });
-        (Arc::clone(compliance), Arc::clone(riding))
-    }
-
     /// What is to be done with a lane after its step: halve it where it did not settle, record, finish.
     fn after_step(&mut self, lane: usize, of: &mut Under<'_>) -> Option<Result<CrossingResponse, AnalysisError>> {
         let time_s = self.time_s(of);
         if let Some(stuck) = self.lanes.unsettled(lane) {
-            let mount = self.mount(of.traffic);
+            let mount = self.mounts.of(self.on, of.traffic);
             let span_s = [self.time_after(of.step - 1, of), time_s];
-            if let Err(error) = self.halve((lane, mount), stuck, span_s, &mut of.recorder) {
+            if let Err(error) = self.halve((lane, &mount), stuck, span_s, &mut of.recorder) {
                 return Some(Err(error));
             }
             if let Some(solo) = &self.solo {
@@ -391,7 +304,7 @@ impl<C: StepClock> Crew<'_, C> {
     /// Does a lane's step again in halves, by itself.
     fn halve(
         &mut self,
-        (lane, mount): (usize, usize),
+        (lane, mount): (usize, &Mount),
         stuck: NotSettled,
         span_s: [f64; 2],
         recorder: &mut Recorder,
@@ -400,7 +313,7 @@ impl<C: StepClock> Crew<'_, C> {
             return Ok(());
         };
         let saved = self.lanes.save(lane);
-        let (operator, limit) = (&self.on.operator, self.solver.settings.newton_limit);
+        let (operator, limit) = (self.on.operator(), self.solver.settings.newton_limit);
         let most = input.wheels.most_nodes();
         let fits = |solo: &Crossings| solo.most_nodes() >= most;
         let mut solo = self
@@ -459,7 +372,7 @@ impl<C: StepClock> Crew<'_, C> {
 struct Alone<'a, 's, C> {
     crew: &'a mut Crew<'s, C>,
     lane: &'a mut Crossings,
-    mount: usize,
+    mount: &'a Mount,
     recorder: &'a mut Recorder,
 }
 
@@ -470,13 +383,13 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
 
     fn step(&mut self, to_s: f64, halvings: usize) -> Result<Result<(), NotSettled>, AnalysisError> {
         let halvings = self.crew.refinement + halvings;
-        let (compliance, riding) = self.crew.mounted_step(self.mount, halvings);
+        let MountedStep { compliance, riding } = self.mount.step(self.crew.on, halvings);
         self.lane.take_step(0, compliance, &riding);
         self.lane.place(0, to_s);
         let solver = self.crew.solver;
         let limit = solver.settings.newton_limit;
         let on = self.crew.on;
-        step(self.lane, &on.operator, on.constants(halvings), limit, &mut ());
+        step(self.lane, on.operator(), on.constants(halvings), limit, &mut ());
         let unsettled = self.lane.unsettled(0);
         if unsettled.is_none() {
             let (reading, side) = (self.lane.reading(0), self.crew.side);
