@@ -89,7 +89,7 @@ fn a_job_that_was_under_way_when_others_killed_the_process_is_not_marked() {
     for _ in 0..2 {
         let words = ["run", "study.json", "--out", "r", "--quiet", "--threads", "1"];
         let output = command(&stage, &words)
-            .env("PONTOON_FAULT", "journal.write:4:short")
+            .env("PONTOON_FAULT", "journal.write:8:short")
             .output()
             .unwrap();
         assert_eq!(output.status.code(), None, "{}", stderr(&output));

@@ -243,7 +243,8 @@ impl LinearSystem {
         let forces = self.forces.vectors_mut::<S>();
         forces.fill(o.splat(0.0));
         for (p, &i) in self.active.iter().enumerate() {
-            forces[i] = rhs[nr + p];
+            // of a lane that leaves the link out 0, and not -0, as where no lane has it
+            forces[i] = o.add(rhs[nr + p], o.splat(0.0));
         }
     }
 
@@ -369,9 +370,10 @@ impl LinearSystem {
     fn elongate<S: Simd>(&mut self, o: Ops<S>, input: ContactInput) {
         let (found, forces) = (self.found.vectors_mut::<S>(), self.forces.vectors::<S>());
         found.copy_from_slice(input.e.vectors::<S>());
-        for &j in &self.active {
+        for (p, &j) in self.active.iter().enumerate() {
+            let here = o.0.greater_than_f64s(self.is_active.vectors::<S>()[p], o.splat(0.0));
             for (found, seen) in found.iter_mut().zip(column(input.compliance, j)) {
-                *found = o.less(*found, o.splat(*seen), forces[j]);
+                *found = o.0.select_f64s(here, o.less(*found, o.splat(*seen), forces[j]), *found);
             }
         }
         let riders = &self.riders.vectors::<S>()[..input.riders.count()];

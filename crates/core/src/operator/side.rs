@@ -136,7 +136,7 @@ struct Mirrored<'a> {
     links: &'a SideLinks,
 }
 
-/// One side of the bridge, without pins; none of a bridge that is not its own image: where a mode is neither its own image nor
+/// One side of the bridge; none of a bridge that is not its own image: where a mode is neither its own image nor
 /// its opposite, links answer otherwise than their images, or springs of banks are observed.
 /// Equation (O10).
 pub(crate) fn one_side(whole: &BridgeOperator, links: &SideLinks) -> Option<SideBridge> {
@@ -159,6 +159,8 @@ impl Mirrored<'_> {
         observed.extend((0..rows.places).map(|i| [rows.positions + corners + i; 2]));
         let observed = Rows { images: observed };
         let inside = Rows::beside(0, sizes.inside / 2);
+        // forces of both sides' pins are asked for
+        let pins = Rows::beside(sizes.pins, 0);
         let modes = self.own_images(&link_rows, &observed, &inside)?;
         let side_sizes = Sizes {
             modes: modes.len(),
@@ -167,7 +169,7 @@ impl Mirrored<'_> {
             observed: observed.images.len(),
             inside: inside.images.len(),
             modules: sizes.modules,
-            pins: 0,
+            pins: sizes.pins,
         };
         let of_mode = |of: &[f64]| modes.iter().map(|&k| of[k]).collect();
         let of_module = |module: &OperatedModule| OperatedModule {
@@ -195,9 +197,15 @@ impl Mirrored<'_> {
             r_inside_b: inside.means_among(&whole.r_inside_b, &link_rows),
             inside_bounds: whole.inside_bounds.clone(),
             of_modules: whole.of_modules.iter().map(of_module).collect(),
-            pins: PinRows::default(),
+            pins: PinRows {
+                places: whole.pins.places.clone(),
+                stiffness: pins.means(&whole.pins.stiffness, &modes),
+                mass: pins.means(&whole.pins.mass, &modes),
+                connectors: pins.means_among(&whole.pins.connectors, &link_rows),
+                water: pins.means(&whole.pins.water, &modes),
+            },
             waves: whole.waves.as_ref().map(|waves| waves.of_side(&modes)),
-            deck: self.side_deck(&modes, [&link_rows, &observed, &inside]),
+            deck: self.side_deck(&modes, [&link_rows, &observed, &inside, &pins]),
             r_deck: self.side_residual(),
             near: whole.near,
             track: whole.track.clone(),
@@ -273,19 +281,19 @@ impl Mirrored<'_> {
     }
 
     /// The deck's influences, each the mean over a column and its image.
-    fn side_deck(&self, modes: &[usize], rows: [&Rows; 3]) -> Vec<f64> {
-        let (stations, width) = (self.whole.track.stations(), self.whole.sizes.influence());
+    fn side_deck(&self, modes: &[usize], rows: [&Rows; 4]) -> Vec<f64> {
+        let (sizes, stations) = (&self.whole.sizes, self.whole.track.stations());
+        let width = sizes.influence();
         let mut deck = Vec::new();
         for column in 0..self.whole.track.columns() {
             let [own, other] =
                 [column, self.image_of_column(column, stations)].map(|c| &self.whole.deck[c * width..][..width]);
             deck.extend(modes.iter().map(|&k| 0.5 * (own[k] + other[k])));
             let mut first = self.whole.sizes.modes;
-            for (rows, count) in rows.into_iter().zip([
-                self.whole.sizes.connectors,
-                self.whole.sizes.observed,
-                self.whole.sizes.inside,
-            ]) {
+            for (rows, count) in rows
+                .into_iter()
+                .zip([sizes.connectors, sizes.observed, sizes.inside, sizes.pins])
+            {
                 let of_row = |&[a, b]: &[usize; 2]| {
                     let [a, b] = [first + a, first + b];
                     0.25 * ((own[a] + own[b]) + (other[a] + other[b]))

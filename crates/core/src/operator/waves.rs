@@ -74,11 +74,10 @@ impl OperatorWaves {
         })
     }
 
-    /// On modes that are their own mirror images, which do not roll; pins are not followed.
+    /// On modes that are their own mirror images, which do not roll.
     pub(super) fn of_side(&self, modes: &[usize]) -> Self {
         let of_group = |group: &WaveGroup| WaveGroup {
             motions: group.motions.select_columns(modes),
-            pins: DMatrix::zeros(0, group.motions.nrows()),
             ..group.clone()
         };
         Self {

@@ -36,10 +36,10 @@ impl OneSide {
         })
     }
 
-    /// What drives on the side in a crossing; none where the crossing is not its own mirror image, rides on springs, starts from a
-    /// dead state or asks for pins.
+    /// What drives on the side in a crossing; none where the crossing is not its own mirror image, rides on springs or starts from a
+    /// dead state.
     pub(super) fn traffic(&self, traffic: &Traffic, crossing: &Crossing) -> Option<Traffic> {
-        if crossing.dead.is_some() || crossing.record.needs_pins() {
+        if crossing.dead.is_some() {
             return None;
         }
         if !crossing.own_laws.is_empty() {
