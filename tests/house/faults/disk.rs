@@ -69,7 +69,7 @@ fn a_sync_that_fails_ends_the_run_and_says_so() {
 
 #[test]
 fn a_folder_is_one_process_at_a_time_and_a_dead_one_holds_nothing() {
-    let stage = sweep(10, 0.005);
+    let stage = sweep(10, 0.001);
     let mut first = begin(&stage, "r", &[]);
     let began = Instant::now();
     while !stage.path("r/journal").exists() {

@@ -1,7 +1,8 @@
 //! Asked to stop, or how far it is.
 
-use super::sweep::{begin, finish, records, same_tables, status, sweep, tables};
+use super::sweep::{begin, command, finish, records, same_tables, status, sweep, tables};
 use crate::stage::{Stage, stderr};
+use serde_json::Value;
 use std::process::{Child, Command, Output};
 use std::time::{Duration, Instant};
 
@@ -16,10 +17,13 @@ fn send(child: &Child, signal: &str) {
 /// Waits until a run has recorded a job.
 fn under_way(stage: &Stage, out: &str) {
     let began = Instant::now();
-    // the folder of a journal is there before its file
-    let has_journal =
-        || std::fs::read_dir(stage.path(&format!("{out}/journal"))).is_ok_and(|mut files| files.next().is_some());
-    while !has_journal() || status(stage, &[out])["done"].as_u64() == Some(0) {
+    // the folder of a journal is there before its file, and the file before what it begins with
+    let is_under_way = || {
+        let output = command(stage, &["status", "--format", "json", out]).output().unwrap();
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        output.status.code() == Some(0) && told["done"].as_u64() > Some(0)
+    };
+    while !is_under_way() {
         assert!(began.elapsed() < Duration::from_secs(60));
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -31,7 +35,7 @@ fn ended(child: Child) -> Output {
 
 #[test]
 fn an_interrupt_ends_the_run_resumable_and_a_question_does_not() {
-    let stage = sweep(30, 0.005);
+    let stage = sweep(30, 0.002);
     finish(&stage, "whole");
     let expected = tables(&stage, "whole");
     for signal in ["-INT", "-TERM"] {
