@@ -70,6 +70,19 @@ impl LocalResidual {
         [x, v, a, &mut self.weights, &mut self.inertia, &mut self.contact]
     }
 
+    /// Has room for so many nodes: one vehicle after another on a line makes all stations between them near.
+    #[inline(always)]
+    fn ensure_rows(&mut self, rows: usize) {
+        if self.sum.rows() < rows {
+            for list in self.carried() {
+                list.ensure_rows(rows);
+            }
+            for list in [&mut self.weights_now, &mut self.free, &mut self.sum] {
+                list.ensure_rows(rows);
+            }
+        }
+    }
+
     /// No nodes in a lane.
     pub(super) fn clear(&mut self, lane: usize) {
         self.runs[lane].clear();
@@ -96,6 +109,7 @@ impl LocalResidual {
         if rows == 0 {
             return;
         }
+        self.ensure_rows(rows);
         for (list, saved) in self.carried().into_iter().zip(saved.numbers.chunks_exact(rows)) {
             list.lane_mut(lane).zip(saved).for_each(|(to, x)| *to = *x);
         }
@@ -106,6 +120,7 @@ impl LocalResidual {
     pub(super) fn take_lane(&mut self, lane: usize, (from, of): (&Self, usize)) {
         self.runs[lane].clone_from(&from.runs[of]);
         let rows = self.runs[lane].iter().map(|run| run.count).sum();
+        self.ensure_rows(rows);
         for (to, list) in self.carried().into_iter().zip(from.listed()) {
             to.take_lane(lane, rows, (list, of));
         }
@@ -131,6 +146,7 @@ impl LocalResidual {
     ) {
         let first = group.first();
         let count = self.find_runs(group, nodes, wheels.stations());
+        self.ensure_rows(count);
         let (mask, modes) = (group.mask(o), constants.c.len());
         self.sum.clear_rows(count);
         for &UnitForce {
