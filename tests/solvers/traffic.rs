@@ -430,6 +430,49 @@ fn mirrored_traffic_leaves_mirrored_peaks() {
     }
 }
 
+/// Two vehicles of one wheel each, half of a bridge apart on one line: all stations between them are near, which are more than the
+/// vehicles have nodes. Twin: a second vehicle that is 5 % heavier.
+#[test]
+fn vehicles_far_behind_one_another_ride_on_one_line() {
+    let ready = Ready::new(&with(&design("smoke"), |d| d.modules = 8), Model::SuperElement);
+    let both = Both::new(&ready, &operator(&ready, 0.0), &settings(ready.rayleigh(), 0.02, 0.9));
+    let axle = Axle {
+        share: Some(1.0),
+        patch_length_m: 0.1,
+        track_y_m: vec![0.5],
+        ..Axle::default()
+    };
+    let design = VehicleDesign {
+        axles: Some(vec![axle]),
+        inertia: Inertia::Local,
+        patch_points: 1,
+        ..VehicleDesign::default()
+    };
+    let vehicle = design.check(BREADTH_M).expect("a vehicle");
+    let apart_s = 0.5 * ready.design.length_m() / 12.0;
+    let column = |factor: f64| {
+        let second = Driven {
+            load_n: factor * 1e5,
+            ..driven(&vehicle, late(12.0, apart_s))
+        };
+        let first = Driven {
+            load_n: 1e5,
+            ..driven(&vehicle, Drive::steady(12.0))
+        };
+        on([first, second])
+    };
+    let crossing = ready.crossing(PAPER_GAPS, 1.0, 1.0).crossing();
+    let [found, expected] = answers(&both, &column(1.0), &crossing);
+    let wrong = both.operated.solve(&column(1.05), &crossing).expect("solved");
+    let off = |r: &CrossingResponse| {
+        let all = |r: &CrossingResponse| -> Vec<f64> {
+            r.positions.iter().map(|position| position.deflection.value).collect()
+        };
+        apart(&all(r), &all(&expected))
+    };
+    held("operator", ROUNDING, off(&found), off(&wrong));
+}
+
 /// A column is its vehicles written as one with many axles, where masses are on the deck and where they are not; vehicles farther
 /// apart than the bridge is long leave what one leaves, but for what still swings. Twin: a spacing that is 5 % off.
 #[test]
