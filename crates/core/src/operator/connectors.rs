@@ -211,6 +211,12 @@ impl Connectors {
         panels.r_bb.multiply_listed(o, &self.active, n, rn);
     }
 
+    /// Those that pull or push in any lane.
+    #[inline(always)]
+    pub(super) fn active(&self) -> &[usize] {
+        &self.active
+    }
+
     /// Operations of [`Connectors::apply`] on so many modes, a lane.
     pub(super) fn flop_of_application(&self, modes: usize) -> f64 {
         (2 * self.active.len() * (modes + self.count())) as f64

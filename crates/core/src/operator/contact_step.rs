@@ -10,13 +10,12 @@ use super::dashpots::LaneDashpots;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::lane_group::LaneGroup;
-use super::loads::{apply_inertia, apply_weights, sum_forces};
+use super::loads::{apply_inertia, sum_forces};
 use super::moving_masses::{MovingMasses, OfGroup};
 use super::panel::{MOST_LANES, lanes};
 use super::rides::LaneRide;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
-use super::wheel_lines::WheelLines;
 use crate::riding::RideEnergies;
 use crate::scheme::Arithmetic;
 use pulp::Simd;
@@ -233,14 +232,6 @@ impl Alone {
     /// Forgets what was factored.
     pub(super) fn forget(&mut self) {
         self.coupling.contact.forget();
-    }
-
-    /// Puts the weights of a lane's vehicles on stations.
-    #[inline(always)]
-    pub(super) fn apply_weights(&mut self, wheels: &WheelLines, group: &LaneGroup, weights_now: &mut LaneArray) {
-        let rows = weights_now.rows();
-        apply_weights(Ops(pulp::Scalar), wheels, group, &mut self.rows);
-        weights_now.take_lane(group.base, rows, (&self.rows, 0));
     }
 
     /// Settles a lane by itself, and writes its numbers between those of the others.

@@ -14,7 +14,7 @@ use super::lane::{CrossingInput, Lane};
 use super::lane_array::LaneArray;
 use super::lane_group::{LaneGroup, LaneGroups, UnitForce};
 use super::lane_waves::LaneWaves;
-use super::loads::{Loads, apply_forces, apply_weights, sum_forces};
+use super::loads::{Loads, apply_forces, sum_forces};
 use super::local_residual::SavedResidual;
 use super::modes::Modes;
 use super::panel::{InstructionPath, MOST_LANES};
@@ -142,7 +142,7 @@ impl Crossings {
         let dead = crossing.and_then(|crossing| crossing.dead.as_deref());
         let laws = crossing.map_or(&[][..], |crossing| &crossing.laws);
         self.connectors.take_rest(lane, (laws, dead));
-        self.envelope.take_rest(lane, dead);
+        self.envelope.corners.take_rest(lane, dead);
         self.pins.take_rest(lane, dead);
     }
 
@@ -154,6 +154,7 @@ impl Crossings {
     /// Frees a lane, which then rests.
     pub(crate) fn end(&mut self, lane: usize) {
         self.rest(lane);
+        self.envelope.corners.end(lane);
         self.connectors.dashpots.take(lane, false);
         self.take_rest(lane, None);
         let of = &mut self.lanes[lane];
@@ -337,17 +338,13 @@ impl Crossings {
             lanes,
             loads,
             coupling,
-            alone,
             ..
         } = self;
         groups.form(lanes, |lane, other| coupling.masses.alike(lane, other), &operator.track);
         for group in groups.all() {
             let first = group.base + group.first();
             if let (Some(crossing), false) = (&lanes[first].crossing, group.weights.is_empty()) {
-                match group.alone() {
-                    Some(_) => alone.apply_weights(&crossing.wheels, group, &mut loads.weights_now),
-                    None => apply_weights(o, &crossing.wheels, group, &mut loads.weights_now),
-                }
+                loads.apply_weights(o, &crossing.wheels, group);
             }
             for lane in group.numbers() {
                 let of = &mut lanes[lane];
@@ -453,12 +450,9 @@ impl Crossings {
 
     /// Operations of reading what is observed, a lane: `V [q; s]`, and peaks.
     pub(super) fn flop_of_observed(&self) -> f64 {
-        let (m, c, v) = (
-            self.modes.count(),
-            self.connectors.count(),
-            self.envelope.observed_rows(),
-        );
-        (2 * (m + c) * v + 10 * v) as f64
+        let columns = self.modes.count() + self.connectors.count();
+        let rows = self.envelope.rows_read();
+        (2 * columns * rows + 10 * rows + 20 * self.envelope.modules()) as f64
     }
 
     /// Takes all lanes to the step's end, contact solved (O6), (O7).
@@ -521,6 +515,11 @@ impl LaneReading<'_> {
 }
 
 impl JointReading for LaneReading<'_> {
+    fn force_n(&self, connector: usize) -> f64 {
+        let now = self.of.connectors.by_law().at(connector, self.lane);
+        now + self.dead().map_or(0.0, |dead| dead.forces_n[connector])
+    }
+
     fn connector_n(&self, connector: usize) -> [f64; 2] {
         let connectors = &self.of.connectors;
         let now = connectors.by_law().at(connector, self.lane);

@@ -29,6 +29,9 @@ pub(super) struct Terms<S: Simd> {
     /// Of the strain what the modes have, `sum of omega^2 q^2`, and `s^T R s` of the connectors.
     modal_strain: S::f64s,
     residual_strain: S::f64s,
+    /// How far modes and links have moved (O11): `sum of (omega^2 + 1) d^2`, `sum of ds^2`.
+    modes_moved: S::f64s,
+    links_moved: S::f64s,
 }
 
 impl<S: Simd> Terms<S> {
@@ -50,6 +53,8 @@ impl<S: Simd> Terms<S> {
             strain: zero,
             modal_strain: zero,
             residual_strain: zero,
+            modes_moved: zero,
+            links_moved: zero,
         }
     }
 
@@ -72,6 +77,7 @@ impl<S: Simd> Terms<S> {
         self.damping_m = o.fma(d, v_alpha, self.damping_m);
         self.damping_k = o.fma(w2_d, v_alpha, self.damping_k);
         self.work = o.less(self.work, d, down);
+        self.modes_moved = o.fma(o.add(w2_d, d), d, self.modes_moved);
     }
 
     /// A mode that changes by `d` under the force `waves` of water with memory at alpha, upward.
@@ -117,6 +123,7 @@ impl<S: Simd> Terms<S> {
         let twice = o.sub(o.sub(sigma_new, r_new[0]), r_new[0]);
         self.strain = o.fma(s_new[0], twice, self.strain);
         self.work = o.fma(ds, down, self.work);
+        self.links_moved = o.fma(ds, ds, self.links_moved);
     }
 
     /// A dashpot that lengthens by `de` under the force `n` at alpha.
@@ -150,6 +157,8 @@ pub(super) struct Energy {
     /// `sum of omega^2 q^2`, `s^T R s`.
     pub(super) modal_strain: LaneArray,
     pub(super) residual_strain: LaneArray,
+    /// The square of the step's path (O11).
+    pub(super) moved: LaneArray,
 }
 
 impl Energy {
@@ -166,6 +175,7 @@ impl Energy {
             radiated: zeros(2),
             modal_strain: zeros(1),
             residual_strain: zeros(1),
+            moved: zeros(1),
         }
     }
 
@@ -233,6 +243,7 @@ impl Energy {
         self.springs.vectors_mut::<S>()[0] = springs;
         self.modal_strain.vectors_mut::<S>()[0] = terms.modal_strain;
         self.residual_strain.vectors_mut::<S>()[0] = terms.residual_strain;
+        self.moved.vectors_mut::<S>()[0] = o.fma(o.splat(constants.link_weight), terms.links_moved, terms.modes_moved);
         let sums = self.sums.vectors_mut::<S>();
         sums[0] = o.add(sums[0], o.add(rayleigh, terms.dashpots));
         sums[1] = o.add(sums[1], numerical);

@@ -2,20 +2,21 @@
 //!
 //! Knows the observed rows. Does not know how the motion came about.
 
-use super::basis::{BridgeOperator, Observed, OperatedModule};
+use super::basis::{BridgeOperator, Observed};
 use super::connectors::Connectors;
+use super::corners::{CornerView, Corners, ROUNDING_M};
 use super::energy::Energy;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::lane_group::{LaneGroups, UnitForce};
 use super::modes::Modes;
-use super::panel::{MOST_LANES, lanes, lanes_mut};
+use super::panel::{MOST_LANES, lanes_mut};
 use super::placed::Placed;
 use super::residual::Residual;
 use super::step_constants::StepConstants;
 use super::vector::Ops;
 use super::wheel_lines::DeckNode;
-use crate::response::{DeadState, EnergySummary, ForcePeaks, JointPeaks, Peak};
+use crate::response::{EnergySummary, ForcePeaks, JointPeaks, Peak};
 use crate::scheme::Arithmetic;
 use pulp::Simd;
 
@@ -31,31 +32,18 @@ pub(super) struct Envelope {
     time: LaneArray,
     /// Time of the step `[s]`.
     now: LaneArray,
-    /// Largest downward deflection of corners and edges, height of bottom corners, roll; largest corner deflection.
-    edge: LaneArray,
-    corner: LaneArray,
-    bottom: LaneArray,
-    roll: LaneArray,
-    /// Largest trim of a module.
-    trim: LaneArray,
+    /// Corners of decks and bottoms.
+    pub(super) corners: Corners,
     /// When and where edges, roll and trim were largest and an axle's force was smallest, in each lane.
     pub(super) placed: Vec<Placed>,
-    /// Largest deflection of each module's corners now.
-    of_module: LaneArray,
-    /// `[q; s]`, observed rows, edges inside one module, now.
+    /// `[q; s]`, observed rows, edges inside one module, now; corners as they were looked at last.
     motion: LaneArray,
     observed: LaneArray,
     inside: LaneArray,
-    breadth_m: f64,
-    /// How far the corners of decks, then of bottoms, have risen against the water at rest `[m]`, and in which lanes they have.
-    risen: LaneArray,
-    from_rest: Vec<bool>,
-    /// Of each module how much its freeboard and its draft are above the least `[m]`.
-    beyond_m: Vec<[f64; 2]>,
-    /// Half of one over the length of each module `[1/m]`.
-    half_per_m: Vec<f64>,
-    /// Corners of one lane.
-    of_lane: Vec<f64>,
+    /// How far the edges inside each module may be off the straight line between its corners `[m]`.
+    off: LaneArray,
+    /// Downward forces on the deck, added without their signs `[N]`.
+    load: LaneArray,
 }
 
 impl Envelope {
@@ -63,7 +51,6 @@ impl Envelope {
         let of = |rows: usize| LaneArray::new(rows, lanes);
         let (rows, sizes) = (operator.rows, &operator.sizes);
         let (joints, modules) = (sizes.modules - 1, &operator.of_modules);
-        let beyond_m = |module: &OperatedModule| [module.freeboard_beyond_m, module.draft_beyond_m];
         let peaks = 2 * (rows.positions + joints + sizes.joint_connectors);
         Self {
             rows,
@@ -72,52 +59,40 @@ impl Envelope {
             value: of(peaks),
             time: of(peaks),
             now: of(1),
-            edge: of(1),
-            corner: of(1),
-            bottom: of(1),
-            roll: of(1),
-            trim: of(1),
+            corners: Corners::new(operator, lanes),
             placed: vec![Placed::default(); lanes],
-            of_module: of(sizes.modules),
             motion: of(sizes.modes + sizes.connectors),
             observed: of(sizes.observed),
             inside: of(modules.iter().map(|module| module.inside.len()).max().unwrap_or(0)),
-            breadth_m: operator.breadth_m,
-            risen: of(rows.corners + rows.bottom_corners),
-            from_rest: vec![false; lanes],
-            beyond_m: modules.iter().map(beyond_m).collect(),
-            half_per_m: modules.iter().map(|module| 0.5 / module.length_m).collect(),
-            of_lane: vec![0.0; 2 / rows.edges * rows.corners],
+            off: of(sizes.modules),
+            load: of(1),
         }
     }
 
     /// What a lane carries from step to step.
-    pub(super) fn carried(&mut self) -> [&mut LaneArray; 7] {
-        [
-            &mut self.value,
-            &mut self.time,
-            &mut self.edge,
-            &mut self.corner,
-            &mut self.bottom,
-            &mut self.roll,
-            &mut self.trim,
-        ]
+    pub(super) fn carried(&mut self) -> impl Iterator<Item = &mut LaneArray> {
+        [&mut self.value, &mut self.time]
+            .into_iter()
+            .chain(self.corners.carried())
     }
 
-    /// Takes how a lane's bridge floats at rest.
-    pub(super) fn take_rest(&mut self, lane: usize, dead: Option<&DeadState>) {
-        self.from_rest[lane] = dead.is_some();
-        self.risen.clear(lane);
-        if let Some(dead) = dead {
-            let corners = dead.deck_corners_m.iter().take(self.rows.corners);
-            let corners = corners.chain(dead.bottom_corners_m.iter().take(self.rows.bottom_corners));
-            self.risen.lane_mut(lane).zip(corners).for_each(|(to, z)| *to = *z);
-        }
+    /// Number of rows that were read in the step.
+    pub(super) fn rows_read(&self) -> usize {
+        let Observed {
+            positions,
+            corners,
+            bottom_corners,
+            places,
+            springs,
+            ..
+        } = self.rows;
+        let of_module = (corners + bottom_corners) / self.modules();
+        positions + places + springs + of_module * self.corners.now.len()
     }
 
-    /// Number of observed rows.
-    pub(super) fn observed_rows(&self) -> usize {
-        self.observed.rows()
+    /// Number of modules.
+    pub(super) fn modules(&self) -> usize {
+        self.off.rows()
     }
 
     /// Deflection of a position now, positive downward `[m]`.
@@ -156,21 +131,40 @@ impl Envelope {
     ) {
         self.now.write_row(lanes.iter().map(|lane| lane.time_s));
         self.motion.join([&modes.q, &residual.followed_force.x]);
-        let observed = self.observed.vectors_mut::<S>();
-        constants.panels.v.multiply(o, self.motion.vectors::<S>(), observed);
-        let beside = &residual.load_residual.x.vectors::<S>()[connectors.count()..];
-        for (z, r) in observed.iter_mut().zip(beside) {
-            *z = o.add(*z, *r);
-        }
+        self.read_followed(o, constants, (residual, connectors.count()));
         self.update_peaks(o, connectors);
-        let before = [&self.edge, &self.roll, &self.trim].map(|of| of.vectors::<S>()[0]);
-        match (self.from_rest.contains(&true), self.rows.edges) {
-            (true, _) => self.update_corners::<S, true, 2>(o),
-            (false, 1) => self.update_corners::<S, false, 1>(o),
-            (false, _) => self.update_corners::<S, false, 2>(o),
+        let before = self.corners.largest::<S>();
+        let view = CornerView {
+            panels: &constants.panels.corners,
+            motion: &self.motion,
+            residual,
+            links: connectors.count(),
+            all: lanes.iter().any(Lane::asks_for_corners),
+        };
+        self.corners.advance(o, energy.moved.vectors::<S>()[0], &view);
+        bound_edges(o, operator, energy, (groups, lanes), [&mut self.off, &mut self.load]);
+        self.corners.look(o, &view, &self.off, &mut self.observed);
+        self.corners
+            .note(o, before, (&mut self.placed, &self.now), &self.observed);
+        for i in 0..self.corners.now.len() {
+            let module = self.corners.now[i];
+            self.update_edges(o, operator, constants, (groups, lanes), module);
         }
-        self.note_corners(o, before);
-        self.update_edges(o, operator, constants, energy, (groups, lanes));
+    }
+
+    /// Reads the rows that are looked at in every step: positions, places and springs of banks.
+    #[inline(always)]
+    fn read_followed<S: Simd>(&mut self, o: Ops<S>, constants: &StepConstants, (residual, links): (&Residual, usize)) {
+        let (observed, motion) = (self.observed.vectors_mut::<S>(), self.motion.vectors::<S>());
+        let beside = &residual.load_residual.x.vectors::<S>()[links..];
+        let last = observed.len() - self.rows.springs - self.rows.places;
+        for (first, panel) in [(0, &constants.panels.positions), (last, &constants.panels.beside)] {
+            let rows = &mut observed[first..][..panel.rows()];
+            panel.multiply(o, motion, rows);
+            for (z, r) in rows.iter_mut().zip(&beside[first..]) {
+                *z = o.add(*z, *r);
+            }
+        }
     }
 
     /// Peaks of positions, joints and connectors.
@@ -179,11 +173,9 @@ impl Envelope {
         let mut peaks = Peaks::<S> {
             o,
             now: self.now.vectors::<S>()[0],
-            rows: self
-                .value
-                .vectors_mut::<S>()
-                .iter_mut()
-                .zip(self.time.vectors_mut::<S>()),
+            value: self.value.vectors_mut::<S>(),
+            time: self.time.vectors_mut::<S>(),
+            row: 0,
         };
         for &z in &self.observed.vectors::<S>()[..self.rows.positions] {
             peaks.update_both(z);
@@ -204,7 +196,18 @@ impl Envelope {
             }
             return;
         }
-        for joint in forces.chunks_exact(per_joint) {
+        let joints = forces.chunks_exact(per_joint).enumerate();
+        // without any force none is larger than before
+        let mut active = connectors.active().iter().peekable();
+        for (number, joint) in joints {
+            let mut is_active = connectors.dashpots.any;
+            while active.next_if(|link| **link < per_joint * (number + 1)).is_some() {
+                is_active = true;
+            }
+            if !is_active {
+                peaks.row += 2 * (1 + per_joint);
+                continue;
+            }
             let mut sum = o.splat(0.0);
             for &force in joint {
                 sum = o.add(sum, force);
@@ -216,162 +219,42 @@ impl Envelope {
         }
     }
 
-    /// Corners: module after module, left and right end, right and left edge; `FROM_REST` where a lane has a dead state, `EDGES`
-    /// the corners of an end.
-    #[inline(always)]
-    fn update_corners<S: Simd, const FROM_REST: bool, const EDGES: usize>(&mut self, o: Ops<S>) {
-        let Observed {
-            positions,
-            corners,
-            bottom_corners,
-            ..
-        } = self.rows;
-        let observed = self.observed.vectors::<S>();
-        let per = o.splat(1.0 / self.breadth_m);
-        let mut roll = self.roll.vectors::<S>()[0];
-        let mut trim = self.trim.vectors::<S>()[0];
-        let mut corner = self.corner.vectors::<S>()[0];
-        let of_corners = observed[positions..][..corners].chunks_exact(2 * EDGES);
-        let modules = self.of_module.vectors_mut::<S>().iter_mut().zip(&self.beyond_m);
-        let of_corners = of_corners.zip(&self.half_per_m);
-        let edge = &mut self.edge.vectors_mut::<S>()[0];
-        let risen = self.risen.vectors::<S>();
-        for (j, ((module, [freeboard, _]), (ends, half))) in modules.zip(of_corners).enumerate() {
-            let mut down = o.neg(ends[0]);
-            for end in ends.chunks_exact(EDGES) {
-                if EDGES == 2 {
-                    roll = o.max(roll, o.abs(o.mul(o.sub(end[1], end[0]), per)));
-                }
-                for &z in end {
-                    down = o.max(down, o.neg(z));
-                }
-            }
-            let sum = |end: usize| o.add(ends[end * EDGES], ends[end * EDGES + EDGES - 1]);
-            let rise = o.sub(sum(1), sum(0));
-            trim = o.max(trim, o.abs(o.mul(rise, o.splat(*half))));
-            *module = down;
-            *edge = o.max(*edge, down);
-            let under = if FROM_REST {
-                let corners = ends
-                    .iter()
-                    .zip(&risen[2 * EDGES * j..])
-                    .map(|(z, risen)| o.neg(o.add(*z, *risen)));
-                corners.fold(o.splat(f64::NEG_INFINITY), |lowest, corner| o.max(lowest, corner))
-            } else {
-                down
-            };
-            corner = o.max(corner, o.sub(under, o.splat(*freeboard)));
-        }
-        self.roll.vectors_mut::<S>()[0] = roll;
-        self.trim.vectors_mut::<S>()[0] = trim;
-        self.corner.vectors_mut::<S>()[0] = corner;
-        let bottom = &mut self.bottom.vectors_mut::<S>()[0];
-        let of_bottom = observed[positions + corners..][..bottom_corners].chunks_exact(2 * EDGES);
-        for (j, ([_, draft], ends)) in self.beyond_m.iter().zip(of_bottom).enumerate() {
-            let draft = o.splat(*draft);
-            for (i, &z) in ends.iter().enumerate() {
-                let z = if FROM_REST {
-                    o.add(z, risen[corners + 2 * EDGES * j + i])
-                } else {
-                    z
-                };
-                *bottom = o.max(*bottom, o.sub(z, draft));
-            }
-        }
-    }
-
-    /// Notes when and where corners, roll and trim are larger than before the step, in the lanes where they are.
-    #[inline(always)]
-    fn note_corners<S: Simd>(&mut self, o: Ops<S>, before: [S::f64s; 3]) {
-        let now = [&self.edge, &self.roll, &self.trim].map(|of| of.vectors::<S>()[0]);
-        let larger = |i: usize| o.0.first_true_m64s(o.0.greater_than_f64s(now[i], before[i])) < S::F64_LANES;
-        if larger(0) || larger(1) || larger(2) {
-            self.note_lanes();
-        }
-    }
-
-    /// As [`Self::note_corners`].
-    #[inline(never)]
-    fn note_lanes(&mut self) {
-        let Observed {
-            positions,
-            corners,
-            edges,
-            ..
-        } = self.rows;
-        for (lane, placed) in self.placed.iter_mut().enumerate() {
-            let time_s = self.now.at(0, lane);
-            let is_larger = [
-                self.edge.at(0, lane) > placed.edge.value,
-                self.roll.at(0, lane) > placed.roll.value,
-                self.trim.at(0, lane) > placed.trim.value,
-            ];
-            if !is_larger.contains(&true) {
-                continue;
-            }
-            let own = self.observed.lane(lane).skip(positions).take(corners);
-            // a corner of one side stands for those of both edges
-            let own = own.flat_map(|z| std::iter::repeat_n(z, 2 / edges));
-            self.of_lane.iter_mut().zip(own).for_each(|(to, z)| *to = z);
-            if is_larger[0] {
-                placed.note_edge(time_s, &self.of_lane);
-            }
-            if is_larger[1] {
-                placed.note_roll(time_s, &self.of_lane, 1.0 / self.breadth_m);
-            }
-            if is_larger[2] {
-                placed.note_trim(time_s, &self.of_lane, &self.half_per_m);
-            }
-        }
-    }
-
-    /// Edges inside the modules, where one may be lower than any edge before. A station is off the straight line between its
-    /// module's corners by no more than Cauchy and Schwarz allow: `(row u)^2 <= (sum of phi^2 / omega^2) (sum of omega^2
-    /// q^2)` for the modes, R and s in their place for what the connectors add, the load times its largest influence for the
-    /// rest, which follows the load at once.
+    /// Edges inside a module whose corners were looked at, in the lanes where one may be lower than any edge before.
     #[inline(always)]
     fn update_edges<S: Simd>(
         &mut self,
         o: Ops<S>,
         operator: &BridgeOperator,
         constants: &StepConstants,
-        energy: &Energy,
         (groups, each): (&LaneGroups, &[Lane]),
+        module: usize,
     ) {
-        let mut loads = [0.0; MOST_LANES];
-        for (load, of) in loads.iter_mut().zip(each) {
-            *load = of.rider_forces.iter().map(|(.., force)| force.abs()).sum();
+        let down = self.corners.most_down(o, module, &constants.panels.corners[module]);
+        let lowest = o.add(down, self.off.vectors::<S>()[module]);
+        let edge = self.corners.edge.vectors::<S>()[0];
+        if o.0.first_true_m64s(o.0.greater_than_f64s(lowest, edge)) >= S::F64_LANES {
+            return;
         }
-        for group in groups.all() {
-            for lane in group.numbers() {
-                let weight = |of: &UnitForce| of.share * group.load_in(of.vehicle, lane);
-                loads[lane] += group.weights.iter().map(weight).sum::<f64>();
-            }
+        let of_module = &operator.of_modules[module];
+        let rows = of_module.inside.len();
+        let inside = &mut self.inside.vectors_mut::<S>()[..rows];
+        constants.panels.inside[module].multiply(o, self.motion.vectors::<S>(), inside);
+        // with modes and links known, the load may add what its largest influence says
+        let of_load = o.mul(o.splat(operator.inside_bounds[module][2]), self.load.vectors::<S>()[0]);
+        let edges = self.rows.edges;
+        let corners = &self.observed.vectors::<S>()[self.rows.positions + 2 * edges * module..][..2 * edges];
+        let mut lowest = o.splat(f64::NEG_INFINITY);
+        for (i, off) in inside.iter().enumerate() {
+            let (place, side) = (o.splat(of_module.places[i / edges]), i % edges);
+            let straight = o.fma(place, o.sub(corners[edges + side], corners[side]), corners[side]);
+            lowest = o.max(lowest, o.sub(of_load, o.add(straight, *off)));
         }
-        let modal = o.0.sqrt_f64s(energy.modal_strain.vectors::<S>()[0]);
-        let residual = energy.residual_strain.vectors::<S>()[0];
-        let residual = o.0.sqrt_f64s(o.max(residual, o.splat(0.0)));
-        let load = lanes::<S>(&loads)[0];
-        for (module, bound) in operator.inside_bounds.iter().enumerate() {
-            let [of_modes, of_residual, of_load] = [o.splat(bound[0]), o.splat(bound[1]), o.splat(bound[2])];
-            let margin = o.fma(of_modes, modal, o.fma(of_residual, residual, o.mul(of_load, load)));
-            let lowest = o.add(self.of_module.vectors::<S>()[module], margin);
-            let lower = o.0.greater_than_f64s(lowest, self.edge.vectors::<S>()[0]);
-            if o.0.first_true_m64s(lower) >= S::F64_LANES {
-                continue;
-            }
-            let mut lowests = [0.0; MOST_LANES];
-            lanes_mut::<S>(&mut lowests)[0] = lowest;
-            let is_lower = |edge: &LaneArray, lane: usize| lowests[lane] > edge.at(0, lane);
-            if (0..each.len()).any(|lane| each[lane].crossing.is_some() && is_lower(&self.edge, lane)) {
-                let rows = operator.of_modules[module].inside.len();
-                let inside = &mut self.inside.vectors_mut::<S>()[..rows];
-                constants.panels.inside[module].multiply(o, self.motion.vectors::<S>(), inside);
-            }
-            for (lane, of) in each.iter().enumerate() {
-                if is_lower(&self.edge, lane) {
-                    self.update_edge(operator, module, lane, (groups, of));
-                }
+        let lowest = o.add(lowest, o.splat(ROUNDING_M));
+        let mut lowests = [0.0; MOST_LANES];
+        lanes_mut::<S>(&mut lowests)[0] = lowest;
+        for (lane, of) in each.iter().enumerate() {
+            if lowests[lane] > self.corners.edge.at(0, lane) {
+                self.update_edge(operator, module, lane, (groups, of));
             }
         }
     }
@@ -405,7 +288,7 @@ impl Envelope {
             for &(line, station, force) in &of.rider_forces {
                 z -= force * wheels.influence(DeckNode { line, station })[first + i];
             }
-            let edge = self.edge.at_mut(0, lane);
+            let edge = self.corners.edge.at_mut(0, lane);
             *edge = edge.max(-z);
             self.placed[lane].edge.take(-z, of.time_s, of_module.nearer[i / edges]);
         }
@@ -421,16 +304,46 @@ impl Envelope {
             compression: at(row),
             tension: at(row + 1),
         };
+        let [corner_m, bottom_m] = self.corners.beyond_least_m(lane);
         LanePeaks {
             positions: (0..self.rows.positions).map(|i| [at(2 * i), at(2 * i + 1)]).collect(),
             forces: (self.rows.positions..self.value.rows() / 2)
                 .map(|i| forces(2 * i))
                 .collect(),
-            corner_m: self.corner.at(0, lane),
-            bottom_m: self.bottom.at(0, lane),
+            corner_m,
+            bottom_m,
             placed: self.placed[lane],
             energy,
         }
+    }
+}
+
+/// How far the edges inside each module may be off the straight line between its corners, by no more than Cauchy and Schwarz
+/// allow: `(row u)^2 <= (sum of phi^2 / omega^2) (sum of omega^2 q^2)` for the modes, R and s in their place for what the
+/// connectors add, the load times its largest influence for the rest, which follows the load at once.
+#[inline(always)]
+fn bound_edges<S: Simd>(
+    o: Ops<S>,
+    operator: &BridgeOperator,
+    energy: &Energy,
+    (groups, each): (&LaneGroups, &[Lane]),
+    [off, load]: [&mut LaneArray; 2],
+) {
+    let riding = |of: &Lane| of.rider_forces.iter().map(|(.., force)| force.abs()).sum();
+    load.write_row(each.iter().map(riding));
+    for group in groups.all() {
+        for lane in group.numbers() {
+            let weight = |of: &UnitForce| of.share * group.load_in(of.vehicle, lane);
+            *load.at_mut(0, lane) += group.weights.iter().map(weight).sum::<f64>();
+        }
+    }
+    let modal = o.0.sqrt_f64s(energy.modal_strain.vectors::<S>()[0]);
+    let residual = energy.residual_strain.vectors::<S>()[0];
+    let residual = o.0.sqrt_f64s(o.max(residual, o.splat(0.0)));
+    let load = load.vectors::<S>()[0];
+    for (off, bound) in off.vectors_mut::<S>().iter_mut().zip(&operator.inside_bounds) {
+        let [of_modes, of_residual, of_load] = [o.splat(bound[0]), o.splat(bound[1]), o.splat(bound[2])];
+        *off = o.fma(of_modes, modal, o.fma(of_residual, residual, o.mul(of_load, load)));
     }
 }
 
@@ -438,18 +351,20 @@ impl Envelope {
 struct Peaks<'a, S: Simd> {
     o: Ops<S>,
     now: S::f64s,
-    rows: std::iter::Zip<std::slice::IterMut<'a, S::f64s>, std::slice::IterMut<'a, S::f64s>>,
+    value: &'a mut [S::f64s],
+    time: &'a mut [S::f64s],
+    row: usize,
 }
 
 impl<S: Simd> Peaks<'_, S> {
     /// Takes the next row's value where it is larger than all before.
     #[inline(always)]
     fn update_max(&mut self, value: S::f64s) {
-        if let Some((best, time)) = self.rows.next() {
-            let larger = self.o.0.greater_than_f64s(value, *best);
-            *best = self.o.0.select_f64s(larger, value, *best);
-            *time = self.o.0.select_f64s(larger, self.now, *time);
-        }
+        let (best, time) = (&mut self.value[self.row], &mut self.time[self.row]);
+        let larger = self.o.0.greater_than_f64s(value, *best);
+        *best = self.o.0.select_f64s(larger, value, *best);
+        *time = self.o.0.select_f64s(larger, self.now, *time);
+        self.row += 1;
     }
 
     /// The next two rows: one for the value's other sense, one for its own.

@@ -31,6 +31,8 @@ pub(crate) struct CrossingInput {
     pub dashpots: Arc<[Dashpot]>,
     /// The state at rest from which it starts, where the bridge has a dead load.
     pub dead: Option<Arc<DeadState>>,
+    /// Whether the corners of the decks are asked for after every step.
+    pub asks_for_corners: bool,
 }
 
 /// What a lane has beside its numbers.
@@ -109,6 +111,12 @@ impl Lane {
     /// Says when the coming step ends.
     pub(super) fn place(&mut self, time_s: f64) {
         self.time_s = time_s;
+    }
+
+    /// Whether the corners of the decks are asked for after every step.
+    #[inline(always)]
+    pub(super) fn asks_for_corners(&self) -> bool {
+        self.crossing.as_ref().is_some_and(|of| of.asks_for_corners)
     }
 
     /// Whether anything rides along.

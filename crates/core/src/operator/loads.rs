@@ -5,7 +5,7 @@
 use super::basis::Sizes;
 use super::deck_forces::{NodeForces, StationForce};
 use super::lane_array::LaneArray;
-use super::lane_group::LaneGroup;
+use super::lane_group::{LaneGroup, UnitForce};
 use super::vector::Ops;
 use super::wheel_lines::{DeckLines, WheelLines};
 use crate::scheme::Arithmetic;
@@ -25,6 +25,8 @@ pub(super) struct Loads {
     pub(super) weights_now: LaneArray,
     pub(super) inertia: LaneArray,
     pub(super) inertia_now: LaneArray,
+    /// What the rows see of a unit load of one vehicle.
+    unit: Vec<f64>,
 }
 
 impl Loads {
@@ -35,6 +37,30 @@ impl Loads {
             weights_now: zeros(),
             inertia: zeros(),
             inertia_now: zeros(),
+            unit: vec![0.0; sizes.followed()],
+        }
+    }
+
+    /// Puts the weights of the vehicles of a group on their stations: what the rows see of a unit load of each, times the loads.
+    #[inline(always)]
+    pub(super) fn apply_weights<S: Simd>(&mut self, o: Ops<S>, wheels: &WheelLines, group: &LaneGroup) {
+        let mut is_first = true;
+        for forces in group.weights.chunk_by(|a, b| a.vehicle == b.vehicle) {
+            see_unit_load(o, wheels, forces, &mut self.unit);
+            let vehicle = forces[0].vehicle;
+            if let Some(lane) = group.alone() {
+                let load_n = group.load_in(vehicle, lane);
+                for (row, seen) in self.weights_now.lane_mut(lane).zip(&self.unit) {
+                    *row = seen.mul_add(load_n, if is_first { 0.0 } else { *row });
+                }
+            } else {
+                let (mask, load_n, zero) = (group.mask(o), group.load_n::<S>(vehicle), o.splat(0.0));
+                for (row, seen) in self.weights_now.vectors_mut::<S>().iter_mut().zip(&self.unit) {
+                    let sum = o.fma(o.splat(*seen), load_n, if is_first { zero } else { *row });
+                    *row = o.0.select_f64s(mask, sum, *row);
+                }
+            }
+            is_first = false;
         }
     }
 
@@ -74,16 +100,37 @@ impl Loads {
     }
 }
 
-/// Weights of the vehicles of a group on stations, as the rows see them.
+/// What the rows see of a unit load of a vehicle, whose forces on stations are given; numbers of one vector are rows.
 #[inline(always)]
-pub(super) fn apply_weights<S: Simd>(o: Ops<S>, wheels: &WheelLines, group: &LaneGroup, to: &mut LaneArray) {
-    let force = |i: usize| {
-        let of = &group.weights[i];
-        let n = o.mul(o.splat(of.share), group.load_n::<S>(of.vehicle));
-        (wheels.weights.influences(of.line), of.station, n)
-    };
-    let lines = (wheels.influence_width, group.weights.len());
-    sum_forces_of_lanes(o, lines, force, (group.mask(o), to));
+fn see_unit_load<S: Simd>(o: Ops<S>, wheels: &WheelLines, forces: &[UnitForce], seen: &mut [f64]) {
+    let width = wheels.influence_width;
+    let (vectors, rest) = S::as_mut_simd_f64s(seen);
+    let first_of_rest = vectors.len() * S::F64_LANES;
+    for (block, sums_to) in vectors.chunks_mut(ROWS).enumerate() {
+        let mut sums = [o.splat(0.0); ROWS];
+        for of in forces {
+            let from = of.station * width + block * ROWS * S::F64_LANES;
+            let influences = &wheels.weights.influences(of.line)[from..][..sums_to.len() * S::F64_LANES];
+            let (influences, share) = (S::as_simd_f64s(influences).0, o.splat(of.share));
+            if let Some(influences) = influences.first_chunk::<ROWS>() {
+                for i in 0..ROWS {
+                    sums[i] = o.fma(share, influences[i], sums[i]);
+                }
+            } else {
+                for (sum, influence) in sums.iter_mut().zip(influences) {
+                    *sum = o.fma(share, *influence, *sum);
+                }
+            }
+        }
+        sums_to.copy_from_slice(&sums[..sums_to.len()]);
+    }
+    rest.fill(0.0);
+    for of in forces {
+        let influences = &wheels.weights.influences(of.line)[of.station * width + first_of_rest..];
+        for (sum, influence) in rest.iter_mut().zip(influences) {
+            *sum = of.share.mul_add(*influence, *sum);
+        }
+    }
 }
 
 /// Inertia forces of masses on nodes, as the rows see them in the lanes of a mask.

@@ -15,6 +15,7 @@ mod columns;
 mod connectors;
 mod contact_step;
 mod contact_system;
+mod corners;
 mod crossings;
 mod cutoff;
 mod dashpots;

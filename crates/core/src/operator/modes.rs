@@ -59,7 +59,7 @@ impl Modes {
 
     /// Operations of [`Modes::correct`], a lane, counted in it and in [`Terms::take_mode`].
     pub(super) fn flop_of_correction(&self) -> f64 {
-        54.0 * self.count() as f64
+        57.0 * self.count() as f64
     }
 
     /// What a lane carries from step to step.

@@ -33,6 +33,11 @@ impl Panel {
         Self { rows, columns, data }
     }
 
+    /// Number of rows.
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
     /// `y := A x`.
     #[inline(always)]
     pub(super) fn multiply<S: Simd>(&self, o: Ops<S>, x: &[S::f64s], y: &mut [S::f64s]) {

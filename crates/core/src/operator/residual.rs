@@ -62,6 +62,11 @@ impl Residual {
         (72 * c + 13 * rows) as f64
     }
 
+    /// Changes of load residuals in the step; of connectors without new forces.
+    pub(super) fn observed_changes(&self) -> &LaneArray {
+        &self.d_load
+    }
+
     /// Changes of load residuals and connector residuals without new forces.
     pub(super) fn changes(&self) -> [&LaneArray; 2] {
         [&self.d_load, &self.d_connector]
@@ -129,7 +134,7 @@ impl Residual {
             &loads.inertia.vectors::<S>()[m..],
         );
         let (d_force, d_connector) = (self.d_force.vectors::<S>(), self.d_connector.vectors::<S>());
-        let d_load = self.d_load.vectors::<S>();
+        let d_load = self.d_load.vectors_mut::<S>();
         let mut followed = self.followed_force.vectors_mut::<S>();
         let mut connector = self.connector_residual.vectors_mut::<S>();
         let mut load = self.load_residual.vectors_mut::<S>();
@@ -151,7 +156,8 @@ impl Residual {
             );
         }
         for i in nc..d_load.len() {
-            load.advance(o, &newmark, i, o.less(d_load[i], rho_m, i_now[i]));
+            d_load[i] = o.less(d_load[i], rho_m, i_now[i]);
+            load.advance(o, &newmark, i, d_load[i]);
         }
     }
 }

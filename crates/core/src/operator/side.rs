@@ -10,6 +10,7 @@ use super::basis::{BridgeOperator, Observed, OperatedModule, Sizes};
 use super::pin_rows::PinRows;
 use crate::contact::{Dashpot, LinkLaw};
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// How much of a mode may be what changes its sign in the mirror, or what keeps it, for the mode to be its own image or none:
 /// rounding of its shape. A share of squares.
@@ -88,6 +89,14 @@ impl SideLinks {
         let of_side = self.of_link[link];
         let [a, b] = self.images[of_side];
         (of_side, if a == b { 1.0 } else { 0.5 })
+    }
+
+    /// The links of the side that stand for those of a joint, of which the first is given and how many there are.
+    #[inline]
+    pub(crate) fn of_joint(&self, first: usize, count: usize) -> Range<usize> {
+        let of_joint = self.images.len() * count / self.of_link.len();
+        let start = self.of_link[first];
+        start..start + of_joint
     }
 
     /// A link of the bridge for one of the side.

@@ -3,6 +3,7 @@
 //! Knows the scheme, damping, and the small flexibilities of a step. Does not know gaps, speeds or loads.
 
 use super::basis::{BridgeOperator, OperatedModule};
+use super::corners::CornerPanel;
 use super::panel::Panel;
 use super::waves::WaveConstants;
 use crate::riding::RidingStep;
@@ -30,6 +31,8 @@ pub(crate) struct StepConstants {
     pub(super) on_s2: f64,
     /// Compliance of a step among connectors, `B Phi c Phi^T B^T + rho R_BB` (O8).
     pub(super) connector_compliance: DMatrix<f64>,
+    /// What a link counts for in the path of a lane, the mean of `R_BB` on its diagonal `[m/N]`.
+    pub(super) link_weight: f64,
     /// Products with lanes.
     pub(super) panels: Panels,
     /// Water with memory, where the bridge has it.
@@ -71,8 +74,10 @@ pub(super) struct Panels {
     pub b_t: Panel,
     /// `R_BB`.
     pub r_bb: Panel,
-    /// `[V Phi, -R_VB]`.
-    pub v: Panel,
+    /// `[V Phi, -R_VB]` of positions, of places and springs of banks, and of the corners of each module.
+    pub positions: Panel,
+    pub beside: Panel,
+    pub corners: Vec<CornerPanel>,
     /// `[D Phi, -R_DB]` of the edges inside each module.
     pub inside: Vec<Panel>,
     /// Of the pins, and what of their stiffness damping has not.
@@ -115,6 +120,10 @@ impl StepConstants {
         };
         let rho = 1.0 / (c_k + c_c * a);
         let nc = operator.sizes.connectors;
+        let link_weight = match nc {
+            0 => 1.0,
+            _ => (operator.r_bb.trace() / nc as f64).max(f64::MIN_POSITIVE),
+        };
         let b_phi = &operator.b;
         let modal = DMatrix::from_fn(nc, nc, |i, j| {
             let terms = c.iter().enumerate().map(|(k, c)| c * (b_phi[(i, k)] * b_phi[(j, k)]));
@@ -131,7 +140,8 @@ impl StepConstants {
             on_s2: a * at_a,
             connector_compliance: &modal + rho * &operator.r_bb,
             c,
-            panels: Panels::new(operator, beyond_water),
+            panels: Panels::new(operator, beyond_water, link_weight),
+            link_weight,
             waves: operator
                 .waves
                 .as_ref()
@@ -149,8 +159,9 @@ impl StepConstants {
 }
 
 impl Panels {
-    fn new(o: &BridgeOperator, beyond_water: f64) -> Self {
+    fn new(o: &BridgeOperator, beyond_water: f64, link_weight: f64) -> Self {
         let (m, nc) = (o.sizes.modes, o.sizes.connectors);
+        let beside = o.rows.places + o.rows.springs;
         let with_residual = |phi: &DMatrix<f64>, r: &DMatrix<f64>, from: usize, rows: usize| {
             Panel::new(rows, m + nc, |i, k| {
                 if k < m {
@@ -168,7 +179,11 @@ impl Panels {
             b: Panel::new(nc, m, |i, k| o.b[(i, k)]),
             b_t: Panel::new(m, nc, |k, i| o.b[(i, k)]),
             r_bb: Panel::new(nc, nc, |i, j| o.r_bb[(i, j)]),
-            v: with_residual(&o.v, &o.r_vb, 0, o.sizes.observed),
+            positions: with_residual(&o.v, &o.r_vb, 0, o.rows.positions),
+            beside: with_residual(&o.v, &o.r_vb, o.sizes.observed - beside, beside),
+            corners: (0..o.of_modules.len())
+                .map(|module| CornerPanel::new(o, module, link_weight))
+                .collect(),
             inside: o.of_modules.iter().map(of_module).collect(),
             pins: o.pins.panel(),
             pins_undamped: (beyond_water != 0.0).then(|| {

@@ -4,6 +4,7 @@
 
 mod dead;
 mod energy;
+mod histories;
 mod peaks;
 mod recorder;
 mod ride;
@@ -12,12 +13,13 @@ mod subject;
 
 pub use dead::{DeadState, ModuleAtRest};
 pub use energy::{EnergyBalance, EnergySummary, StepEnergies};
+pub use histories::History;
 pub use peaks::{
     AxlePlace, BankPeaks, ForcePeaks, JointForces, JointPeaks, LeastContact, Peak, PinExtremes, PinPeaks, PlacePeaks,
     PlacedPeak, PositionPeaks, SectionPeaks, resultant_n,
 };
 pub(crate) use recorder::Recorder;
-pub use recorder::{AtPeak, History, PeakOf, Record, Recorded, WatchedPeak};
+pub use recorder::{AtPeak, PeakOf, Record, Recorded, WatchedPeak};
 pub use ride::BodyMotion;
 pub(crate) use ride::RideReading;
 pub(crate) use rides::RidePart;

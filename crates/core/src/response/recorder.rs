@@ -3,6 +3,7 @@
 //!
 //! Knows what was asked for. Does not know which solver steps, nor what a number means to a table.
 
+use super::histories::{Histories, History};
 use super::peaks::{BankPeaks, ForcePeaks, Peak, PlacePeaks, SectionPeaks, resultant_n};
 use super::rides::{MotionPeaks, RidePart, RideWatch, WheelPeaks};
 use super::subject::{Axis, BankPart, JointParts, Reading, Section, Subject, read};
@@ -85,15 +86,6 @@ impl Record {
     }
 }
 
-/// One recorded history.
-#[derive(Debug, Clone, PartialEq)]
-pub struct History {
-    /// What was recorded.
-    pub subject: Subject,
-    /// A value for each entry of the response's `history_time_s`; of pins and section forces each of `balance_time_s`.
-    pub values: Vec<f64>,
-}
-
 /// The response at the instant of a peak.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtPeak {
@@ -145,6 +137,7 @@ pub(crate) struct Recorder {
     positions: usize,
     rides: RideWatch,
     recorded: Recorded,
+    histories: Histories,
 }
 
 impl Recorder {
@@ -169,10 +162,6 @@ impl Recorder {
             })
         };
         let sections = joints.iter().filter(|_| record.sections).flat_map(of_joint);
-        let history = |subject: Subject| History {
-            subject,
-            values: Vec::new(),
-        };
         let at_peak = |&peak: &WatchedPeak| AtPeak {
             peak,
             largest: 0.0,
@@ -188,18 +177,23 @@ impl Recorder {
             },
             positions,
             rides: RideWatch::new(rides, from_s),
+            histories: Histories::new(record.histories()),
             recorded: Recorded {
                 banks: bank_peaks(&banks),
                 places: record.places_x_m.iter().map(place).collect(),
                 sections: sections.collect(),
                 corners: vec![Peak::default(); if record.corners { 4 * (positions - 1) } else { 0 }],
-                histories: record.histories().into_iter().map(history).collect(),
                 at_peaks: record.at_peaks.iter().map(at_peak).collect(),
                 ..Recorded::default()
             },
             joints,
             banks,
         }
+    }
+
+    /// Has room for the histories of so many steps and the beginning.
+    pub(crate) fn expect(&mut self, steps: usize) {
+        self.histories.ensure_steps(steps + 1);
     }
 
     /// Takes note of peaks after a step, be it whole or a part of one.
@@ -252,21 +246,21 @@ impl Recorder {
 
     /// Records the histories after a whole step, or at the beginning.
     pub(crate) fn note(&mut self, reading: &impl Reading) {
-        let recorded = &mut self.recorded;
-        if recorded.histories.is_empty() {
+        if self.histories.subjects.is_empty() {
             return;
         }
+        let recorded = &mut self.recorded;
         let [now_s, balance_s] = reading.times_s();
         recorded.history_time_s.push(now_s);
         recorded.balance_time_s.push(balance_s);
-        for history in &mut recorded.histories {
-            history.values.push(read(history.subject, &self.joints, reading));
-        }
+        let joints = &self.joints;
+        self.histories.write(|subject| read(subject, joints, reading));
     }
 
     /// What was recorded.
     pub(crate) fn finish(&mut self) -> Recorded {
         let (mut recorded, rides) = (std::mem::take(&mut self.recorded), std::mem::take(&mut self.rides));
+        recorded.histories = std::mem::take(&mut self.histories).finish();
         recorded.contact_lost_s = (!rides.is_empty()).then_some(rides.lost_s);
         (recorded.wheels, recorded.motions) = (rides.wheels, rides.motions);
         recorded

@@ -195,7 +195,7 @@ impl BankPart {
     /// Its force on the bridge along its sense `[N]`.
     pub(crate) fn force_n(&self, reading: &impl JointReading) -> f64 {
         match self.source {
-            BankSource::Link(link) => 0.0 - reading.connector_n(link)[0],
+            BankSource::Link(link) => 0.0 - reading.force_n(link),
             BankSource::Spring(index, stiffness_n_m) => 0.0 - stiffness_n_m * reading.spring_m(index),
         }
     }
@@ -205,6 +205,14 @@ impl BankPart {
 pub(crate) trait JointReading {
     /// Force of a connector, now and at the balance `[N]`.
     fn connector_n(&self, connector: usize) -> [f64; 2];
+    /// Force of a connector now `[N]`.
+    fn force_n(&self, connector: usize) -> f64 {
+        self.connector_n(connector)[0]
+    }
+    /// Force of a joint, its connectors added, of which the first is given and how many there are `[N]`.
+    fn joint_n(&self, first: usize, count: usize) -> f64 {
+        (first..first + count).map(|connector| self.force_n(connector)).sum()
+    }
     /// Elongation of a connector `[m]`.
     fn elongation_m(&self, connector: usize) -> f64;
     /// Force of a pin at the balance `[N]`.
@@ -256,8 +264,7 @@ impl JointParts {
 
     /// The force of the joint, its connectors added.
     pub(crate) fn force_n(&self, reading: &impl JointReading) -> f64 {
-        let connectors = self.first_connector..self.first_connector + self.connectors_y_m.len();
-        connectors.map(|connector| reading.connector_n(connector)[0]).sum()
+        reading.joint_n(self.first_connector, self.connectors_y_m.len())
     }
 }
 
@@ -267,7 +274,7 @@ pub(crate) fn read(subject: Subject, joints: &[JointParts], reading: &impl Readi
         Subject::Position(position) => reading.position_m(position - 1),
         Subject::Place(index) => reading.place_m(index),
         Subject::Joint(joint) => joints[joint - 2].force_n(reading),
-        Subject::Connector { joint, index } => reading.connector_n(joints[joint - 2].first_connector + index)[0],
+        Subject::Connector { joint, index } => reading.force_n(joints[joint - 2].first_connector + index),
         Subject::Pin { joint, index, axis } => reading.pin_n(joints[joint - 2].first_pin + index)[axis as usize],
         Subject::Section { joint, of } => joints[joint - 2].sections(reading)[of as usize],
         Subject::Wheel { vehicle, wheel } => reading.ride(vehicle).map_or(0.0, |ride| ride.wheel_n(wheel)),

@@ -109,6 +109,19 @@ impl<R> BridgeReading<'_, R> {
 }
 
 impl<R: JointReading> JointReading for BridgeReading<'_, R> {
+    fn force_n(&self, connector: usize) -> f64 {
+        let (link, share) = self.link(connector);
+        share * self.of.force_n(link)
+    }
+
+    fn joint_n(&self, first: usize, count: usize) -> f64 {
+        let Some(side) = self.side else {
+            return self.of.joint_n(first, count);
+        };
+        let of_side = side.links.of_joint(first, count);
+        self.of.joint_n(of_side.start, of_side.len())
+    }
+
     fn connector_n(&self, connector: usize) -> [f64; 2] {
         let (link, share) = self.link(connector);
         self.of.connector_n(link).map(|force| share * force)

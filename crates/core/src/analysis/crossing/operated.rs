@@ -252,6 +252,7 @@ impl<C: StepClock> Crew<'_, C> {
             laws: laws.into(),
             dashpots: dashpots.into(),
             dead: crossing.dead.clone(),
+            asks_for_corners: crossing.record.corners,
         };
         let h = self.solver.time_step_s(self.refinement);
         let length_m = self.solver.design.length_m();
@@ -262,6 +263,7 @@ impl<C: StepClock> Crew<'_, C> {
         let parts = (joint_parts(design), self.solver.banks.clone());
         let rides = (traffic.ride_parts(), start_s);
         let mut recorder = Recorder::new(design.positions(), parts, rides, &crossing.record);
+        recorder.expect(span.steps);
         recorder.note(&Start {
             time_s: start_s,
             dead: crossing.dead.as_deref(),
