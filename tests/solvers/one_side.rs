@@ -6,9 +6,11 @@ use pontoon_core::analysis::crossing::OperatorSolver;
 use pontoon_core::bridge::{BridgeDesign, Model};
 use pontoon_core::connector::{ConnectorLaw, EndStop, Truss};
 use pontoon_core::operator::{BridgeOperator, Followed};
-use pontoon_core::response::{CrossingResponse, ForcePeaks, Record, Subject};
+use pontoon_core::response::{BodyMotion, CrossingResponse, ForcePeaks, MotionPeaks, Record, Subject};
+use pontoon_core::road::{IsoClass, Road, RoadDesign, RoadLines, Ways};
 use pontoon_core::stop::Stop;
-use pontoon_core::vehicle::{Inertia, Vehicle};
+use pontoon_core::traffic::{Drive, Driven, Traffic};
+use pontoon_core::vehicle::{Axle, Body, Inertia, Vehicle, VehicleDesign};
 use pontoon_tests::operated::*;
 use pontoon_tests::*;
 use std::sync::Arc;
@@ -139,6 +141,128 @@ fn one_side_is_the_whole_bridge() {
             assert!(apart(&wrong, &whole) > 1e-3, "{inertia:?}: a wrong load passes");
         }
     }
+}
+
+/// A truck of 132.3 kN on springs in the middle, its suspensions multiplied by `factor`.
+fn truck(factor: f64, inertia: Inertia, has_tyres: bool) -> Vehicle {
+    let axle = |behind_front_m: f64, mass: f64, suspension: [f64; 2], tyre: [f64; 2]| Axle {
+        behind_front_m,
+        patch_length_m: 0.3,
+        patch_width_m: 0.2,
+        track_y_m: vec![-1.1, 1.1],
+        unsprung_mass_kg: Some(mass),
+        suspension_stiffness_n_m: Some(factor * suspension[0]),
+        suspension_damping_n_s_m: Some(suspension[1]),
+        tyre_stiffness_n_m: has_tyres.then_some(tyre[0]),
+        tyre_damping_n_s_m: has_tyres.then_some(tyre[1]),
+        ..Axle::default()
+    };
+    let design = VehicleDesign {
+        axles: Some(vec![
+            axle(0.0, 600.0, [4e5, 1e4], [1.5e6, 3e3]),
+            axle(4.5, 1000.0, [1e6, 2e4], [3e6, 6e3]),
+        ]),
+        body: Some(Body {
+            mass_kg: 11_890.8,
+            behind_front_m: 2.940,
+            pitch_inertia_kg_m2: Some(5e4),
+            roll_inertia_kg_m2: Some(1.2e4),
+            height_m: Some(1.4),
+        }),
+        inertia,
+        patch_points: 4,
+        ..VehicleDesign::default()
+    };
+    design.check(8.0).expect("a truck")
+}
+
+/// A road of class E, so rough that wheels leave it.
+fn rough(ready: &Ready, lines: RoadLines) -> Arc<Road> {
+    let design = RoadDesign {
+        iso_8608: Some(IsoClass::E),
+        seed: Some(7),
+        lines: Some(lines),
+        run_in_m: Some(30.0),
+        ..RoadDesign::default()
+    };
+    let ways = Ways {
+        length_m: ready.design.length_m(),
+        beyond_m: 10.0,
+        y_m: &[-1.1, 1.1],
+    };
+    Arc::new(design.road(&ways).expect("a road"))
+}
+
+/// Two trucks on springs, with tyres and with the masses of the axles on the deck, braking, on a road that wheels leave: what each
+/// wheel and body does as well, and energies. A road of two lines that differ takes the whole bridge. Springs 5 % off are found.
+#[test]
+fn trucks_on_springs_are_those_of_the_whole_bridge() {
+    let ready = ready_with(|design| design.modules = 6);
+    let solvers = solvers(&ready);
+    let mut crossing = crossing(&ready).crossing();
+    for wheel in 0..4 {
+        crossing.record.more.push(Subject::Wheel { vehicle: 1, wheel });
+    }
+    for motion in [BodyMotion::Bounce, BodyMotion::Pitch] {
+        crossing.record.more.push(Subject::Body { vehicle: 0, motion });
+    }
+    for (inertia, has_tyres) in [
+        (Inertia::None, true),
+        (Inertia::Local, false),
+        (Inertia::Convective, false),
+    ] {
+        let traffic = |factor: f64, lines: RoadLines| {
+            let of = |start_s: f64| Driven {
+                load_n: 150e3,
+                vehicle: Arc::new(truck(factor, inertia, has_tyres)),
+                drive: Drive {
+                    start_s,
+                    ..Drive::steady(12.0)
+                },
+            };
+            Traffic {
+                vehicles: vec![of(0.0), of(1.2)],
+                road: Some(rough(&ready, lines)),
+            }
+        };
+        let own = traffic(1.0, RoadLines::Shared);
+        assert!(solvers[0].is_on_one_side(&own, &crossing));
+        assert!(!solvers[0].is_on_one_side(&traffic(1.0, RoadLines::Own), &crossing));
+        let solve = |solver: &OperatorSolver, traffic: &Traffic| solver.solve(traffic, &crossing).expect("a crossing");
+        let [side, whole] = [0, 1].map(|i| solve(&solvers[i], &own));
+        let off = apart(&side, &whole).max(rides_apart(&side, &whole));
+        assert!(off < ROUNDING, "{inertia:?}: {off:e}");
+        assert!(side.energy.energy_residual < 1e-11);
+        assert_eq!(side.recorded.contact_lost_s, whole.recorded.contact_lost_s);
+        assert_eq!(side.recorded.wheels.len(), 8);
+        assert!(
+            side.recorded.contact_lost_s > Some(0.05),
+            "{inertia:?}: no wheel has left the road"
+        );
+        let wrong = solve(&solvers[0], &traffic(1.05, RoadLines::Shared));
+        assert!(rides_apart(&wrong, &whole) > 1e-4, "{inertia:?}: wrong springs pass");
+    }
+}
+
+/// The largest difference between wheels' forces and bodies' motions, over the largest number of each kind.
+fn rides_apart(a: &CrossingResponse, b: &CrossingResponse) -> f64 {
+    let lists = |of: &CrossingResponse| -> [Vec<f64>; 3] {
+        let (wheels, motions) = (&of.recorded.wheels, &of.recorded.motions);
+        let up_down = |m: &MotionPeaks| [m.up.value, m.down.value];
+        [
+            wheels
+                .iter()
+                .flat_map(|of| [of.largest.value, of.least.value])
+                .collect(),
+            motions.iter().flat_map(up_down).collect(),
+            motions.iter().map(|of| of.acceleration.value).collect(),
+        ]
+    };
+    let apart = |(a, b): (Vec<f64>, Vec<f64>)| {
+        let most = b.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        a.iter().zip(&b).map(|(a, b)| (a - b).abs() / most).fold(0.0, f64::max)
+    };
+    lists(a).into_iter().zip(lists(b)).map(apart).fold(0.0, f64::max)
 }
 
 /// Joints with buffers, stops and dashpots of their own, alike on both sides; unlike sides are those of no mirror.

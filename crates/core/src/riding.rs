@@ -106,6 +106,7 @@ impl Ride {
             state: &self.z,
             rest: &springs.rest,
             accelerations: &self.a,
+            of_side: None,
         }
     }
 

@@ -343,6 +343,11 @@ impl Road {
         own.unwrap_or(&self.lines[0]).1.profile()
     }
 
+    /// Whether the wheel lines at `y_m` and at its mirror image have one profile.
+    pub(crate) fn is_alike_across(&self, y_m: f64) -> bool {
+        std::ptr::eq(self.profile(y_m), self.profile(-y_m))
+    }
+
     /// Height of the road where vehicles begin, at its left or right end `[m]`.
     pub(crate) fn level_m(&self, right: bool) -> f64 {
         match &self.lines[0].1.profile.get() {

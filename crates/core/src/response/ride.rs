@@ -26,12 +26,15 @@ pub(crate) struct RideReading<'a> {
     pub state: &'a [f64],
     pub rest: &'a [f64],
     pub accelerations: &'a [f64],
+    /// Where one side stands for the vehicle, of each of its wheels the one of the side and its share of the force.
+    pub of_side: Option<&'a [(usize, f64)]>,
 }
 
 impl RideReading<'_> {
     /// Force of a wheel `[N]`.
     pub(crate) fn wheel_n(&self, wheel: usize) -> f64 {
-        self.scale * self.wheels_n.get(wheel).copied().unwrap_or(0.0)
+        let (wheel, share) = self.of_side.map_or((wheel, 1.0), |wheels| wheels[wheel]);
+        share * self.scale * self.wheels_n.get(wheel).copied().unwrap_or(0.0)
     }
 
     /// How far a body is from rest on a level road; 0 where it does not move so.

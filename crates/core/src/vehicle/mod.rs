@@ -19,7 +19,7 @@ use crate::input::{InvalidInput, within};
 pub use design::VehicleDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-pub(crate) use side::one_side;
+pub(crate) use side::{SideVehicle, one_side};
 pub use springs::{SpringWheel, Springs, VehicleMotion};
 use std::sync::Arc;
 pub use written::{Axle, Body};

@@ -271,6 +271,88 @@ impl Springs {
         Ok(())
     }
 
+    /// The springs of one side: of each patch its image is given, and which patches are kept. A wheel that is kept and the mass above
+    /// it stand for both images and move as each; the body does not roll. None of springs that are not their own image.
+    pub(super) fn one_side(&self, images: &[usize], kept: &[usize]) -> Option<Self> {
+        let alike = |(patch, &image): (usize, &usize)| {
+            let [own, other] = [patch, image].map(|i| (self.wheels[i].stiffness_n_m, self.wheels[i].damping_n_s_m));
+            own == other && self.axles[patch] == self.axles[image] && self.rigid_n[patch] == self.rigid_n[image]
+        };
+        if !images.iter().enumerate().all(alike) {
+            return None;
+        }
+        // the motions of the whole that each motion of the side stands for
+        let mut stands_for: Vec<(VehicleMotion, Vec<usize>)> = Vec::new();
+        for (place, motion) in self.motions.iter().enumerate() {
+            let VehicleMotion::Hop { patch } = *motion else {
+                stands_for.push((*motion, vec![place]));
+                continue;
+            };
+            let Some(patch_of_side) = kept.iter().position(|own| *own == patch) else {
+                continue;
+            };
+            let hop_of = |patch: usize| self.motions.iter().position(|of| *of == VehicleMotion::Hop { patch });
+            let mut places = vec![place];
+            if images[patch] != patch {
+                places.push(hop_of(images[patch])?);
+            }
+            stands_for.push((VehicleMotion::Hop { patch: patch_of_side }, places));
+        }
+        let n = stands_for.len();
+        let rolls = |i: usize| stands_for[i].0 == VehicleMotion::Roll;
+        let sum = |of: &[f64]| -> Vec<f64> {
+            let places = stands_for.iter().map(|(_, places)| places);
+            places.map(|places| places.iter().map(|&i| of[i]).sum()).collect()
+        };
+        let reduced = |of: &DMatrix<f64>| {
+            DMatrix::from_fn(n, n, |i, j| {
+                // what rolls is no image of what does not
+                if rolls(i) != rolls(j) {
+                    return 0.0;
+                }
+                let rows = stands_for[i].1.iter();
+                rows.flat_map(|&row| stands_for[j].1.iter().map(move |&column| (row, column)))
+                    .map(|at| of[at])
+                    .sum()
+            })
+        };
+        let wheel = |&patch: &usize| {
+            let (of, both) = (&self.wheels[patch], if images[patch] == patch { 1.0 } else { 2.0 });
+            let row = sum(&of.row);
+            SpringWheel {
+                row: (0..n).map(|i| if rolls(i) { 0.0 } else { row[i] }).collect(),
+                stiffness_n_m: both * of.stiffness_n_m,
+                damping_n_s_m: both * of.damping_n_s_m,
+                rest_n: if images[patch] == patch {
+                    of.rest_n
+                } else {
+                    of.rest_n + self.wheels[images[patch]].rest_n
+                },
+            }
+        };
+        let rest = |(motion, places): &(VehicleMotion, Vec<usize>)| match motion {
+            VehicleMotion::Roll => 0.0,
+            _ => self.rest[places[0]],
+        };
+        let both = |of: &[f64]| -> Vec<f64> {
+            let with_image = |&patch: &usize| of[patch] * if images[patch] == patch { 1.0 } else { 2.0 };
+            kept.iter().map(with_image).collect()
+        };
+        Some(Self {
+            inertia: sum(&self.inertia),
+            stiffness: reduced(&self.stiffness),
+            damping: reduced(&self.damping),
+            weight_n: sum(&self.weight_n),
+            wheels: kept.iter().map(wheel).collect(),
+            rest: stands_for.iter().map(rest).collect(),
+            braking_kg_m: self.braking_kg_m,
+            body: self.body.clone(),
+            rigid_n: both(&self.rigid_n),
+            axles: kept.iter().map(|&patch| self.axles[patch]).collect(),
+            motions: stands_for.into_iter().map(|(motion, _)| motion).collect(),
+        })
+    }
+
     /// Weight of all masses `[N]`.
     pub fn whole_weight_n(&self) -> f64 {
         self.weight_n.iter().chain(&self.rigid_n).sum()

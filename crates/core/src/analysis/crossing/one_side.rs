@@ -9,8 +9,9 @@ use crate::bridge::{BridgeDesign, is_own_image};
 use crate::contact::{Dashpot, LinkLaw};
 use crate::operator::{BridgeOperator, SideBridge, SideLinks, one_side};
 use crate::response::{ForcePeaks, JointReading, Peak, Reading, RideReading};
+use crate::road::Road;
 use crate::traffic::{Driven, Traffic};
-use crate::vehicle;
+use crate::vehicle::{self, SideVehicle};
 use std::sync::Arc;
 
 /// One side of a bridge, made ready for crossings.
@@ -19,6 +20,14 @@ pub(super) struct OneSide {
     pub(super) stepped: Stepped,
     pub(super) mounts: Mounts,
     pub(super) links: SideLinks,
+}
+
+/// What drives on one side of a bridge.
+#[derive(Debug)]
+pub(super) struct SideTraffic {
+    pub(super) traffic: Traffic,
+    /// Of each vehicle the wheels of the side that stand for those of the whole, and their shares.
+    pub(super) wheels: Vec<Vec<(usize, f64)>>,
 }
 
 impl OneSide {
@@ -36,24 +45,31 @@ impl OneSide {
         })
     }
 
-    /// What drives on the side in a crossing; none where the crossing is not its own mirror image, rides on springs or starts from a
-    /// dead state.
-    pub(super) fn traffic(&self, traffic: &Traffic, crossing: &Crossing) -> Option<Traffic> {
+    /// What drives on the side in a crossing; none where the crossing is not its own mirror image or starts from a dead state.
+    pub(super) fn traffic(&self, traffic: &Traffic, crossing: &Crossing) -> Option<SideTraffic> {
         if crossing.dead.is_some() {
             return None;
         }
         if !crossing.own_laws.is_empty() {
             self.laws(crossing)?;
         }
-        let of_side = |driven: &Driven| {
-            Some(Driven {
-                vehicle: Arc::new(vehicle::one_side(&driven.vehicle)?),
+        let (mut vehicles, mut wheels) = (Vec::new(), Vec::new());
+        for driven in &traffic.vehicles {
+            let SideVehicle { vehicle, of_patches } = vehicle::one_side(&driven.vehicle)?;
+            let alike = |road: &Road| vehicle.patches.iter().all(|patch| road.is_alike_across(patch.y_m));
+            if vehicle.springs.is_some() && !traffic.road.as_ref().is_none_or(|road| alike(road)) {
+                return None;
+            }
+            wheels.push(of_patches);
+            vehicles.push(Driven {
+                vehicle: Arc::new(vehicle),
                 ..driven.clone()
-            })
-        };
-        Some(Traffic {
-            vehicles: traffic.vehicles.iter().map(of_side).collect::<Option<_>>()?,
-            road: traffic.road.clone(),
+            });
+        }
+        let road = traffic.road.clone();
+        Some(SideTraffic {
+            traffic: Traffic { vehicles, road },
+            wheels,
         })
     }
 
@@ -99,6 +115,8 @@ pub(super) fn peaks_of_bridge(links: &SideLinks, of_side: &[ForcePeaks], per_joi
 pub(super) struct BridgeReading<'a, R> {
     pub(super) of: R,
     pub(super) side: Option<&'a OneSide>,
+    /// Of each vehicle the wheels of the side; none where the whole is read.
+    pub(super) wheels: &'a [Vec<(usize, f64)>],
 }
 
 impl<R> BridgeReading<'_, R> {
@@ -158,10 +176,15 @@ impl<R: Reading> Reading for BridgeReading<'_, R> {
     }
 
     fn ride(&self, vehicle: usize) -> Option<RideReading<'_>> {
-        self.of.ride(vehicle)
+        let ride = self.of.ride(vehicle)?;
+        Some(RideReading {
+            of_side: self.wheels.get(vehicle).map(Vec::as_slice),
+            ..ride
+        })
     }
 
     fn is_on(&self, vehicle: usize, wheel: usize) -> bool {
-        self.of.is_on(vehicle, wheel)
+        let of_side = self.wheels.get(vehicle).map_or(wheel, |wheels| wheels[wheel].0);
+        self.of.is_on(vehicle, of_side)
     }
 }

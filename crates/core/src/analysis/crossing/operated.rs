@@ -4,7 +4,7 @@
 
 use super::halving::{Halving, halve};
 use super::mounts::{Mount, MountedStep, Mounts};
-use super::one_side::{BridgeReading, OneSide, peaks_of_bridge};
+use super::one_side::{BridgeReading, OneSide, SideTraffic, peaks_of_bridge};
 use super::stepped::{REFINEMENTS, Stepped};
 use super::{Crossing, CrossingSettings, StepSpan};
 use crate::analysis::AnalysisError;
@@ -50,10 +50,22 @@ struct Crew<'a, C> {
     clock: &'a mut C,
 }
 
+/// One crossing to be solved.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    /// What drives over the bridge, and over what the job is solved on.
+    traffic: &'a Traffic,
+    driving: &'a Traffic,
+    /// Of each vehicle the wheels of one side that stand for its own; none where it drives over the whole.
+    wheels: &'a [Vec<(usize, f64)>],
+    crossing: &'a Crossing,
+}
+
 /// One crossing under way.
 struct Under<'a> {
     index: usize,
-    traffic: &'a Traffic,
+    driving: &'a Traffic,
+    wheels: &'a [Vec<(usize, f64)>],
     record: &'a Record,
     step: usize,
     span: StepSpan,
@@ -142,12 +154,28 @@ impl OperatorSolver {
     ) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let side = self.side();
         let on_side = |&(traffic, crossing): &(&Traffic, &Crossing)| side?.traffic(traffic, crossing);
-        let on_side: Vec<Option<Traffic>> = crossings.iter().map(on_side).collect();
+        let on_side: Vec<Option<SideTraffic>> = crossings.iter().map(on_side).collect();
         let (mut of_side, mut of_whole) = (Vec::new(), Vec::new());
         for (number, (&(traffic, crossing), own)) in crossings.iter().zip(&on_side).enumerate() {
+            let whole = Job {
+                traffic,
+                driving: traffic,
+                wheels: &[],
+                crossing,
+            };
             match own {
-                Some(own) => of_side.push((number, (own, crossing))),
-                None => of_whole.push((number, (traffic, crossing))),
+                Some(SideTraffic {
+                    traffic: driving,
+                    wheels,
+                }) => of_side.push((
+                    number,
+                    Job {
+                        driving,
+                        wheels,
+                        ..whole
+                    },
+                )),
+                None => of_whole.push((number, whole)),
             }
         }
         let mut answers = self.solve_on(None, &of_whole, refinement, clock);
@@ -160,7 +188,7 @@ impl OperatorSolver {
     fn solve_on(
         &self,
         side: Option<&OneSide>,
-        numbered: &[(usize, (&Traffic, &Crossing))],
+        numbered: &[(usize, Job<'_>)],
         refinement: usize,
         clock: &mut impl StepClock,
     ) -> Vec<(usize, Result<CrossingResponse, AnalysisError>)> {
@@ -172,7 +200,7 @@ impl OperatorSolver {
         let (numbers, crossings): (Vec<usize>, Vec<_>) = numbered.iter().copied().unzip();
         let most_nodes = crossings
             .iter()
-            .map(|(traffic, _)| WheelLines::most_nodes_of(on.operator(), traffic));
+            .map(|job: &Job<'_>| WheelLines::most_nodes_of(on.operator(), job.driving));
         let most_nodes = most_nodes.max().unwrap_or(0);
         let mut crew = Crew {
             solver: self,
@@ -194,7 +222,7 @@ impl OperatorSolver {
 }
 
 impl<C: StepClock> Crew<'_, C> {
-    fn run(&mut self, crossings: &[(&Traffic, &Crossing)]) -> Vec<Result<CrossingResponse, AnalysisError>> {
+    fn run(&mut self, crossings: &[Job<'_>]) -> Vec<Result<CrossingResponse, AnalysisError>> {
         let mut answers: Vec<Option<Result<CrossingResponse, AnalysisError>>> = vec![None; crossings.len()];
         let mut under: Vec<Option<Under<'_>>> = (0..self.lanes.width()).map(|_| None).collect();
         let mut next = 0;
@@ -239,13 +267,19 @@ impl<C: StepClock> Crew<'_, C> {
         of.span.time_s(steps, self.solver.time_step_s(self.refinement))
     }
 
-    fn begin<'c>(&mut self, lane: usize, index: usize, (traffic, crossing): (&'c Traffic, &'c Crossing)) -> Under<'c> {
-        let mount = self.mounts.of(self.on, traffic);
+    fn begin<'c>(&mut self, lane: usize, index: usize, job: Job<'c>) -> Under<'c> {
+        let Job {
+            traffic,
+            driving,
+            wheels,
+            crossing,
+        } = job;
+        let mount = self.mounts.of(self.on, driving);
         let MountedStep { compliance, riding } = mount.step(self.on, self.refinement);
         let on_whole = || (crossing.laws(self.on.operator().connectors()), crossing.dashpots());
         let (laws, dashpots) = self.side.and_then(|side| side.laws(crossing)).unwrap_or_else(on_whole);
         let crossing_input = CrossingInput {
-            traffic: Arc::new(traffic.clone()),
+            traffic: Arc::new(driving.clone()),
             wheels: Arc::clone(&mount.wheels),
             compliance,
             riding,
@@ -270,7 +304,8 @@ impl<C: StepClock> Crew<'_, C> {
         });
         Under {
             index,
-            traffic,
+            driving,
+            wheels,
             record: &crossing.record,
             step: 0,
             span,
@@ -282,18 +317,27 @@ impl<C: StepClock> Crew<'_, C> {
     fn after_step(&mut self, lane: usize, of: &mut Under<'_>) -> Option<Result<CrossingResponse, AnalysisError>> {
         let time_s = self.time_s(of);
         if let Some(stuck) = self.lanes.unsettled(lane) {
-            let mount = self.mounts.of(self.on, of.traffic);
+            let mount = self.mounts.of(self.on, of.driving);
             let span_s = [self.time_after(of.step - 1, of), time_s];
-            if let Err(error) = self.halve((lane, &mount), stuck, span_s, &mut of.recorder) {
+            let recorder = (&mut of.recorder, of.wheels);
+            if let Err(error) = self.halve((lane, &mount), stuck, span_s, recorder) {
                 return Some(Err(error));
             }
             if let Some(solo) = &self.solo {
-                let (reading, side) = (solo.reading(0), self.side);
-                of.recorder.note(&BridgeReading { of: reading, side });
+                let (reading, side, wheels) = (solo.reading(0), self.side, of.wheels);
+                of.recorder.note(&BridgeReading {
+                    of: reading,
+                    side,
+                    wheels,
+                });
             }
         } else {
-            let (reading, side) = (self.lanes.reading(lane), self.side);
-            let reading = BridgeReading { of: reading, side };
+            let (reading, side, wheels) = (self.lanes.reading(lane), self.side, of.wheels);
+            let reading = BridgeReading {
+                of: reading,
+                side,
+                wheels,
+            };
             of.recorder.take(&reading);
             of.recorder.note(&reading);
         }
@@ -309,7 +353,7 @@ impl<C: StepClock> Crew<'_, C> {
         (lane, mount): (usize, &Mount),
         stuck: NotSettled,
         span_s: [f64; 2],
-        recorder: &mut Recorder,
+        (recorder, wheels): (&mut Recorder, &[Vec<(usize, f64)>]),
     ) -> Result<(), AnalysisError> {
         let Some(input) = self.lanes.crossing(lane).cloned() else {
             return Ok(());
@@ -329,6 +373,7 @@ impl<C: StepClock> Crew<'_, C> {
             lane: &mut solo,
             mount,
             recorder,
+            wheels,
         };
         let done = halve(&mut alone, stuck, span_s, 0);
         self.lanes.restore(lane, &solo.save(0));
@@ -376,6 +421,7 @@ struct Alone<'a, 's, C> {
     lane: &'a mut Crossings,
     mount: &'a Mount,
     recorder: &'a mut Recorder,
+    wheels: &'a [Vec<(usize, f64)>],
 }
 
 impl<C: StepClock> Halving for Alone<'_, '_, C> {
@@ -394,8 +440,12 @@ impl<C: StepClock> Halving for Alone<'_, '_, C> {
         step(self.lane, on.operator(), on.constants(halvings), limit, &mut ());
         let unsettled = self.lane.unsettled(0);
         if unsettled.is_none() {
-            let (reading, side) = (self.lane.reading(0), self.crew.side);
-            self.recorder.take(&BridgeReading { of: reading, side });
+            let (reading, side, wheels) = (self.lane.reading(0), self.crew.side, self.wheels);
+            self.recorder.take(&BridgeReading {
+                of: reading,
+                side,
+                wheels,
+            });
         }
         Ok(unsettled.map_or(Ok(()), Err))
     }
