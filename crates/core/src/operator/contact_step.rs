@@ -2,10 +2,11 @@
 //!
 //! Knows the order of the parts for a group. Does not know the arithmetic of any.
 
+use super::active_sets::ContactInput;
 use super::basis::{BridgeOperator, Sizes};
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
-use super::contact_system::{ContactInput, ContactSystem, LaneLaws};
+use super::contact_system::{ContactSystem, LaneLaws};
 use super::dashpots::LaneDashpots;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
@@ -175,6 +176,9 @@ impl Coupling {
             *laws = lanes[lane].dashpots.as_ref().map_or(own, LaneDashpots::laws);
         }
         let laws = &laws[..group.lanes.len()];
+        if group.lanes.iter().any(|&lane| lanes[lane].dashpots.is_some()) {
+            contact.linear.forget_list();
+        }
         let input = ContactInput {
             lanes: &group.lanes,
             laws,

@@ -9,6 +9,7 @@
 //! observed rows V. [`BridgeOperator`] holds them, `StepConstants` what one step length makes of them,
 //! `WheelLines` what vehicles see of the deck, `Crossings` the motion.
 
+mod active_sets;
 mod basis;
 mod clock;
 mod columns;
