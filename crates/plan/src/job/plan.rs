@@ -49,21 +49,36 @@ pub struct Share {
     pub jobs: usize,
     /// Steps times modules.
     pub module_steps: f64,
-    /// The first of them, to be tried.
-    pub first: Vec<Job>,
+    /// Some of them, to be tried: the first, then any of the others with one chance for all.
+    pub sample: Vec<Job>,
 }
 
-/// Jobs that are kept to be tried.
+/// Jobs that are kept to be tried: as many from the front, which share a bridge, as from everywhere.
 const KEPT: usize = 64;
+const KEPT_OF_ALL: usize = 512;
 
 impl Share {
     fn take(&mut self, job: &Job) {
-        self.jobs += 1;
         self.module_steps += module_steps(job);
-        if self.first.len() < KEPT {
-            self.first.push(job.clone());
+        if self.sample.len() < KEPT + KEPT_OF_ALL {
+            self.sample.push(job.clone());
+        } else {
+            // reservoir sampling; the same jobs whenever the study is the same
+            let place = KEPT + any_below(self.jobs, self.jobs + 1 - KEPT);
+            if let Some(kept) = self.sample.get_mut(place) {
+                kept.clone_from(job);
+            }
         }
+        self.jobs += 1;
     }
+}
+
+/// A number below `limit` that depends on `index` alone, as if drawn (SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
+fn any_below(index: usize, limit: usize) -> usize {
+    let mut z = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) % limit as u64) as usize
 }
 
 impl Work {
@@ -166,6 +181,26 @@ mod tests {
         let mut case = json!({ "speed_m_s": 10, "load_n": 1e5 });
         case.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         case
+    }
+
+    /// The first jobs are kept, and of the others as many from each fifth of a study: 102 of 512 and four standard deviations.
+    #[test]
+    fn jobs_to_be_tried_come_from_everywhere() {
+        let job = jobs(json!([{ "cases": [case(json!({}))] }])).unwrap().remove(0);
+        let mut share = Share::default();
+        for index in 0..5000 {
+            share.take(&Job {
+                number: index,
+                ..job.clone()
+            });
+        }
+        assert_eq!((share.jobs, share.sample.len()), (5000, KEPT + KEPT_OF_ALL));
+        assert!(share.sample[..KEPT].iter().map(|job| job.number).eq(0..KEPT));
+        let mut fifths = [0; 5];
+        for job in &share.sample[KEPT..] {
+            fifths[job.number / 1000] += 1;
+        }
+        assert!(fifths.iter().all(|count| (66..138).contains(count)), "{fifths:?}");
     }
 
     #[test]
