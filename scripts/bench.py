@@ -35,6 +35,8 @@ MODULES = {30: None, 60: None, 120: 20.0, 200: 60.0}
 ASKED_EXPONENT, ASKED_MEMORY_GB = 2.3, 4.0
 ASKED_THREADS, ASKED_SWEEP_S = 1.9, 12.0
 PLAN_OFF = 0.3
+# what no case may cost more than before
+SLOWER = 1.03
 VEHICLE = {
     "footprint_length_m": peers.FOOTPRINT_M,
     "track_y_m": peers.TRACK_Y_M,
@@ -135,26 +137,35 @@ def chain_steps_s(chain):
     return found
 
 
-def compare_crossings(table, rounds):
+def steps_s(program, into):
+    """Takes what the program needs for a step of each case; its whole answer."""
+    speed = json.loads(subprocess.check_output([program]))
+    for c in speed["crossings"]:
+        for key in KEYS:
+            into.setdefault((c["speed_m_s"], KINDS[c["inertia"]], c["place"], key), []).append(c[key])
+    for c in speed["trucks"]:
+        kind = TRUCKS.get(c["truck"], f"{c['truck']} truck of two axles")
+        for key in KEYS[:2]:
+            into.setdefault((c["speed_m_s"], kind, "centred", key), []).append(c[key])
+    return speed
+
+
+def compare_crossings(table, rounds, before):
     """A step alone and in full lanes beside a step of the chain's, medians of rounds; the share of the core's peak."""
     chain = json.loads(peers.CHAIN.read_text())
-    ours, theirs, deflections, peak = {}, {}, {}, 0.0
+    ours, earlier, theirs, deflections, peak = {}, {}, {}, {}, 0.0
     for turn in range(rounds):
         note(f"crossings, round {turn + 1} of {rounds}")
-        speed = json.loads(subprocess.check_output([os.environ["PONTOON_SPEED"]]))
+        if before:
+            steps_s(before, earlier)
+        speed = steps_s(os.environ["PONTOON_SPEED"], ours)
         peak = max(peak, speed["peak_flop_per_s"])
-        for c in speed["crossings"]:
-            for key in KEYS:
-                ours.setdefault((c["speed_m_s"], KINDS[c["inertia"]], c["place"], key), []).append(c[key])
-        for c in speed["trucks"]:
-            kind = TRUCKS.get(c["truck"], f"{c['truck']} truck of two axles")
-            for key in KEYS[:2]:
-                ours.setdefault((c["speed_m_s"], kind, "centred", key), []).append(c[key])
         chain |= {"time_step_s": speed["time_step_s"], "tail_s": speed["tail_s"]}
         for case, (seconds, deepest_m) in chain_steps_s(chain).items():
             theirs.setdefault(case, []).append(seconds)
             deflections[case] = deepest_m
-    ours, theirs = ({case: statistics.median(of) for case, of in all.items()} for all in (ours, theirs))
+    medians = lambda of: {case: statistics.median(seconds) for case, seconds in of.items()}
+    ours, earlier, theirs = medians(ours), medians(earlier), medians(theirs)
     how = {
         "lone_step_s": "alone",
         "full_step_s": f"{speed['lanes']} lanes of one speed",
@@ -170,6 +181,10 @@ def compare_crossings(table, rounds):
             beside = f"{micro(other)} chain of {dofs} dofs" + ("" if kind == KINDS["none"] else ", weight only")
             wanted = ASKED.get((kind, place, key)) if (speed_m_s, dofs) == (15.0, 225) else None
             table.ratio(what, micro(ours[case]), beside, other / ours[case], wanted)
+        if before:
+            ratio = ours[case] / earlier[case]
+            beside, limit = f"{micro(earlier[case])} by {Path(before).name}", f"at most {SLOWER:g}"
+            table.row(what, micro(ours[case]), beside, f"{ratio:.2f} of it", limit, ratio <= SLOWER)
     told = ", ".join(f"{dofs} dofs at {v:g} m/s {100 * w:.2f} cm" for (dofs, v), w in deflections.items())
     note(f"largest deflection of the chains: {told}")
     for case in speed["breakdown"]:
@@ -344,6 +359,7 @@ def main():
     parser.add_argument("part", nargs="?", default="all", choices=["crossing", "modes", "preparation", "sweep", "all"])
     parser.add_argument("--jobs", type=int, default=10_000, help="crossings of the sweep")
     parser.add_argument("--rounds", type=int, default=5, help="how often crossings and modes are measured")
+    parser.add_argument("--before", help="another example `speed`, beside which each step is held")
     parser.add_argument("--sweep-rounds", type=int, default=1, help="how often the sweep is")
     parser.add_argument("--solver", default="operator", help="the sweep's analysis.solver")
     parser.add_argument("--inertia", default="local", choices=list(KINDS), help="the sweep's vehicle.inertia")
@@ -357,7 +373,7 @@ def main():
     with tempfile.NamedTemporaryFile() as log:
         ops.logFile(log.name, "-noEcho")
         if options.part in ("crossing", "all"):
-            compare_crossings(table, options.rounds)
+            compare_crossings(table, options.rounds, options.before)
         if options.part in ("modes", "all"):
             compare_modes(table, options.rounds)
         if options.part in ("preparation", "all"):

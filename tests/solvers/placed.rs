@@ -58,7 +58,8 @@ fn placed(r: &CrossingResponse) -> [PlacedPeak; 3] {
     [r.peak_edge, r.peak_roll, r.peak_trim]
 }
 
-/// A vehicle off the centre, one on the edge of a soft deck whose lowest place is inside a module, connectors with gaps. Values
+/// A vehicle off the centre, one on the edge of a soft deck whose lowest place is inside a module, one with several lines there,
+/// connectors with gaps. Values
 /// 1e-9: sums of the same nodes in another order. Time and place are exact. Twins: length and breadth of a module, 5 % off; for
 /// the edge, which has no such factor, the load.
 #[test]
@@ -73,8 +74,14 @@ fn peaks_are_those_of_the_states() {
         ),
         (
             "inside a module",
-            soft,
+            soft.clone(),
             footprint(&[4.041], Inertia::None),
+            Connection::Linear,
+        ),
+        (
+            "several lines beside the edge",
+            soft,
+            footprint(&[3.3, 3.6, 3.85, 4.041], Inertia::None),
             Connection::Linear,
         ),
     ] {

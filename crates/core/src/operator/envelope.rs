@@ -333,7 +333,10 @@ fn bound_edges<S: Simd>(
     load.write_row(each.iter().map(riding));
     for group in groups.all() {
         for lane in group.numbers() {
-            let weight = |of: &UnitForce| of.share * group.load_in(of.vehicle, lane);
+            let Some(crossing) = &each[lane].crossing else { continue };
+            // a line of the weights stands for all lines with the same points
+            let lines = |of: &UnitForce| crossing.wheels.weights[of.line].lines.len() as f64;
+            let weight = |of: &UnitForce| lines(of) * of.share * group.load_in(of.vehicle, lane);
             *load.at_mut(0, lane) += group.weights.iter().map(weight).sum::<f64>();
         }
     }

@@ -13,6 +13,9 @@ pub struct History {
     pub values: Vec<f64>,
 }
 
+/// Most steps that there is room for from the beginning.
+const MOST_EXPECTED: usize = 1 << 16;
+
 /// Histories under way, one after the other, each with room for as many steps.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Histories {
@@ -32,8 +35,13 @@ impl Histories {
         }
     }
 
+    /// Has room for so many steps, or the first of very many.
+    pub(super) fn expect(&mut self, steps: usize) {
+        self.ensure_steps(steps.min(MOST_EXPECTED));
+    }
+
     /// Has room for so many steps.
-    pub(super) fn ensure_steps(&mut self, steps: usize) {
+    fn ensure_steps(&mut self, steps: usize) {
         if steps <= self.room {
             return;
         }
@@ -61,12 +69,11 @@ impl Histories {
 
     /// Ends them.
     pub(super) fn finish(self) -> Vec<History> {
-        let history = |(numbers, subject): (&[f64], &Subject)| History {
+        let history = |(i, subject): (usize, &Subject)| History {
             subject: *subject,
-            values: numbers[..self.steps].to_vec(),
+            values: self.numbers[i * self.room..][..self.steps].to_vec(),
         };
-        let numbers = self.numbers.chunks_exact(self.room.max(1));
-        numbers.zip(&self.subjects).map(history).collect()
+        self.subjects.iter().enumerate().map(history).collect()
     }
 }
 
@@ -80,7 +87,7 @@ mod tests {
     fn every_step_is_in_every_history() {
         for room in [0, 3, 40] {
             let mut of = Histories::new(vec![Subject::Position(1), Subject::Joint(2)]);
-            of.ensure_steps(room);
+            of.expect(room);
             for step in 0..40 {
                 let at = f64::from(step);
                 of.write(|subject| if subject == Subject::Joint(2) { -at } else { at });
@@ -92,5 +99,7 @@ mod tests {
             assert_eq!(done[1].subject, Subject::Joint(2));
         }
         assert!(Histories::new(Vec::new()).finish().is_empty());
+        let unwritten = Histories::new(vec![Subject::Position(1)]).finish();
+        assert!(unwritten.len() == 1 && unwritten[0].values.is_empty());
     }
 }

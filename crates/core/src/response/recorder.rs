@@ -193,7 +193,7 @@ impl Recorder {
 
     /// Has room for the histories of so many steps and the beginning.
     pub(crate) fn expect(&mut self, steps: usize) {
-        self.histories.ensure_steps(steps + 1);
+        self.histories.expect(steps + 1);
     }
 
     /// Takes note of peaks after a step, be it whole or a part of one.

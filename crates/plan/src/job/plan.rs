@@ -49,22 +49,27 @@ pub struct Share {
     pub jobs: usize,
     /// Steps times modules.
     pub module_steps: f64,
-    /// Some of them, to be tried: the first, then any of the others with one chance for all.
+    /// The first of them, to be tried.
+    pub first: Vec<Job>,
+    /// Some of all, with one chance for each, to be tried.
     pub sample: Vec<Job>,
 }
 
-/// Jobs that are kept to be tried: as many from the front, which share a bridge, as from everywhere.
+/// Jobs that are kept to be tried, from the front and from everywhere.
 const KEPT: usize = 64;
 const KEPT_OF_ALL: usize = 512;
 
 impl Share {
     fn take(&mut self, job: &Job) {
         self.module_steps += module_steps(job);
-        if self.sample.len() < KEPT + KEPT_OF_ALL {
+        if self.first.len() < KEPT {
+            self.first.push(job.clone());
+        }
+        if self.sample.len() < KEPT_OF_ALL {
             self.sample.push(job.clone());
         } else {
             // reservoir sampling; the same jobs whenever the study is the same
-            let place = KEPT + any_below(self.jobs, self.jobs + 1 - KEPT);
+            let place = any_below(self.jobs, self.jobs + 1);
             if let Some(kept) = self.sample.get_mut(place) {
                 kept.clone_from(job);
             }
@@ -194,10 +199,10 @@ mod tests {
                 ..job.clone()
             });
         }
-        assert_eq!((share.jobs, share.sample.len()), (5000, KEPT + KEPT_OF_ALL));
-        assert!(share.sample[..KEPT].iter().map(|job| job.number).eq(0..KEPT));
+        assert_eq!((share.jobs, share.sample.len()), (5000, KEPT_OF_ALL));
+        assert!(share.first.iter().map(|job| job.number).eq(0..KEPT));
         let mut fifths = [0; 5];
-        for job in &share.sample[KEPT..] {
+        for job in &share.sample {
             fifths[job.number / 1000] += 1;
         }
         assert!(fifths.iter().all(|count| (66..138).contains(count)), "{fifths:?}");

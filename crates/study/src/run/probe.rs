@@ -8,7 +8,7 @@ use super::cache::Cache;
 use super::cancel::{CancelToken, Why};
 use super::progress::Silent;
 use super::shared_models::SharedModels;
-use pontoon_plan::job::{Job, module_steps};
+use pontoon_plan::job::{Job, Share, module_steps};
 use pontoon_plan::study_file::Study;
 use std::sync::mpsc;
 use std::thread;
@@ -36,80 +36,104 @@ pub struct Measured {
     pub jobs: usize,
 }
 
-/// Measures what jobs like the first of `jobs` cost, on one thread, those that can be solved beside it: of crossings by the operator
-/// groups of all lengths, of other jobs the shortest. None where they are too long or fail, and where their preparation is not
+/// Jobs that are tried together, and how many of all steps they stand for.
+#[derive(Debug)]
+struct Group<'a> {
+    jobs: Vec<&'a Job>,
+    parts: f64,
+}
+
+/// Measures what jobs like the first of a share cost, on one thread, those that can be solved beside it: of crossings by the operator
+/// groups of all lengths, of other jobs the shortest. None where they are too long or all fail, and where their preparation is not
 /// done at the `deadline`.
-pub fn measure(study: &Study, jobs: &[Job], cache: Option<&Cache>, deadline: Instant) -> Option<Measured> {
-    let first = jobs.first()?;
-    let lane_batch = |job: &Job| job.as_crossing().as_ref().and_then(SharedModels::lane_batch_key);
-    let alike = |job: &&Job| lane_batch(job) == lane_batch(first);
-    let mut known: Vec<&Job> = jobs.iter().filter(alike).collect();
-    known.sort_by_key(|job| job.steps());
+pub fn measure(study: &Study, share: &Share, cache: Option<&Cache>, deadline: Instant) -> Option<Measured> {
+    let first = share.first.first()?;
+    let mut groups = groups(&known(share, first), first.by_operator());
     let work = |job: &Job| (job.steps() * job.crossings()) as f64 * (job.bridge.design.modules as f64).powi(2);
-    let mut groups = if first.by_operator() {
-        groups(&known)
-    } else {
-        vec![known[..1].to_vec()]
+    let all = |groups: &[Group<'_>]| {
+        let each = groups.iter().flat_map(|group| &group.jobs);
+        each.map(|job| work(job)).sum::<f64>()
     };
-    let all = |groups: &[Vec<&Job>]| groups.iter().flatten().map(|job| work(job)).sum::<f64>();
+    // fewer and shorter ones where they are long
     if all(&groups) > MOST_WORK {
-        groups = vec![known[..TRIED.min(known.len())].to_vec()];
+        groups.truncate(1);
     }
     if all(&groups) > MOST_WORK {
-        groups = vec![known[..1].to_vec()];
+        groups[0].jobs.truncate(1);
     }
     if all(&groups) > MOST_WORK {
         return None;
     }
-    let tried: Vec<&Job> = groups.iter().flatten().copied().collect();
+    let tried: Vec<&Job> = groups.iter().flat_map(|group| &group.jobs).copied().collect();
     let start = Instant::now();
     let models = until(deadline, |cancel| {
         SharedModels::prepare(&tried, &PreparedModules::default(), cache, cancel, &Silent)
     })?;
     let bridge_s = start.elapsed().as_secs_f64();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()?;
-    let solved_s = |group: &[&Job]| {
-        let list: Vec<(&Study, &Job)> = group.iter().map(|job| (study, *job)).collect();
+    let solved_s = |jobs: &[&Job]| {
+        let list: Vec<(&Study, &Job)> = jobs.iter().map(|job| (study, *job)).collect();
         let start = Instant::now();
         let records = pool.install(|| solve(&list, false, &models, &NoObserver));
         let passed = records.iter().all(|record| record.failure.is_none());
         passed.then(|| start.elapsed().as_secs_f64())
     };
-    let warms_up = groups.len() > 1;
-    if warms_up {
+    if groups.len() > 1 {
         // what the first jobs make for all
-        solved_s(&groups[0][..1])?;
+        let _ = solved_s(&groups[0].jobs[..1]);
     }
-    let (mut job_s, mut steps, mut per_step_s) = (0.0, 0.0, 0.0);
-    for group in &groups {
-        let of_group: f64 = group.iter().map(|job| module_steps(job)).sum();
-        let seconds = solved_s(group)?;
-        job_s += seconds;
+    let (mut per_step_s, mut parts, mut seconds, mut steps, mut jobs) = (0.0, 0.0, 0.0, 0.0, 0);
+    // jobs that fail tell nothing
+    for (group, of_group_s) in groups.iter().filter_map(|group| Some((group, solved_s(&group.jobs)?))) {
+        let of_group: f64 = group.jobs.iter().map(|job| module_steps(job)).sum();
+        per_step_s += group.parts * of_group_s / of_group;
+        parts += group.parts;
+        seconds += of_group_s;
         steps += of_group;
-        per_step_s += seconds / of_group / groups.len() as f64;
+        jobs += group.jobs.len();
     }
-    let many = tried.len() as f64;
+    let many = (jobs > 0).then_some(jobs as f64)?;
     Some(Measured {
         bridge_s,
-        // every group stands for as many steps
         job_s: if steps > 0.0 {
-            per_step_s * steps / many
+            per_step_s / parts * steps / many
         } else {
-            job_s / many
+            seconds / many
         },
         module_steps: steps / many,
-        jobs: tried.len(),
+        jobs,
     })
 }
 
-/// Groups of jobs, which come by their steps: each from the middle of as large a part of all steps, of one length where there are as
-/// many as fill lanes. All of few jobs are one group.
-fn groups<'a>(jobs: &[&'a Job]) -> Vec<Vec<&'a Job>> {
-    if jobs.len() <= TRIED {
-        return vec![jobs.to_vec()];
-    }
+/// Jobs that can be solved beside the first, the shortest first: any of the share where there are enough of them, else its first ones.
+fn known<'a>(share: &'a Share, first: &Job) -> Vec<&'a Job> {
+    let lane_batch = |job: &Job| job.as_crossing().as_ref().and_then(SharedModels::lane_batch_key);
+    let alike = |jobs: &'a [Job]| -> Vec<&'a Job> {
+        let of_jobs = jobs.iter().filter(|job| lane_batch(job) == lane_batch(first));
+        of_jobs.collect()
+    };
+    let of_all = alike(&share.sample);
+    let enough = first.by_operator() && of_all.len() >= share.jobs.min(GROUPS * TRIED);
+    let mut known = if enough { of_all } else { alike(&share.first) };
+    known.sort_by_key(|job| job.steps());
+    known
+}
+
+/// Groups of jobs, which come by their steps, the shortest first. Of crossings by the operator all where they are few; of many as many groups
+/// as there are parts of equally many steps, each from the middle of its part, of one length where so many have it as fill lanes.
+fn groups<'a>(jobs: &[&'a Job], by_operator: bool) -> Vec<Group<'a>> {
     let whole: f64 = jobs.iter().map(|job| module_steps(job)).sum();
-    let mut groups = Vec::new();
+    let of = |jobs: &[&'a Job]| Group {
+        jobs: jobs.to_vec(),
+        parts: jobs.iter().map(|job| module_steps(job)).sum::<f64>() / whole,
+    };
+    if !by_operator {
+        return vec![of(&jobs[..1])];
+    }
+    if jobs.len() <= GROUPS * TRIED {
+        return jobs.chunks(TRIED).map(of).collect();
+    }
+    let mut groups: Vec<Group<'_>> = Vec::new();
     for part in 0..GROUPS {
         let middle = (part as f64 + 0.5) / GROUPS as f64 * whole;
         let mut sum = 0.0;
@@ -119,15 +143,20 @@ fn groups<'a>(jobs: &[&'a Job]) -> Vec<Vec<&'a Job>> {
         };
         let at = jobs.iter().position(reaches).unwrap_or(0);
         let steps = jobs[at].steps();
+        if let Some(same) = groups.last_mut().filter(|group| group.jobs[0].steps() == steps) {
+            same.parts += 1.0;
+            continue;
+        }
         let alike: Vec<&Job> = jobs.iter().copied().filter(|job| job.steps() == steps).collect();
-        groups.push(if alike.len() >= TRIED {
+        let jobs = if alike.len() >= TRIED {
             // those of other gaps and loads as well
             let apart = alike.len() / TRIED;
             alike.into_iter().step_by(apart).take(TRIED).collect()
         } else {
             let from = at.saturating_sub(TRIED / 2).min(jobs.len() - TRIED);
             jobs[from..from + TRIED].to_vec()
-        });
+        };
+        groups.push(Group { jobs, parts: 1.0 });
     }
     groups
 }

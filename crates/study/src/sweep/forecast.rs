@@ -88,7 +88,7 @@ pub fn forecast(
         let threads = threads.min(plan.jobs).max(1) as f64;
         let mut bridge_s: f64 = 0.0;
         for share in plan.work.shares() {
-            let measured = measure(study, &share.sample, cache, deadline);
+            let measured = measure(study, share, cache, deadline);
             tried += measured.map_or(0, |m| m.jobs);
             bridge_s = measured.map_or(bridge_s, |m| bridge_s.max(m.bridge_s));
             seconds = seconds.zip(measured).map(|(sum, m)| sum + share_s(share, &m) / threads);
