@@ -81,7 +81,7 @@ fn peaks_are_those_of_the_states() {
         (
             "several lines beside the edge",
             soft,
-            footprint(&[3.3, 3.6, 3.85, 4.041], Inertia::None),
+            wide_axles(&[(0.2, 1.0, 0.1, 0.0, [4.0, 4.041])], Inertia::None, 1),
             Connection::Linear,
         ),
     ] {

@@ -430,7 +430,7 @@ fn mirrored_traffic_leaves_mirrored_peaks() {
     }
 }
 
-/// Two vehicles of one wheel each, half of a bridge apart on one line: all stations between them are near, which are more than the
+/// Two vehicles of one wheel each, nine tenths of a bridge apart on one line: all stations between them are near, which are more than the
 /// vehicles have nodes. Twin: a second vehicle that is 5 % heavier.
 #[test]
 fn vehicles_far_behind_one_another_ride_on_one_line() {
@@ -449,7 +449,7 @@ fn vehicles_far_behind_one_another_ride_on_one_line() {
         ..VehicleDesign::default()
     };
     let vehicle = design.check(BREADTH_M).expect("a vehicle");
-    let apart_s = 0.5 * ready.design.length_m() / 12.0;
+    let apart_s = 0.9 * ready.design.length_m() / 12.0;
     let column = |factor: f64| {
         let second = Driven {
             load_n: factor * 1e5,
