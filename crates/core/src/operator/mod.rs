@@ -16,6 +16,7 @@ mod columns;
 mod connectors;
 mod contact_step;
 mod contact_system;
+mod corner_panel;
 mod corners;
 mod crossings;
 mod cutoff;

@@ -3,7 +3,7 @@
 //! Knows the scheme, damping, and the small flexibilities of a step. Does not know gaps, speeds or loads.
 
 use super::basis::{BridgeOperator, OperatedModule};
-use super::corners::CornerPanel;
+use super::corner_panel::CornerPanel;
 use super::panel::Panel;
 use super::waves::WaveConstants;
 use crate::riding::RidingStep;
