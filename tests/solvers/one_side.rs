@@ -10,7 +10,7 @@ use pontoon_core::response::{BodyMotion, CrossingResponse, ForcePeaks, MotionPea
 use pontoon_core::road::{IsoClass, Road, RoadDesign, RoadLines, Ways};
 use pontoon_core::stop::Stop;
 use pontoon_core::traffic::{Drive, Driven, Traffic};
-use pontoon_core::vehicle::{Axle, Body, Inertia, Vehicle, VehicleDesign};
+use pontoon_core::vehicle::{Axle, Inertia, Vehicle};
 use pontoon_tests::operated::*;
 use pontoon_tests::*;
 use std::sync::Arc;
@@ -143,37 +143,15 @@ fn one_side_is_the_whole_bridge() {
     }
 }
 
-/// A truck of 132.3 kN on springs in the middle, its suspensions multiplied by `factor`.
+/// A truck on springs in the middle, its suspensions multiplied by `factor`; without tyres the masses of its axles lie on the deck.
 fn truck(factor: f64, inertia: Inertia, has_tyres: bool) -> Vehicle {
-    let axle = |behind_front_m: f64, mass: f64, suspension: [f64; 2], tyre: [f64; 2]| Axle {
-        behind_front_m,
-        patch_length_m: 0.3,
-        patch_width_m: 0.2,
-        track_y_m: vec![-1.1, 1.1],
-        unsprung_mass_kg: Some(mass),
-        suspension_stiffness_n_m: Some(factor * suspension[0]),
-        suspension_damping_n_s_m: Some(suspension[1]),
-        tyre_stiffness_n_m: has_tyres.then_some(tyre[0]),
-        tyre_damping_n_s_m: has_tyres.then_some(tyre[1]),
-        ..Axle::default()
+    let change_axle = |axle: &mut Axle| {
+        (axle.track_y_m, axle.patch_width_m) = (vec![-1.1, 1.1], 0.2);
+        if !has_tyres {
+            (axle.tyre_stiffness_n_m, axle.tyre_damping_n_s_m) = (None, None);
+        }
     };
-    let design = VehicleDesign {
-        axles: Some(vec![
-            axle(0.0, 600.0, [4e5, 1e4], [1.5e6, 3e3]),
-            axle(4.5, 1000.0, [1e6, 2e4], [3e6, 6e3]),
-        ]),
-        body: Some(Body {
-            mass_kg: 11_890.8,
-            behind_front_m: 2.940,
-            pitch_inertia_kg_m2: Some(5e4),
-            roll_inertia_kg_m2: Some(1.2e4),
-            height_m: Some(1.4),
-        }),
-        inertia,
-        patch_points: 4,
-        ..VehicleDesign::default()
-    };
-    design.check(8.0).expect("a truck")
+    sprung_truck(factor, |design| design.inertia = inertia, change_axle)
 }
 
 /// A road of class E, so rough that wheels leave it.

@@ -19,35 +19,9 @@ use std::sync::{Arc, OnceLock};
 const ROUNDING: f64 = 1e-9;
 const BREADTH_M: f64 = 8.082;
 
-/// A truck of 132.3 kN: two axles 4.5 m apart on springs and tyres, its springs multiplied by `factor`.
+/// A truck of 132.3 kN on springs and tyres with tracks at `y_m`, its suspensions multiplied by `factor`.
 fn truck(factor: f64, y_m: [f64; 2]) -> Vehicle {
-    let axle = |behind_front_m: f64, mass: f64, suspension: [f64; 2], tyre: [f64; 2]| Axle {
-        behind_front_m,
-        patch_length_m: 0.3,
-        track_y_m: y_m.to_vec(),
-        unsprung_mass_kg: Some(mass),
-        suspension_stiffness_n_m: Some(factor * suspension[0]),
-        suspension_damping_n_s_m: Some(suspension[1]),
-        tyre_stiffness_n_m: Some(tyre[0]),
-        tyre_damping_n_s_m: Some(tyre[1]),
-        ..Axle::default()
-    };
-    let design = VehicleDesign {
-        axles: Some(vec![
-            axle(0.0, 600.0, [4e5, 1e4], [1.5e6, 3e3]),
-            axle(4.5, 1000.0, [1e6, 2e4], [3e6, 6e3]),
-        ]),
-        body: Some(Body {
-            mass_kg: 11_890.8,
-            behind_front_m: 2.940,
-            pitch_inertia_kg_m2: Some(5e4),
-            roll_inertia_kg_m2: Some(1.2e4),
-            height_m: Some(1.4),
-        }),
-        patch_points: 4,
-        ..VehicleDesign::default()
-    };
-    design.check(BREADTH_M).expect("a truck")
+    sprung_truck(factor, |_| {}, |axle| axle.track_y_m = y_m.to_vec())
 }
 
 /// A vehicle of 200 kN, its axles' masses on the deck and its body on springs without tyres.

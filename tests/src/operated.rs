@@ -7,7 +7,7 @@ use pontoon_core::analysis::AnalysisError;
 use pontoon_core::analysis::crossing::{CrossingSettings, CrossingSolver, OperatorSolver};
 use pontoon_core::operator::BridgeOperator;
 use pontoon_core::response::{CrossingResponse, ForcePeaks, Peak, Quantity};
-use pontoon_core::vehicle::{Axle, Inertia, Vehicle, VehicleDesign};
+use pontoon_core::vehicle::{Axle, Body, Inertia, Vehicle, VehicleDesign};
 use std::sync::Arc;
 
 /// Both solvers of one bridge at one time step.
@@ -70,6 +70,45 @@ pub fn wide_axles(list: &[(f64, f64, f64, f64, [f64; 2])], inertia: Inertia, pat
         ..VehicleDesign::default()
     };
     design.check(8.082).expect("a vehicle")
+}
+
+/// A truck of 132.3 kN: two axles 4.5 m apart on springs and tyres, its suspensions multiplied by `factor`; what else it is to have is
+/// changed in it and in each axle.
+///
+/// # Panics
+/// Where it is no vehicle on the usual deck.
+pub fn sprung_truck(factor: f64, change: impl FnOnce(&mut VehicleDesign), change_axle: impl Fn(&mut Axle)) -> Vehicle {
+    let axle = |behind_front_m: f64, mass: f64, suspension: [f64; 2], tyre: [f64; 2]| {
+        let mut axle = Axle {
+            behind_front_m,
+            patch_length_m: 0.3,
+            unsprung_mass_kg: Some(mass),
+            suspension_stiffness_n_m: Some(factor * suspension[0]),
+            suspension_damping_n_s_m: Some(suspension[1]),
+            tyre_stiffness_n_m: Some(tyre[0]),
+            tyre_damping_n_s_m: Some(tyre[1]),
+            ..Axle::default()
+        };
+        change_axle(&mut axle);
+        axle
+    };
+    let mut design = VehicleDesign {
+        axles: Some(vec![
+            axle(0.0, 600.0, [4e5, 1e4], [1.5e6, 3e3]),
+            axle(4.5, 1000.0, [1e6, 2e4], [3e6, 6e3]),
+        ]),
+        body: Some(Body {
+            mass_kg: 11_890.8,
+            behind_front_m: 2.940,
+            pitch_inertia_kg_m2: Some(5e4),
+            roll_inertia_kg_m2: Some(1.2e4),
+            height_m: Some(1.4),
+        }),
+        patch_points: 4,
+        ..VehicleDesign::default()
+    };
+    change(&mut design);
+    design.check(8.082).expect("a truck")
 }
 
 /// How far two answers are apart, each kind over its largest value in the second.

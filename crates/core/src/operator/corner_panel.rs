@@ -74,7 +74,7 @@ impl CornerPanel {
         };
         // the path on which the largest of sums of rows may change by 1
         let path = |sums: &mut dyn Iterator<Item = Vec<(usize, f64)>>| {
-            let square = |sum: Vec<(usize, f64)>| {
+            let of_sum = |sum: Vec<(usize, f64)>| {
                 let of = |k: usize| sum.iter().map(|&(row, w)| w * entry(row, k)).sum();
                 reach(
                     &(0..modes + links).map(of).collect::<Vec<f64>>(),
@@ -82,7 +82,7 @@ impl CornerPanel {
                     link_weight,
                 )
             };
-            1.0 / sums.map(square).fold(f64::MIN_POSITIVE, f64::max)
+            1.0 / sums.map(of_sum).fold(f64::MIN_POSITIVE, f64::max)
         };
         let (deck, under) = own.split_at(rows.of_deck);
         let single = |row: &usize| vec![(*row, 1.0)];

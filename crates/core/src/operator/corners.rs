@@ -2,10 +2,10 @@
 //!
 //! Knows how far a corner may have moved since it was looked at. Does not know how the motion came about.
 //!
-//! The corners of a module are looked at only where one of them may be beyond everything before it (O11). Be p the path of a
-//! lane, the sum over its steps of `sqrt(sum of (omega^2 + 1) d^2 + g sum of ds^2)`. The modes and links move a row by no more
-//! than `N (p - p_0)`, `N^2 = sum of phi^2 / (omega^2 + 1) + sum of R^2 / g` (Cauchy and Schwarz); what deck loads beside the
-//! modes move of it is known.
+//! The corners of a module are looked at only where one of them may be beyond everything before it (O11). The path p of a lane is
+//! the sum over its steps of `sqrt(sum of (omega^2 + 1) d^2 + g sum of ds^2)`. Modes and links move a row by at most
+//! `N (p - p_0)`, `N^2 = sum of phi^2 / (omega^2 + 1) + sum of R^2 / g` (Cauchy and Schwarz). How far deck loads beside the modes
+//! move it is known.
 
 use super::basis::{BridgeOperator, Observed};
 use super::corner_panel::{CornerPanel, CornerRows, MOST_CORNERS};
