@@ -30,7 +30,7 @@ pub(super) fn limit_rows_of_none(job: &Job) -> Vec<LimitRow> {
         utilisation: None,
         place: None,
     };
-    job.limits.iter().map(row).collect()
+    job.shared.limits.iter().map(row).collect()
 }
 
 /// The row of the limit of which most is used up, the first of equals.

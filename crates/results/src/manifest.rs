@@ -146,9 +146,13 @@ impl Manifest {
             failed: outcome.failures.count,
             merged: study.points() - jobs.len(),
             notes: Doubts::of(jobs).notes(),
-            distinct_bridges: jobs.iter().map(|job| job.bridge.id).collect::<BTreeSet<_>>().len(),
+            distinct_bridges: jobs
+                .iter()
+                .map(|job| job.shared.bridge.id)
+                .collect::<BTreeSet<_>>()
+                .len(),
             distinct_modules: condensed
-                .flat_map(|job| &job.bridge.module_keys)
+                .flat_map(|job| &job.shared.bridge.module_keys)
                 .collect::<BTreeSet<_>>()
                 .len(),
             condensations: preparation.condensations,

@@ -27,8 +27,8 @@ pub struct TableProvenance {
 pub(super) fn metadata(study: &Study, jobs: &[Job], of: &TableProvenance) -> Vec<(String, String)> {
     let (mut seen, mut bridges) = (HashSet::new(), blake3::Hasher::new());
     for job in jobs {
-        if seen.insert(job.bridge.id) {
-            bridges.update(job.bridge.hash.as_bytes());
+        if seen.insert(job.shared.bridge.id) {
+            bridges.update(job.shared.bridge.hash.as_bytes());
             bridges.update(b" ");
         }
     }

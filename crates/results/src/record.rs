@@ -266,7 +266,7 @@ pub struct BankRow {
 
 /// The rows of the banks of a job that failed.
 fn bank_rows_of_none(job: &Job) -> Vec<BankRow> {
-    let design = &job.bridge.design;
+    let design = &job.shared.bridge.design;
     let row = |bank: usize, y_m: Option<f64>| BankRow {
         bank,
         y_m,
@@ -365,8 +365,8 @@ impl HistoryRows {
 
 /// The rows of the pins of a job that failed; none where pins are not recorded.
 fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
-    let design = &job.bridge.design;
-    let joints = (2..=design.modules).filter(|_| job.record.pins);
+    let design = &job.shared.bridge.design;
+    let joints = (2..=design.modules).filter(|_| job.shared.record.pins);
     let row = |joint: usize, y_m: Option<f64>| PinRow {
         joint,
         y_m,
@@ -383,7 +383,7 @@ fn pin_rows_of_none(job: &Job) -> Vec<PinRow> {
 
 /// The rows of the section forces of a job that failed; none where they are not recorded.
 fn section_rows_of_none(job: &Job) -> Vec<SectionRow> {
-    let joints = (2..=job.bridge.design.modules).filter(|_| job.record.sections);
+    let joints = (2..=job.shared.bridge.design.modules).filter(|_| job.shared.record.sections);
     let row = |joint: usize, quantity: &str| SectionRow {
         joint,
         quantity: quantity.to_owned(),
@@ -397,7 +397,7 @@ fn section_rows_of_none(job: &Job) -> Vec<SectionRow> {
 impl JobRecord {
     /// The record of a job that failed: the rows of a job that did not, their numbers null.
     pub fn failed(job: &Job, failure: Failure) -> Self {
-        let design = &job.bridge.design;
+        let design = &job.shared.bridge.design;
         let none = Extreme::default();
         let positions = (1..=design.positions()).map(|position| PositionRow {
             position,
@@ -416,7 +416,7 @@ impl JobRecord {
                 tension: none,
             })
         });
-        let places = job.record.places_x_m.iter().map(|&x_m| PlaceRow {
+        let places = job.shared.record.places_x_m.iter().map(|&x_m| PlaceRow {
             x_m,
             deflection: none,
             uplift: none,

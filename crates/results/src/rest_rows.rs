@@ -38,8 +38,8 @@ pub struct FreeboardRow {
 
 /// The rows of the freeboards of a job that failed; none where they are not recorded.
 pub(crate) fn freeboard_rows_of_none(job: &Job) -> Vec<FreeboardRow> {
-    let modules = if job.record.freeboards {
-        job.bridge.design.modules
+    let modules = if job.shared.record.freeboards {
+        job.shared.bridge.design.modules
     } else {
         0
     };
@@ -51,7 +51,7 @@ impl FreeboardRow {
     /// Of a corner of the modules' decks: module after module, left and right end, lower and higher y.
     pub fn of_corner(corner: usize, job: &Job, least: Extreme) -> Self {
         let (module, end, edge) = (corner / 4, corner % 4 / 2, corner % 2);
-        let half_m = 0.5 * job.bridge.design.module.breadth_m;
+        let half_m = 0.5 * job.shared.bridge.design.module.breadth_m;
         Self {
             module: module + 1,
             position: module + 1 + end,

@@ -66,8 +66,8 @@ impl Doubts {
 
     /// Looks at a job.
     pub fn take(&mut self, job: &Job) {
-        if self.bridges.insert(job.bridge.id) {
-            self.bridge(&job.bridge.design);
+        if self.bridges.insert(job.shared.bridge.id) {
+            self.bridge(&job.shared.bridge.design);
         }
         if let Task::Crossing { speed_m_s } = job.task {
             let fast = speed_m_s > FAST_M_S;
@@ -80,8 +80,9 @@ impl Doubts {
         }
         if let Some(crossing) = job.as_crossing() {
             let damping = &crossing.analysis.damping;
-            let twice =
-                job.bridge.design.water.is_some() && damping.structure.is_none() && damping.rayleigh_ratio() > 0.0;
+            let twice = job.shared.bridge.design.water.is_some()
+                && damping.structure.is_none()
+                && damping.rayleigh_ratio() > 0.0;
             self.note(
                 twice,
                 "analysis.damping.ratio",
@@ -114,7 +115,7 @@ impl Doubts {
                 "below 1000 N, the weight of a person: is it in kN?",
             );
         }
-        let depth_m = job.bridge.design.deepest_m().0;
+        let depth_m = job.shared.bridge.design.deepest_m().0;
         if let Some((tension, compression)) = job.gaps_m() {
             for (key, gap) in [("gap_tension_m", tension), ("gap_compression_m", compression)] {
                 self.note(gap > depth_m, key, gap, "above the depth of a module: is it in mm?");

@@ -6,7 +6,7 @@ use super::crossing_type::CrossingType;
 use super::documents::{BridgeEntry, Documents, TrafficEntry, VehicleEntry, WearEntry};
 use super::rating_point::RatingPoint;
 use super::seen::SeenJobs;
-use super::{Job, MOST_STEPS, StandingLoad, Task, Worn};
+use super::{Job, MOST_STEPS, SharedParts, StandingLoad, Task, Worn};
 use crate::design::{DesignPoint, Goes, JobAxis, NAMED_AXES, NamedAxis, Root, Varies};
 use crate::input::{Cell, FoundValue, Refusal, RefusalKind};
 use crate::study_file::{Allowed, Analysis, CrossingAnalysis, Find, ModelSpec, Study, TimeStep};
@@ -36,6 +36,25 @@ pub(super) struct JobParts {
     sized: HashSet<(usize, ModelSpec)>,
     /// Limits by the bridge that has them.
     limits: HashMap<usize, Arc<[Allowed]>>,
+    /// What jobs have in common, by what tells it apart within a study.
+    shared: HashMap<SharedKey, Arc<SharedParts>>,
+}
+
+/// Bridge, vehicle and its name, type of crossing, analysis: equal for shared parts that are equal within a study.
+type SharedKey = (usize, usize, Option<Arc<str>>, Option<CrossingType>, usize);
+
+impl JobParts {
+    /// The parts, or equal ones that another job has.
+    fn shared(&mut self, parts: SharedParts) -> Arc<SharedParts> {
+        let key = (
+            parts.bridge.id,
+            parts.vehicle.id,
+            parts.vehicle_name.clone(),
+            parts.crossing_type,
+            parts.analysis.id,
+        );
+        Arc::clone(self.shared.entry(key).or_insert_with(|| Arc::new(parts)))
+    }
 }
 
 impl<'a> Jobs<'a> {
@@ -179,27 +198,32 @@ impl Jobs<'_> {
         let limits = self.limits(&bridge)?;
         let worn = self.parts.documents.wear(self.study, point)?;
         let worn = short.worn(worn, connection, &bridge)?;
+        let vehicle_name = short.value(JobAxis::Vehicle).and_then(|cell| cell.word());
         let job = Job {
             number: self.seen.len(),
-            bridge,
-            vehicle_name: short
-                .value(JobAxis::Vehicle)
-                .and_then(|cell| cell.word())
-                .map(Arc::from),
-            vehicle,
-            crossing_type,
+            shared: self.parts.shared(SharedParts {
+                bridge,
+                vehicle,
+                vehicle_name: vehicle_name.map(Arc::from),
+                crossing_type,
+                analysis,
+                record: Arc::clone(&self.study.record),
+                limits,
+            }),
             traffic,
-            analysis,
             connection,
             load_n,
             worn,
-            record: Arc::clone(&self.study.record),
-            limits,
             rating: None,
             task,
         };
-        if let Some(crossing) = job.as_crossing().filter(|_| !job.record.histories.vehicles.is_empty()) {
-            job.record.check_vehicles(&self.study.file, &crossing.traffic())?;
+        if let Some(crossing) = job
+            .as_crossing()
+            .filter(|_| !job.shared.record.histories.vehicles.is_empty())
+        {
+            job.shared
+                .record
+                .check_vehicles(&self.study.file, &crossing.traffic())?;
         }
         match job.checked_laws() {
             Ok(_) => Ok(job),

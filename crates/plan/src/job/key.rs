@@ -59,7 +59,11 @@ pub(super) fn laws_key(laws: &[(usize, ConnectorLaw)]) -> Option<[u8; 32]> {
 /// Equal for jobs that leave the same record, in whatever study and at whatever number they stand.
 pub(super) fn key_of(job: &Job) -> JobKey {
     let mut hasher = blake3::Hasher::new();
-    for text in [&*job.bridge.structure_key, &*job.vehicle.key, &*job.analysis.key] {
+    for text in [
+        &*job.shared.bridge.structure_key,
+        &*job.shared.vehicle.key,
+        &*job.shared.analysis.key,
+    ] {
         hasher.update(&(text.len() as u64).to_le_bytes());
         hasher.update(text.as_bytes());
     }
@@ -83,13 +87,13 @@ pub(super) fn key_of(job: &Job) -> JobKey {
         hasher.update(&laws);
     }
     // a river that has not risen is known as it was before any could
-    let level_m = job.bridge.design.risen_m();
+    let level_m = job.shared.bridge.design.risen_m();
     if level_m != 0.0 {
         hasher.update(b"water level");
         hasher.update(&level_m.to_bits().to_le_bytes());
     }
     // a crossing without limits is known as it was before there were any
-    for of in &*job.limits {
+    for of in &*job.shared.limits {
         hasher.update(of.limit.word().as_bytes());
         hasher.update(&of.allowed.to_bits().to_le_bytes());
         hasher.update(&of.beside.to_bits().to_le_bytes());

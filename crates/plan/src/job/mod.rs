@@ -65,32 +65,39 @@ use std::sync::Arc;
 pub struct Job {
     /// Its number, from 0, in the order of the file.
     pub number: usize,
-    /// Its bridge.
-    pub bridge: Arc<BridgeEntry>,
-    /// Its vehicle.
-    pub vehicle: Arc<VehicleEntry>,
-    /// The name or file of that vehicle, where an axis has it.
-    pub vehicle_name: Option<Arc<str>>,
-    /// The type of the crossing, where an axis has it.
-    pub crossing_type: Option<CrossingType>,
+    /// What it has in common with others.
+    pub shared: Arc<SharedParts>,
     /// Its traffic and road; none where that vehicle crosses a level road alone.
     pub traffic: Option<Arc<TrafficEntry>>,
-    /// Its analysis.
-    pub analysis: Arc<AnalysisEntry>,
     /// How the connectors work.
     pub connection: Connection,
     /// Weight of the vehicle, of several the heaviest `[N]`; 0 where none is asked for.
     pub load_n: f64,
     /// Wear of its joints; none where gaps have no meaning or do not scatter.
     pub worn: Option<Worn>,
-    /// What is kept of it beyond its peaks.
-    pub record: Arc<RecordSpec>,
-    /// How far its bridge may go; nothing where no limits are stated.
-    pub limits: Arc<[Allowed]>,
     /// Of a rating where its crossings come from: the job itself is the crossing at the end where the limits are to hold.
     pub rating: Option<Arc<RatingPoint>>,
     /// What is asked.
     pub task: Task,
+}
+
+/// What jobs of one bridge, vehicle and analysis have in common. A study may have millions of jobs: they hold it once.
+#[derive(Debug)]
+pub struct SharedParts {
+    /// The bridge.
+    pub bridge: Arc<BridgeEntry>,
+    /// The vehicle.
+    pub vehicle: Arc<VehicleEntry>,
+    /// The name or file of that vehicle, where an axis has it.
+    pub vehicle_name: Option<Arc<str>>,
+    /// The type of the crossing, where an axis has it.
+    pub crossing_type: Option<CrossingType>,
+    /// The analysis.
+    pub analysis: Arc<AnalysisEntry>,
+    /// What is kept of a job beyond its peaks.
+    pub record: Arc<RecordSpec>,
+    /// How far the bridge may go; nothing where no limits are stated.
+    pub limits: Arc<[Allowed]>,
 }
 
 /// Worn joints.
@@ -151,7 +158,7 @@ pub struct TooManySteps {
 impl<'a> CrossingJob<'a> {
     /// The time step that it begins with `[s]`: the stated one, or the coarsest of its own.
     pub fn first_time_step_s(&self) -> f64 {
-        let passage_s = self.job.bridge.design.shortest_module_m() / self.speed_m_s;
+        let passage_s = self.job.shared.bridge.design.shortest_module_m() / self.speed_m_s;
         self.analysis.time_step.first_s(passage_s)
     }
 
@@ -163,7 +170,7 @@ impl<'a> CrossingJob<'a> {
     /// Time steps of so many seconds, bisected ones apart.
     fn steps_of(&self, time_step_s: f64) -> usize {
         CrossingSolver::steps(
-            self.job.bridge.design.length_m(),
+            self.job.shared.bridge.design.length_m(),
             &self.traffic(),
             time_step_s,
             self.analysis.tail_s,
@@ -173,7 +180,7 @@ impl<'a> CrossingJob<'a> {
     /// Whether the vehicle goes more than half of its shortest patch in a time step, where its mass rides along and the step is
     /// stated: the deck then answers to jumps of the mass and no longer to its motion. None where the program finds the step.
     pub fn is_step_long(&self) -> Option<bool> {
-        let (step_s, length_m) = (self.first_time_step_s(), self.job.bridge.design.length_m());
+        let (step_s, length_m) = (self.first_time_step_s(), self.job.shared.bridge.design.length_m());
         let is_long = |driven: &Driven| {
             let rigid = driven.vehicle.patches.iter().filter(|patch| patch.rigid > 0.0);
             let shortest_m = rigid.map(|p| p.length_m).fold(f64::INFINITY, f64::min);
@@ -202,7 +209,7 @@ impl<'a> CrossingJob<'a> {
     pub fn input(&self, record: Record, dead: Option<Arc<DeadState>>) -> Crossing {
         Crossing {
             connection: self.job.connection,
-            connector_stiffness_n_m: self.job.bridge.design.connectors.stiffness_n_m,
+            connector_stiffness_n_m: self.job.shared.bridge.design.connectors.stiffness_n_m,
             own_laws: self.job.own_laws(),
             tail_s: self.analysis.tail_s,
             record,
@@ -241,7 +248,7 @@ impl<'a> CrossingJob<'a> {
         }
         Traffic {
             vehicles: vec![Driven {
-                vehicle: Arc::clone(&self.job.vehicle.vehicle),
+                vehicle: Arc::clone(&self.job.shared.vehicle.vehicle),
                 load_n: self.job.load_n,
                 drive: Drive::steady(self.speed_m_s),
             }],
@@ -276,7 +283,7 @@ impl Job {
 
     /// The job as a crossing; none where it is another.
     pub fn as_crossing(&self) -> Option<CrossingJob<'_>> {
-        match (&self.analysis.analysis, self.task) {
+        match (&self.shared.analysis.analysis, self.task) {
             (Analysis::Crossing(analysis), Task::Crossing { speed_m_s }) => Some(CrossingJob {
                 job: self,
                 analysis,
@@ -288,7 +295,7 @@ impl Job {
 
     /// The modes that it asks for; none where it is another.
     pub fn as_modes(&self) -> Option<&ModesAnalysis> {
-        match &self.analysis.analysis {
+        match &self.shared.analysis.analysis {
             Analysis::Modes(modes) => Some(modes),
             _ => None,
         }
@@ -301,7 +308,7 @@ impl Job {
 
     /// Model of the modules.
     pub fn model(&self) -> ModelSpec {
-        self.analysis.analysis.model()
+        self.shared.analysis.analysis.model()
     }
 
     /// Time steps of a crossing, bisected ones apart; 0 of another job.
@@ -329,7 +336,7 @@ impl Job {
     /// The gaps (tension, compression) of each joint from 2 on, its wear included `[m]`: of its connector at the first place of
     /// `connectors.y_m`; none in the linear connection.
     pub fn joint_gaps_m(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
-        let design = &self.bridge.design;
+        let design = &self.shared.bridge.design;
         let of_job = self.gaps_m();
         (2..=design.modules).filter_map(move |joint| {
             let (tension, compression) = of_job?;
@@ -357,7 +364,7 @@ impl Job {
     fn checked_laws(&self) -> Result<OwnLaws, InvalidInput> {
         let worn = |joint: usize, nominal_m: [f64; 2]| self.worn_m(joint, nominal_m);
         let worn = self.worn.is_some().then_some(&worn as &JointGaps<'_>);
-        let laws = self.bridge.design.own_laws(self.connection, worn)?;
+        let laws = self.shared.bridge.design.own_laws(self.connection, worn)?;
         Ok(match self.task {
             Task::Crossing { .. } => laws,
             Task::Static(_) | Task::Modes => self.at_rest(&laws),
@@ -366,7 +373,7 @@ impl Job {
 
     /// Laws of single connectors as a static case has them.
     fn at_rest(&self, laws: &OwnLaws) -> OwnLaws {
-        let common = ConnectorLaw::new(self.bridge.design.connectors.stiffness_n_m, self.connection);
+        let common = ConnectorLaw::new(self.shared.bridge.design.connectors.stiffness_n_m, self.connection);
         let at_rest = laws.iter().map(|(place, law)| (*place, law.at_rest()));
         at_rest.filter(|(_, law)| *law != common).collect()
     }
@@ -388,9 +395,9 @@ impl Job {
             Varies::Job(axis) => self.own(*axis),
             Varies::Path(root, path) => {
                 let document = match root {
-                    Root::Bridge => &self.bridge.document,
-                    Root::Vehicle => &self.vehicle.document,
-                    Root::Analysis => &self.analysis.document,
+                    Root::Bridge => &self.shared.bridge.document,
+                    Root::Vehicle => &self.shared.vehicle.document,
+                    Root::Analysis => &self.shared.analysis.document,
                     Root::Traffic => match &self.traffic {
                         Some(traffic) => &traffic.document,
                         None => return Cell::Nothing,
@@ -433,8 +440,8 @@ impl Job {
                 common.into()
             }
             (JobAxis::Load, Task::Crossing { .. } | Task::Static(_)) => self.load_n.into(),
-            (JobAxis::Vehicle, _) => self.vehicle_name.as_deref().map_or(Cell::Nothing, Cell::from),
-            (JobAxis::CrossingType, _) => self.crossing_type.map(CrossingType::word).into(),
+            (JobAxis::Vehicle, _) => self.shared.vehicle_name.as_deref().map_or(Cell::Nothing, Cell::from),
+            (JobAxis::CrossingType, _) => self.shared.crossing_type.map(CrossingType::word).into(),
             (JobAxis::LoadPosition, Task::Static(load)) => load.position.into(),
             (JobAxis::LoadPlace, Task::Static(load)) => load.x_m.into(),
             (JobAxis::WearSeed, _) => self.worn.as_ref().map(|worn| worn.seed as usize).into(),
@@ -452,15 +459,15 @@ impl Job {
     pub(super) fn identity(&self) -> Identity {
         let bits = |x: f64| (x + 0.0).to_bits();
         Identity {
-            structure: Arc::clone(&self.bridge.structure_key),
-            vehicle: self.vehicle.id,
+            structure: Arc::clone(&self.shared.bridge.structure_key),
+            vehicle: self.shared.vehicle.id,
             traffic: self.traffic.as_ref().map(|traffic| traffic.key),
-            analysis: self.analysis.id,
+            analysis: self.shared.analysis.id,
             gaps: self
                 .gaps_m()
                 .map(|(tension, compression)| [tension, compression].map(bits)),
             laws: self.laws_key(),
-            level: bits(self.bridge.design.risen_m()),
+            level: bits(self.shared.bridge.design.risen_m()),
             load: bits(self.load_n),
             task: bits(match self.task {
                 Task::Crossing { speed_m_s } => speed_m_s,

@@ -105,7 +105,7 @@ impl Work {
 
 /// Steps of a job's crossings times the modules that each of them moves.
 pub fn module_steps(job: &Job) -> f64 {
-    (job.steps() * job.crossings()) as f64 * job.bridge.design.modules as f64
+    (job.steps() * job.crossings()) as f64 * job.shared.bridge.design.modules as f64
 }
 
 /// Cost of a step of one module by the reference solver `[s]`, optimised, on one core.
@@ -153,8 +153,8 @@ impl Plan {
             plan.jobs += 1;
             plan.steps += (job.steps() * job.crossings()) as u64;
             let model = job.model();
-            if bridges.insert((job.bridge.id, model)) && model == ModelSpec::SuperElement {
-                modules.extend(job.bridge.module_keys.iter().cloned());
+            if bridges.insert((job.shared.bridge.id, model)) && model == ModelSpec::SuperElement {
+                modules.extend(job.shared.bridge.module_keys.iter().cloned());
             }
         }
         plan.distinct_bridges = bridges.iter().map(|(id, _)| id).collect::<HashSet<_>>().len();
@@ -393,7 +393,8 @@ mod tests {
             jobs(json!([{ "grid": grid }]))
         };
         let shares = |job: &Job| {
-            job.vehicle
+            job.shared
+                .vehicle
                 .vehicle
                 .patches
                 .iter()
@@ -490,11 +491,11 @@ mod tests {
         assert!(
             jobs[..3]
                 .iter()
-                .all(|job| job.bridge.module_keys == jobs[0].bridge.module_keys)
+                .all(|job| job.shared.bridge.module_keys == jobs[0].shared.bridge.module_keys)
         );
-        assert_ne!(jobs[0].bridge.structure_key, jobs[1].bridge.structure_key);
-        assert_eq!(jobs[0].bridge.module_keys, jobs[3].bridge.module_keys);
-        assert_ne!(jobs[0].bridge.structure_key, jobs[3].bridge.structure_key);
+        assert_ne!(jobs[0].shared.bridge.structure_key, jobs[1].shared.bridge.structure_key);
+        assert_eq!(jobs[0].shared.bridge.module_keys, jobs[3].shared.bridge.module_keys);
+        assert_ne!(jobs[0].shared.bridge.structure_key, jobs[3].shared.bridge.structure_key);
         assert_eq!(jobs[1].column("gap_tension_m"), Cell::Number(0.01));
         assert_eq!(jobs[3].column("bridge.modules"), Cell::Whole(4));
     }

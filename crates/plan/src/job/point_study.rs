@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn calls_share_the_documents_that_their_points_do_not_change() {
         let of = PointStudy::new(study(&json!({ "zip": { "speed_m_s": [5], "load_n": 1e5 } })).unwrap());
-        let bridge = |speed: f64| of.at(&[vec![speed]]).unwrap().jobs.remove(0).bridge;
+        let bridge = |speed: f64| of.at(&[vec![speed]]).unwrap().jobs.remove(0).shared.bridge.clone();
         assert!(std::sync::Arc::ptr_eq(&bridge(6.0), &bridge(7.0)));
     }
 

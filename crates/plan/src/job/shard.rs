@@ -59,7 +59,7 @@ impl Shard {
     pub fn deal(self, jobs: &[Job]) -> Vec<usize> {
         let mut bridges: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (at, job) in jobs.iter().enumerate() {
-            bridges.entry(&job.bridge.operator_key).or_default().push(at);
+            bridges.entry(&job.shared.bridge.operator_key).or_default().push(at);
         }
         let total: f64 = jobs.iter().map(cost_s).sum::<f64>() + SECONDS_A_BRIDGE * bridges.len() as f64;
         let most = total / (PIECES * self.of as f64);

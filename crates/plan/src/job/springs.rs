@@ -30,7 +30,7 @@ pub fn has_springs(job: &Job) -> bool {
         return false;
     };
     match &crossing.job.traffic {
-        None => job.vehicle.vehicle.springs.is_some(),
+        None => job.shared.vehicle.vehicle.springs.is_some(),
         Some(traffic) => traffic
             .traffic
             .vehicles

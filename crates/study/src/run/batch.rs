@@ -202,11 +202,11 @@ fn finished(study: &Study, job: &Job, solved: JobResult, models: &SharedModels) 
 fn histories(study: &Study, job: &Job) -> Record {
     match job.as_crossing() {
         Some(crossing) => {
-            let mut record = study.record.of_crossing(&job.bridge.design, &crossing.traffic());
-            record_for(&job.limits, &mut record);
+            let mut record = study.record.of_crossing(&job.shared.bridge.design, &crossing.traffic());
+            record_for(&job.shared.limits, &mut record);
             record
         }
-        None => study.record.of_bridge(&job.bridge.design),
+        None => study.record.of_bridge(&job.shared.bridge.design),
     }
 }
 

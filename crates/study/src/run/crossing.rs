@@ -298,21 +298,21 @@ fn rows(
         response: &response,
         dead,
     };
-    let limits = demands.limit_rows(&job.limits);
+    let limits = demands.limit_rows(&job.shared.limits);
     // what limits alone have asked for
-    if !job.record.pins {
+    if !job.shared.record.pins {
         pins.clear();
     }
-    if !job.record.sections {
+    if !job.shared.record.sections {
         sections.clear();
     }
     let named = Named {
-        design: &job.bridge.design,
+        design: &job.shared.bridge.design,
         traffic,
-        places_x_m: &job.record.places_x_m,
+        places_x_m: &job.shared.record.places_x_m,
     };
     let static_peak_m = static_peaks_m.map(|peaks| peaks.iter().copied().fold(0.0, f64::max));
-    let waves = job.bridge.design.water.is_some();
+    let waves = job.shared.bridge.design.water.is_some();
     let mut summary = Summary {
         peak_edge_deflection_m: Some(response.peak_edge.value),
         peak_roll_rad: Some(response.peak_roll.value),

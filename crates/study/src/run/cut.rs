@@ -54,7 +54,7 @@ fn rows_of_vehicles(recorded: usize, job: &Job) -> (usize, usize) {
 
 /// Rows that a job leaves, those that bisected steps add to its histories apart.
 fn rows(study: &Study, job: &Job) -> usize {
-    let (record, design) = (&study.record, &job.bridge.design);
+    let (record, design) = (&study.record, &job.shared.bridge.design);
     if let Some(modes) = job.as_modes() {
         return 1 + modes.count;
     }

@@ -9,7 +9,7 @@ use pontoon_results::{DEAD_QUANTITIES, DeadRow, Extreme, FreeboardRow};
 /// The rows of a dead state; none without one.
 pub(super) fn dead_rows(job: &Job, dead: Option<&DeadState>) -> Vec<DeadRow> {
     let Some(dead) = dead else { return Vec::new() };
-    let design = &job.bridge.design;
+    let design = &job.shared.bridge.design;
     let [deflection, force, reaction, sinkage, trim, heel, freeboard] = DEAD_QUANTITIES;
     let row = |quantity: &str, value: f64| DeadRow {
         quantity: quantity.to_owned(),
@@ -74,7 +74,7 @@ pub(super) fn dead_rows(job: &Job, dead: Option<&DeadState>) -> Vec<DeadRow> {
 
 /// The rows of freeboards, of corners whose largest deflections from rest are `lowest`.
 pub(super) fn freeboard_rows(job: &Job, dead: Option<&DeadState>, lowest: &[Extreme]) -> Vec<FreeboardRow> {
-    let boards = job.bridge.design.freeboards_m();
+    let boards = job.shared.bridge.design.freeboards_m();
     let row = |(corner, lowest): (usize, &Extreme)| {
         let risen_m = dead.map_or(0.0, |dead| dead.deck_corners_m[corner]);
         let afloat_m = boards[corner / 4].map(|board_m| board_m + risen_m);

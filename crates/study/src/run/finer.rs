@@ -13,7 +13,7 @@ pub(super) const FINER_TOLERANCE: f64 = 1e-4;
 /// The operator that judges a rating's crossings; none where the study's own is as fine, and where a rating needs no search.
 pub(super) fn finer_operator(job: &Job) -> Option<Solver> {
     let crossing = job.as_crossing().filter(|_| job.rating.is_some())?;
-    let vehicle = &job.vehicle.vehicle;
+    let vehicle = &job.shared.vehicle.vehicle;
     let in_proportion =
         job.connection == Connection::Linear && vehicle.inertia == Inertia::None && vehicle.springs.is_none();
     let is_finer = crossing.operator_tolerance()? > FINER_TOLERANCE;

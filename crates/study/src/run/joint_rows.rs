@@ -85,7 +85,7 @@ impl Rounding {
 
     /// The rows of pins at rest, joint after joint, and of each joint's sum.
     pub(super) fn static_pin_rows(self, job: &Job, forces_n: &[[f64; 3]]) -> Vec<PinRow> {
-        let design = &job.bridge.design;
+        let design = &job.shared.bridge.design;
         let row = |joint: usize, y_m: Option<f64>, force_n: [f64; 3]| PinRow {
             joint,
             y_m,

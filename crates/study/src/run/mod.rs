@@ -281,7 +281,7 @@ pub fn solve_together(jobs: &[(&Study, &Job)], known: &PreparedModules) -> (Vec<
 pub fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: impl FnMut(&Job, JobRecord)) {
     let mut whole: BTreeMap<usize, Study> = BTreeMap::new();
     for job in jobs {
-        let modules = job.bridge.design.modules;
+        let modules = job.shared.bridge.design.modules;
         whole.entry(modules).or_insert_with(|| {
             let mut study = study.clone();
             let record = Arc::make_mut(&mut study.record);
@@ -304,7 +304,7 @@ pub fn replay(study: &Study, jobs: &[&Job], cache: Option<&Cache>, mut take: imp
     for some in jobs.chunks(REPLAYED_TOGETHER) {
         let pairs: Vec<(&Study, &Job)> = some
             .iter()
-            .filter_map(|job| Some((whole.get(&job.bridge.design.modules)?, *job)))
+            .filter_map(|job| Some((whole.get(&job.shared.bridge.design.modules)?, *job)))
             .collect();
         for (job, record) in some.iter().zip(batch::solve(&pairs, false, &models, &NoObserver)) {
             take(job, record);

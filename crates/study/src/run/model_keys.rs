@@ -94,12 +94,12 @@ pub(super) fn preparation_key((model, structure): &BridgeKey) -> PreparationKey 
 
 /// The keys of a job's modules, in the order of its bridge's variants.
 pub(super) fn module_keys(job: &Job) -> Vec<ModuleKey> {
-    let keys = job.bridge.module_keys.iter();
+    let keys = job.shared.bridge.module_keys.iter();
     keys.map(|key| (model(job), key.clone())).collect()
 }
 
 pub(super) fn bridge_key(job: &Job) -> BridgeKey {
-    (model(job), job.bridge.structure_key.clone())
+    (model(job), job.shared.bridge.structure_key.clone())
 }
 
 pub(super) fn damping_key(crossing: &CrossingJob<'_>) -> DampingKey {
@@ -121,7 +121,7 @@ pub(super) fn crossing_key(crossing: &CrossingJob<'_>) -> CrossingKey {
 
 pub(super) fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
     let job = crossing.job;
-    let record = job.record.of_bridge(&job.bridge.design);
+    let record = job.shared.record.of_bridge(&job.shared.bridge.design);
     Some(OperatorKey {
         bridge: bridge_key(crossing.job),
         tolerance: crossing.operator_tolerance()?.to_bits(),
@@ -131,13 +131,13 @@ pub(super) fn operator_key(crossing: &CrossingJob<'_>) -> Option<OperatorKey> {
 }
 
 pub(super) fn creeping_key(job: &Job) -> CreepingKey {
-    (dead_key(job), job.vehicle.key.clone(), job.load_n.to_bits())
+    (dead_key(job), job.shared.vehicle.key.clone(), job.load_n.to_bits())
 }
 
 pub(super) fn dead_key(job: &Job) -> DeadKey {
     let gaps = job
         .gaps_m()
         .map(|(tension, compression)| (tension.to_bits(), compression.to_bits()));
-    let level = job.bridge.design.risen_m();
+    let level = job.shared.bridge.design.risen_m();
     (bridge_key(job), gaps, job.laws_at_rest_key(), level.to_bits())
 }

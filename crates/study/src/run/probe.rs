@@ -49,7 +49,7 @@ struct Group<'a> {
 pub fn measure(study: &Study, share: &Share, cache: Option<&Cache>, deadline: Instant) -> Option<Measured> {
     let first = share.first.first()?;
     let mut groups = groups(&known(share, first), first.by_operator());
-    let work = |job: &Job| (job.steps() * job.crossings()) as f64 * (job.bridge.design.modules as f64).powi(2);
+    let work = |job: &Job| (job.steps() * job.crossings()) as f64 * (job.shared.bridge.design.modules as f64).powi(2);
     let all = |groups: &[Group<'_>]| {
         let each = groups.iter().flat_map(|group| &group.jobs);
         each.map(|job| work(job)).sum::<f64>()

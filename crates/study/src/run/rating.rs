@@ -312,7 +312,7 @@ impl Rating<'_> {
         }
         let tried = self.one_tried(to)?;
         let mut rated = f64::INFINITY;
-        for (row, of) in tried.limits().iter().zip(&*self.job.limits) {
+        for (row, of) in tried.limits().iter().zip(&*self.job.shared.limits) {
             let by_load = row.demand.value.unwrap_or(0.0) - of.beside;
             if by_load > 0.0 {
                 rated = rated.min(to * (of.allowed - of.beside) / by_load);
@@ -360,7 +360,7 @@ fn is_in_proportion(least: &Job, most: &Job, ratio: f64) -> bool {
         let is_weight = a.vehicle.inertia == Inertia::None && a.vehicle.springs.is_none();
         is_weight && (b.load_n - ratio * a.load_n).abs() <= 1e-12 * b.load_n
     });
-    let design = &least.bridge.design;
+    let design = &least.shared.bridge.design;
     pressed
         && least.connection == Connection::Linear
         && least
@@ -369,5 +369,5 @@ fn is_in_proportion(least: &Job, most: &Job, ratio: f64) -> bool {
             .all(|(_, law)| matches!(law, ConnectorLaw::Linear { .. }))
         && design.banks.is_empty()
         && !design.has_dead_load()
-        && least.limits.iter().all(|of| !of.limit.is_floor())
+        && least.shared.limits.iter().all(|of| !of.limit.is_floor())
 }

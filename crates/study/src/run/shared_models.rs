@@ -239,7 +239,7 @@ impl SharedModels {
             self.condensations.fetch_add(1, Ordering::Relaxed);
         }
         Ok(PreparedModule::new(
-            &job.bridge.design.variants().designs[variant],
+            &job.shared.bridge.design.variants().designs[variant],
             model,
         )?)
     }
@@ -256,14 +256,18 @@ impl SharedModels {
         if let [only] = &modules[..] {
             return Ok(only.structural_mass_kg());
         }
-        let of_module = job.bridge.design.variants().of_module;
+        let of_module = job.shared.bridge.design.variants().of_module;
         let total: f64 = of_module.iter().map(|&of| modules[of].structural_mass_kg()).sum();
         Ok(total / of_module.len() as f64)
     }
 
     /// The bridge of a job, assembled anew.
     pub(super) fn bridge(&self, job: &Job, ends: Ends) -> Result<Bridge, JobFailure> {
-        Ok(Bridge::of_kinds(&job.bridge.design, &self.modules_of(job)?, ends)?)
+        Ok(Bridge::of_kinds(
+            &job.shared.bridge.design,
+            &self.modules_of(job)?,
+            ends,
+        )?)
     }
 
     fn damping_of(&self, crossing: &CrossingJob<'_>, cancel: &CancelToken) -> Result<Damping, JobFailure> {
@@ -383,11 +387,11 @@ impl SharedModels {
         let (old, new): (Vec<&Job>, Vec<&Job>) = jobs.iter().partition(|job| known.contains_key(&creeping_key(job)));
         let mut vehicles: BTreeMap<(BridgeKey, Arc<str>), Vec<&Job>> = BTreeMap::new();
         for job in new {
-            let key = (bridge_key(job), job.vehicle.key.clone());
+            let key = (bridge_key(job), job.shared.vehicle.key.clone());
             vehicles.entry(key).or_default().push(job);
         }
         let peaks = |((bridge, _), jobs): ((BridgeKey, _), Vec<&Job>)| {
-            let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].vehicle.vehicle)));
+            let load = guarded(|| Ok(shared(&self.statics, &bridge)?.creeping(&jobs[0].shared.vehicle.vehicle)));
             let key = |job: &&Job| Some(creeping_key(job));
             each(cancel, &jobs, known, key, |job| {
                 let load = load.as_ref().map_err(Clone::clone)?;
@@ -413,7 +417,7 @@ impl SharedModels {
         let loaded: Vec<&Job> = jobs
             .iter()
             .copied()
-            .filter(|job| job.bridge.design.has_dead_load())
+            .filter(|job| job.shared.bridge.design.has_dead_load())
             .collect();
         each(
             cancel,
@@ -421,7 +425,7 @@ impl SharedModels {
             known,
             |job| Some(dead_key(job)),
             |job| {
-                let case = DeadCase::new(&job.bridge.design, job.connection, job.laws_at_rest());
+                let case = DeadCase::new(&job.shared.bridge.design, job.connection, job.laws_at_rest());
                 Ok(shared(&self.statics, &bridge_key(job))?.dead_state(&case)?)
             },
         )
@@ -429,7 +433,7 @@ impl SharedModels {
 
     /// The state at rest from which a job's vehicle starts; none of a bridge without a dead load.
     pub(super) fn dead(&self, job: &Job) -> Result<Option<Arc<DeadState>>, JobFailure> {
-        if !job.bridge.design.has_dead_load() {
+        if !job.shared.bridge.design.has_dead_load() {
             return Ok(None);
         }
         shared(&self.dead, &dead_key(job)).map(|state| (*state).clone())
@@ -474,7 +478,8 @@ impl SharedModels {
             Some(key) => self.operated.contains_key(&key),
             None => self.crossings.contains_key(&crossing_key(crossing)),
         };
-        solver && (!crossing.job.bridge.design.has_dead_load() || self.dead.contains_key(&dead_key(crossing.job)))
+        solver
+            && (!crossing.job.shared.bridge.design.has_dead_load() || self.dead.contains_key(&dead_key(crossing.job)))
     }
 
     /// Whether a job can be solved with what is there, on one thread: a crossing by the operator at a stated time step, which
@@ -503,7 +508,7 @@ impl SharedModels {
         let mut seen = BTreeSet::new();
         for job in jobs {
             // what a report is made of: the same entries make the same report
-            if !seen.insert((job.bridge.id, job.analysis.id)) {
+            if !seen.insert((job.shared.bridge.id, job.shared.analysis.id)) {
                 continue;
             }
             let modules = self.modules_of(job).ok();
@@ -518,10 +523,10 @@ impl SharedModels {
             let waves = operator.as_ref().and_then(|operator| operator.wave_states());
             let operator = operator.map(|operator| operator.cutoff());
             let report = BridgeReport {
-                blake3: job.bridge.hash.clone(),
-                name: job.bridge.design.name.clone(),
+                blake3: job.shared.bridge.hash.clone(),
+                name: job.shared.bridge.design.name.clone(),
                 model: word(model(job)).to_owned(),
-                modules: job.bridge.design.modules,
+                modules: job.shared.bridge.design.modules,
                 module_full_dofs: largest(PreparedModule::full_dofs),
                 module_dofs: largest(PreparedModule::dofs),
                 structural_mass_kg: self.mean_mass_kg(job).ok(),
@@ -534,7 +539,12 @@ impl SharedModels {
                 operator_tolerance: operator.map(|o| o.tolerance),
                 operator_error: operator.map(|o| o.error),
                 one_side_modes: solver.and_then(|solver| solver.one_side_modes()),
-                water: job.bridge.water.as_ref().map(|water| water_report(job, water, waves)),
+                water: job
+                    .shared
+                    .bridge
+                    .water
+                    .as_ref()
+                    .map(|water| water_report(job, water, waves)),
             };
             if !reports.contains(&report) {
                 reports.push(report);
@@ -546,7 +556,7 @@ impl SharedModels {
 
 /// What is told of the water with memory under a job's bridge.
 fn water_report(job: &Job, water: &BridgeWater, states: Option<WaveStates>) -> WaterReport {
-    let spec = job.bridge.design.water.as_ref();
+    let spec = job.shared.bridge.design.water.as_ref();
     let accepts = |name: &str| spec.is_some_and(|spec| spec.accept.iter().any(|own| own == name));
     let accepted = water.judged.refused().filter(|check| accepts(check.check));
     WaterReport {
@@ -567,16 +577,16 @@ fn water_report(job: &Job, water: &BridgeWater, states: Option<WaveStates>) -> W
 pub(super) fn static_case(job: &Job, load_x_m: f64, dead: Option<Arc<DeadState>>) -> StaticCase {
     StaticCase {
         connection: job.connection,
-        connector_stiffness_n_m: job.bridge.design.connectors.stiffness_n_m,
+        connector_stiffness_n_m: job.shared.bridge.design.connectors.stiffness_n_m,
         own_laws: job.laws_at_rest(),
         load_n: job.load_n,
         load_x_m,
-        places_x_m: job.record.places_x_m.clone(),
+        places_x_m: job.shared.record.places_x_m.clone(),
         dead,
     }
 }
 
 /// Whether the bridge of a job has static cases.
 fn is_held(job: &Job) -> bool {
-    job.bridge.design.check_held().is_ok()
+    job.shared.bridge.design.check_held().is_ok()
 }

@@ -12,9 +12,10 @@ use pontoon_results::{BankRow, ConnectorRow, Extreme, JobRecord, PlaceRow, Posit
 
 /// Solves the static case of a job.
 pub(super) fn solve(job: &Job, load: StandingLoad, models: &SharedModels) -> Result<JobRecord, JobFailure> {
-    let response = models
-        .statics(job)?
-        .solve(&job.vehicle.vehicle, &static_case(job, load.x_m, models.dead(job)?))?;
+    let response = models.statics(job)?.solve(
+        &job.shared.vehicle.vehicle,
+        &static_case(job, load.x_m, models.dead(job)?),
+    )?;
     Ok(rows(job, &response))
 }
 
@@ -23,7 +24,7 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
         .zip(&response.deflection_m)
         .map(|(position, &deflection_m)| PositionRow {
             position,
-            x_m: job.bridge.design.position_x_m(position),
+            x_m: job.shared.bridge.design.position_x_m(position),
             deflection: Extreme::timeless(deflection_m.max(0.0)),
             uplift: Extreme::timeless((0.0 - deflection_m).max(0.0)),
             static_deflection_m: Some(deflection_m),
@@ -52,16 +53,16 @@ fn rows(job: &Job, response: &StaticResponse) -> JobRecord {
     summary.take_peaks(&positions, &connectors);
     let rounding = Rounding::of_forces(&response.pins_n);
     let (mut pins, mut sections) = (Vec::new(), Vec::new());
-    if job.record.pins {
+    if job.shared.record.pins {
         pins = rounding.static_pin_rows(job, &response.pins_n);
     }
-    if job.record.sections {
+    if job.shared.record.sections {
         sections = rounding.static_section_rows(&response.sections);
     }
     summary.take_joint_peaks(&pins, &sections);
     let dead = response.dead.as_deref();
     let mut freeboards = Vec::new();
-    if job.record.freeboards {
+    if job.shared.record.freeboards {
         let lowest: Vec<Extreme> = response.corners_m.iter().map(|down| Extreme::timeless(*down)).collect();
         freeboards = freeboard_rows(job, dead, &lowest);
     }
@@ -110,7 +111,7 @@ fn place_rows(job: &Job, places_m: &[f64]) -> Vec<PlaceRow> {
             static_deflection_m: Some(deflection_m),
         }
     };
-    job.record.places_x_m.iter().zip(places_m).map(row).collect()
+    job.shared.record.places_x_m.iter().zip(places_m).map(row).collect()
 }
 
 /// A static number against its sense and with it.

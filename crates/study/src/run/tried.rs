@@ -84,14 +84,15 @@ impl Tried {
         let crossing = crossing_by(&self.job, &self.analysis)?;
         let kept = self
             .job
+            .shared
             .record
-            .of_crossing(&self.job.bridge.design, &crossing.traffic());
+            .of_crossing(&self.job.shared.bridge.design, &crossing.traffic());
         let (response, time_step_s) = if kept == asked(&crossing) {
             self.response.clone()
         } else {
             // histories of the rated crossing alone
             let mut wanted = kept;
-            record_for(&self.job.limits, &mut wanted);
+            record_for(&self.job.shared.limits, &mut wanted);
             one(&crossing, wanted, models)?
         };
         let mut record = crossing::recorded_beside(&crossing, response, None, models)?;
@@ -141,11 +142,11 @@ fn crossing_by<'a>(job: &'a Job, analysis: &'a CrossingAnalysis) -> Result<Cross
 /// What is recorded of a crossing that is tried.
 fn asked(crossing: &CrossingJob<'_>) -> Record {
     let mut record = Record {
-        places_x_m: crossing.job.record.places_x_m.clone(),
-        corners: crossing.job.record.freeboards,
+        places_x_m: crossing.job.shared.record.places_x_m.clone(),
+        corners: crossing.job.shared.record.freeboards,
         ..Default::default()
     };
-    record_for(&crossing.job.limits, &mut record);
+    record_for(&crossing.job.shared.limits, &mut record);
     record
 }
 

@@ -168,8 +168,8 @@ impl Passage<'_> {
         let crossing = self.wanted.crossing()?;
         let job = crossing.job;
         let mut dead = None;
-        if job.bridge.design.has_dead_load() {
-            let case = DeadCase::new(&job.bridge.design, job.connection, job.laws_at_rest());
+        if job.shared.bridge.design.has_dead_load() {
+            let case = DeadCase::new(&job.shared.bridge.design, job.connection, job.laws_at_rest());
             dead = StaticSolver::new(&self.ready.bridge)?.dead_state(&case)?;
         }
         let input = crossing.input(Record::default(), dead);

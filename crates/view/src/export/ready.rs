@@ -65,7 +65,7 @@ impl Ready {
         wanted: &CrossingWanted,
         stresses: Stresses,
     ) -> Result<(Self, CrossingSettings), ExportError> {
-        let (design, crossing) = (&wanted.job.bridge.design, wanted.crossing()?);
+        let (design, crossing) = (&wanted.job.shared.bridge.design, wanted.crossing()?);
         let modules = PreparedModule::of_kinds(design, wanted.job.model().into())?;
         let bending_hz = || -> Result<[f64; 2], ExportError> {
             let free = Bridge::of_kinds(design, &modules, Ends::Free)?;

@@ -167,13 +167,13 @@ impl Subject {
         }
         let statics = static_of(source, &job, request)?;
         if let Some(modes) = modes {
-            let size = job.bridge.design.check_size(modes.model);
+            let size = job.shared.bridge.design.check_size(modes.model);
             size.map_err(|mut refused| {
                 refused.allowed += ", or --count 0: no modes";
                 Refusal::of(source, "bridge", refused)
             })?;
         }
-        let design = job.bridge.design.clone();
+        let design = job.shared.bridge.design.clone();
         Ok(Self {
             source: source.to_owned(),
             words: json!({ "study": study.name, "job": job.number, "bridge": design.name, "axes": axes(&results, &job) }),
@@ -233,7 +233,7 @@ fn modes_of(job: &Job, request: &Request) -> Option<ModesWanted> {
 
 /// The static case that is asked for, or the job's own.
 fn static_of(source: &Path, job: &Job, request: &Request) -> Result<Option<StaticWanted>, Refusal> {
-    let (design, vehicle) = (&job.bridge.design, &job.vehicle.vehicle);
+    let (design, vehicle) = (&job.shared.bridge.design, &job.shared.vehicle.vehicle);
     match (&request.load, job.task) {
         (Some(load), Task::Static(_)) => {
             let allowed = "no load of its own with results of a static study: --job says which of its cases";

@@ -177,7 +177,7 @@ pub struct BankNote {
 
 impl BridgeNote {
     fn of(job: &Job) -> Self {
-        let design = &job.bridge.design;
+        let design = &job.shared.bridge.design;
         let (depth_m, draft_m) = design.deepest_m();
         Self {
             modules: design.modules,
@@ -235,7 +235,7 @@ fn bank_note(design: &BridgeDesign, (bank, spec): (usize, &BankSpec)) -> Option<
 
 /// The joints of a job of whose connectors it holds whether any pulls and whether any pushes.
 fn joints_whose(job: &Job, holds: impl Fn([bool; 2]) -> bool) -> Vec<usize> {
-    let (design, own) = (&job.bridge.design, job.own_laws());
+    let (design, own) = (&job.shared.bridge.design, job.own_laws());
     let places = design.connectors.y_m.len();
     let works = |place: usize| match own.iter().find(|(of, _)| *of == place) {
         None => [true; 2],

@@ -198,7 +198,7 @@ fn play(job: &Job, record: &JobRecord, first: Option<&Job>) -> Option<Play> {
         _ => 0,
     };
     let time = |frame: &usize| histories.time_s[*frame];
-    let length_m = job.bridge.design.length_m();
+    let length_m = job.shared.bridge.design.length_m();
     let played = |driven: &Driven| {
         let front_x_m = |frame: &usize| {
             let way_m = driven.drive.at(time(frame)).way_m;

@@ -101,7 +101,7 @@ pub(super) fn mode_sets(
 }
 
 fn found(job: &Job, ends: Ends, model: ModelSpec, count: usize) -> Result<Vec<ModeShape>, ModesError> {
-    let design = &job.bridge.design;
+    let design = &job.shared.bridge.design;
     let modules = PreparedModule::of_kinds(design, model.into())?;
     let bridge = Bridge::of_kinds(design, &modules, ends)?;
     let found = shapes(&bridge, count.min(bridge.dofs()))?;
