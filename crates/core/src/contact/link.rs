@@ -184,6 +184,19 @@ impl LinkLaw {
         }
     }
 
+    /// Elongations strictly between which a state is the one that they ask for `[m]`; at the bounds themselves it may be.
+    pub(crate) fn within_m(&self, state: State) -> [f64; 2] {
+        let (tension, compression) = (self.tension_above_m, self.compression_below_m.min(self.tension_above_m));
+        match state {
+            State::Tension => [tension, self.tension_stop_above_m],
+            State::TensionStop => [tension.max(self.tension_stop_above_m), f64::INFINITY],
+            State::Compression => [self.compression_stop_below_m, compression],
+            State::CompressionStop => [f64::NEG_INFINITY, compression.min(self.compression_stop_below_m)],
+            between if between == self.between => [self.compression_below_m, tension],
+            _ => [f64::INFINITY, f64::NEG_INFINITY],
+        }
+    }
+
     /// The state of a link without elongation and force.
     #[inline]
     pub(crate) fn at_rest(&self) -> State {

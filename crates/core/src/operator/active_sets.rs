@@ -3,6 +3,7 @@
 //! Knows the links that are active in any lane, matrices and forces. Does not know when a lane has settled.
 
 use super::lane_array::LaneArray;
+use super::panel::{MOST_LANES, lanes_mut};
 use super::rider_block::RiderBlock;
 use super::small_matrix::SmallMatrix;
 use super::vector::Ops;
@@ -58,6 +59,9 @@ pub(super) struct LinearSystem {
     listed_states: Vec<State>,
     /// Whether any of these lanes has a link open that another has not.
     any_left_out: bool,
+    /// Elongations between which the links of the lanes listed stay in their states `[m]`.
+    least: LaneArray,
+    most: LaneArray,
 }
 
 /// What a step asks of the systems of some lanes.
@@ -100,6 +104,8 @@ impl LinearSystem {
             listed_lanes: Vec::with_capacity(lanes),
             listed_states: Vec::with_capacity(lanes * links),
             any_left_out: false,
+            least: of(links),
+            most: of(links),
         }
     }
 
@@ -199,9 +205,23 @@ impl LinearSystem {
         self.listed_lanes == input.lanes && input.lanes.iter().all(is_same)
     }
 
+    /// Takes up to where links stay in states that are others than those listed.
+    fn bound_states(&mut self, lanes: &[LaneStates], input: ContactInput) {
+        let (links, are_known) = (input.compliance.nrows(), self.listed_lanes == input.lanes);
+        for (number, (&lane, laws)) in input.lanes.iter().zip(input.laws).enumerate() {
+            for (i, &state) in lanes[lane].states[..links].iter().enumerate() {
+                if are_known && self.listed_states[number * links + i] == state {
+                    continue;
+                }
+                [*self.least.at_mut(i, lane), *self.most.at_mut(i, lane)] = laws[i].within_m(state);
+            }
+        }
+    }
+
     /// Lists the active links.
     fn list(&mut self, lanes: &[LaneStates], input: ContactInput) {
         let links = input.compliance.nrows();
+        self.bound_states(lanes, input);
         self.listed_lanes.clear();
         self.listed_lanes.extend(input.lanes);
         self.listed_states.clear();
@@ -309,23 +329,24 @@ impl LinearSystem {
     /// Elongations under the forces found. On an active branch they follow from the force, without cancellation.
     #[inline(always)]
     pub(super) fn elongate<S: Simd>(&mut self, o: Ops<S>, input: ContactInput) {
-        let (found, forces) = (self.found.vectors_mut::<S>(), self.forces.vectors::<S>());
-        let (e, riders) = (input.e.vectors::<S>(), self.riders.vectors::<S>());
-        let (e, riders) = (&e[..found.len()], &riders[..input.riders.count()]);
-        for (block, to) in found.chunks_mut(ROWS).enumerate() {
-            let from = block * ROWS;
-            let mut sums = [o.splat(0.0); ROWS];
-            let sums = &mut sums[..to.len()];
-            sums.copy_from_slice(&e[from..][..to.len()]);
-            // a lane that leaves a link out has no force of it
-            for &j in &self.active {
-                take_from(o, sums, &column(input.compliance, j)[from..], forces[j]);
-            }
-            for (r, force) in riders.iter().enumerate() {
-                take_from(o, sums, &input.riders.on_links(r)[from..], *force);
-            }
-            to.copy_from_slice(sums);
+        let (mut from, links) = (0, self.found.rows());
+        while from + ROWS <= links {
+            self.elongate_rows::<S, ROWS>(o, input, from);
+            from += ROWS;
         }
+        if from + 4 <= links {
+            self.elongate_rows::<S, 4>(o, input, from);
+            from += 4;
+        }
+        if from + 2 <= links {
+            self.elongate_rows::<S, 2>(o, input, from);
+            from += 2;
+        }
+        if from < links {
+            self.elongate_rows::<S, 1>(o, input, from);
+        }
+        let found = self.found.vectors_mut::<S>();
+        let forces = self.forces.vectors::<S>();
         let (is_active, stiffness) = (self.is_active.vectors::<S>(), self.stiffness.vectors::<S>());
         let (offset, unscaled) = (self.offset.vectors::<S>(), o.splat(1.0 / input.weight));
         for (p, &i) in self.active.iter().enumerate() {
@@ -333,6 +354,38 @@ impl LinearSystem {
             let here = o.0.greater_than_f64s(is_active[p], o.splat(0.0));
             found[i] = o.0.select_f64s(here, on_branch, found[i]);
         }
+    }
+
+    /// Elongations of `MANY` links from one on, as far as forces off their branches make them.
+    #[inline(always)]
+    fn elongate_rows<S: Simd, const MANY: usize>(&mut self, o: Ops<S>, input: ContactInput, from: usize) {
+        let (forces, riders) = (self.forces.vectors::<S>(), self.riders.vectors::<S>());
+        let mut sums = [o.splat(0.0); MANY];
+        let e = &input.e.vectors::<S>()[from..][..MANY];
+        sums.copy_from_slice(e);
+        // a lane that leaves a link out has no force of it
+        for &j in &self.active {
+            take_from(o, &mut sums, &column(input.compliance, j)[from..], forces[j]);
+        }
+        for (r, force) in riders[..input.riders.count()].iter().enumerate() {
+            take_from(o, &mut sums, &input.riders.on_links(r)[from..], *force);
+        }
+        self.found.vectors_mut::<S>()[from..][..MANY].copy_from_slice(&sums);
+    }
+
+    /// The lanes whose links all stay well within their states; whether others do is for [`Self::ask`] to find out.
+    #[inline(always)]
+    pub(super) fn staying<S: Simd>(&self, o: Ops<S>) -> [f64; MOST_LANES] {
+        let (found, least) = (self.found.vectors::<S>(), self.least.vectors::<S>());
+        let most = &self.most.vectors::<S>()[..least.len()];
+        let mut left = o.splat(0.0);
+        for (e, (least, most)) in found.iter().zip(least.iter().zip(most)) {
+            let inside = o.0.and_m64s(o.0.less_than_f64s(*least, *e), o.0.less_than_f64s(*e, *most));
+            left = o.0.select_f64s(inside, left, o.splat(1.0));
+        }
+        let mut staying = [0.0; MOST_LANES];
+        lanes_mut::<S>(&mut staying)[0] = o.sub(o.splat(1.0), left);
+        staying
     }
 
     /// What a lane's forces ask for: the end of its solution, or other states, which it then has.
@@ -345,7 +398,6 @@ impl LinearSystem {
         input: ContactInput,
         limit: usize,
     ) -> Option<Result<(), NotSettled>> {
-        of.iterations += 1;
         let (count, links) = (of.states.len(), laws.len());
         let met = of.seen.len();
         for (i, law) in laws.iter().enumerate() {
@@ -388,15 +440,10 @@ impl LinearSystem {
 
 /// `sums := sums - seen force`, of as many rows as there are sums.
 #[inline(always)]
-fn take_from<S: Simd>(o: Ops<S>, sums: &mut [S::f64s], seen: &[f64], force: S::f64s) {
-    if let (Some(sums), Some(seen)) = (sums.first_chunk_mut::<ROWS>(), seen.first_chunk::<ROWS>()) {
-        for i in 0..ROWS {
-            sums[i] = o.less(sums[i], o.splat(seen[i]), force);
-        }
-    } else {
-        for (sum, seen) in sums.iter_mut().zip(seen) {
-            *sum = o.less(*sum, o.splat(*seen), force);
-        }
+fn take_from<S: Simd, const MANY: usize>(o: Ops<S>, sums: &mut [S::f64s; MANY], seen: &[f64], force: S::f64s) {
+    let seen = &seen[..MANY];
+    for i in 0..MANY {
+        sums[i] = o.less(sums[i], o.splat(seen[i]), force);
     }
 }
 

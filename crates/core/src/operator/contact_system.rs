@@ -92,13 +92,20 @@ impl ContactSystem {
         loop {
             self.linear.solve(o, &self.lanes, input);
             self.linear.elongate(o, input);
+            let staying = self.linear.staying(o);
             let mut all = true;
             for (&lane, laws) in input.lanes.iter().zip(input.laws) {
                 let of = &mut self.lanes[lane];
-                if of.ended.is_none() {
-                    of.ended = self.linear.ask(lane, of, laws, input, limit);
-                    all &= of.ended.is_some();
+                if of.ended.is_some() {
+                    continue;
                 }
+                of.iterations += 1;
+                // riders may press on one side alone
+                of.ended = match staying[lane] > 0.0 && of.states.len() == self.links {
+                    true => Some(Ok(())),
+                    false => self.linear.ask(lane, of, laws, input, limit),
+                };
+                all &= of.ended.is_some();
             }
             if all {
                 break;

@@ -210,7 +210,8 @@ impl Corners {
         ends: &[S::f64s],
         bottom: &[S::f64s],
     ) {
-        let [freeboard, draft] = self.beyond_m[module].map(|beyond| o.splat(beyond));
+        let [freeboard, draft] = self.beyond_m[module];
+        let (freeboard, draft) = (o.splat(freeboard), o.splat(draft));
         let risen = self.risen.vectors::<S>();
         let mut roll_now = o.splat(0.0);
         let mut down = o.neg(ends[0]);
@@ -278,7 +279,11 @@ impl Corners {
     /// The largest edge, roll and trim in each lane.
     #[inline(always)]
     pub(super) fn largest<S: Simd>(&self) -> [S::f64s; 3] {
-        [&self.edge, &self.roll, &self.trim].map(|of| of.vectors::<S>()[0])
+        [
+            self.edge.vectors::<S>()[0],
+            self.roll.vectors::<S>()[0],
+            self.trim.vectors::<S>()[0],
+        ]
     }
 
     /// Notes when and where corners, roll and trim are larger than `before` the step, in the lanes where they are.

@@ -6,6 +6,7 @@ use super::basis::Sizes;
 use super::deck_forces::{NodeForces, StationForce};
 use super::lane_array::LaneArray;
 use super::lane_group::{LaneGroup, UnitForce};
+use super::panel::write_sums;
 use super::vector::Ops;
 use super::wheel_lines::{DeckLines, WheelLines};
 use crate::scheme::Arithmetic;
@@ -122,7 +123,7 @@ fn see_unit_load<S: Simd>(o: Ops<S>, wheels: &WheelLines, forces: &[UnitForce], 
                 }
             }
         }
-        sums_to.copy_from_slice(&sums[..sums_to.len()]);
+        write_sums(&sums, sums_to);
     }
     rest.fill(0.0);
     for of in forces {
@@ -142,64 +143,45 @@ pub(super) fn apply_inertia<S: Simd>(
     of: NodeForces<'_>,
     to: &mut LaneArray,
 ) {
-    let (factor, forces) = (o.splat(of.factor), of.forces.vectors::<S>());
-    let force = |i: usize| {
-        let node = of.nodes[i];
-        (
-            wheels.nodes.influences(node.line),
-            node.station,
-            o.mul(factor, forces[i]),
-        )
-    };
-    let lines = (wheels.influence_width, of.nodes.len());
-    sum_forces_of_lanes(o, lines, force, (mask, to));
-}
-
-/// Writes the sums of forces times the influence of their stations into the lanes of a mask: so many forces, each with the
-/// influences of its line, its station and what it is in each lane.
-#[inline(always)]
-fn sum_forces_of_lanes<'a, S: Simd>(
-    o: Ops<S>,
-    lines: (usize, usize),
-    force: impl Fn(usize) -> (&'a [f64], usize, S::f64s),
-    into: (S::m64s, &mut LaneArray),
-) {
-    // as many sums as registers hold
-    if S::F64_LANES == 1 {
-        sum_blocks::<S, ROWS_OF_ONE>(o, lines, force, into);
-    } else {
-        sum_blocks::<S, ROWS>(o, lines, force, into);
+    let (to, mut from) = (to.vectors_mut::<S>(), 0);
+    // numbers of one lane are summed as vectors
+    while S::F64_LANES == 1 && from + ROWS_OF_ONE <= to.len() {
+        sum_rows::<S, ROWS_OF_ONE>(o, wheels, of, (mask, to, from));
+        from += ROWS_OF_ONE;
+    }
+    while from + ROWS <= to.len() {
+        sum_rows::<S, ROWS>(o, wheels, of, (mask, to, from));
+        from += ROWS;
+    }
+    if from + 4 <= to.len() {
+        sum_rows::<S, 4>(o, wheels, of, (mask, to, from));
+        from += 4;
+    }
+    while from < to.len() {
+        sum_rows::<S, 1>(o, wheels, of, (mask, to, from));
+        from += 1;
     }
 }
 
-/// As [`sum_forces_of_lanes`], so many rows at once.
+/// As [`apply_inertia`], `MANY` rows from one on.
 #[inline(always)]
-fn sum_blocks<'a, S: Simd, const MANY: usize>(
+fn sum_rows<S: Simd, const MANY: usize>(
     o: Ops<S>,
-    (width, count): (usize, usize),
-    force: impl Fn(usize) -> (&'a [f64], usize, S::f64s),
-    (mask, to): (S::m64s, &mut LaneArray),
+    wheels: &WheelLines,
+    of: NodeForces<'_>,
+    (mask, to, from): (S::m64s, &mut [S::f64s], usize),
 ) {
-    let mut from = 0;
-    for rows in to.vectors_mut::<S>().chunks_mut(MANY) {
-        let mut sums = [o.splat(0.0); MANY];
-        for i in 0..count {
-            let (influences, station, n) = force(i);
-            let of = &influences[station * width + from..][..rows.len()];
-            if let Some(of) = of.first_chunk::<MANY>() {
-                for row in 0..MANY {
-                    sums[row] = o.fma(o.splat(of[row]), n, sums[row]);
-                }
-            } else {
-                for (sum, x) in sums.iter_mut().zip(of) {
-                    *sum = o.fma(o.splat(*x), n, *sum);
-                }
-            }
+    let (factor, forces) = (o.splat(of.factor), of.forces.vectors::<S>());
+    let mut sums = [o.splat(0.0); MANY];
+    for (node, force) in of.nodes.iter().zip(forces) {
+        let n = o.mul(factor, *force);
+        let influences = &wheels.nodes.influences(node.line)[node.station * wheels.influence_width + from..][..MANY];
+        for row in 0..MANY {
+            sums[row] = o.fma(o.splat(influences[row]), n, sums[row]);
         }
-        for (row, sum) in rows.iter_mut().zip(&sums) {
-            *row = o.0.select_f64s(mask, *sum, *row);
-        }
-        from += MANY;
+    }
+    for (row, sum) in to[from..][..MANY].iter_mut().zip(&sums) {
+        *row = o.0.select_f64s(mask, *sum, *row);
     }
 }
 

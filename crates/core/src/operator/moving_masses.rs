@@ -412,7 +412,7 @@ impl MovingMasses {
     pub(super) fn add_forces<S: Simd>(&self, o: Ops<S>, of: OfGroup<'_>, scaled: &LaneArray, axles: &mut LaneArray) {
         let s = &of.constants.scheme;
         let (axles, scaled) = (axles.vectors_mut::<S>(), scaled.vectors::<S>());
-        let [by_m, by_f] = [1.0 / (1.0 - s.alpha_m), 1.0 / (1.0 - s.alpha_f)].map(|factor| o.splat(factor));
+        let (by_m, by_f) = (o.splat(1.0 / (1.0 - s.alpha_m)), o.splat(1.0 / (1.0 - s.alpha_f)));
         for (i, rider) in self.places.list.iter().enumerate() {
             // patches and wheels on springs have forces by themselves
             let factor = match i < self.places.first_wheel {

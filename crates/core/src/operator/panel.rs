@@ -50,7 +50,7 @@ impl Panel {
                     sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
                 }
             }
-            y.copy_from_slice(&sum[..y.len()]);
+            write_sums(&sum, y);
         }
     }
 
@@ -67,8 +67,20 @@ impl Panel {
                     sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
                 }
             }
-            y.copy_from_slice(&sum[..y.len()]);
+            write_sums(&sum, y);
         }
+    }
+}
+
+/// Writes as many sums as are asked for. A copy of unknown length is a call for each block.
+#[inline(always)]
+pub(super) fn write_sums<T: Copy, const MANY: usize>(sums: &[T; MANY], to: &mut [T]) {
+    if let Some(to) = to.first_chunk_mut::<MANY>() {
+        *to = *sums;
+        return;
+    }
+    for i in 0..to.len().min(MANY) {
+        to[i] = sums[i];
     }
 }
 

@@ -40,22 +40,25 @@ impl SmallMatrix {
     pub(super) fn factor<S: Simd>(&mut self, o: Ops<S>, n: usize, symmetric: bool) {
         let (stride, one) = (self.stride, o.splat(1.0));
         let (a, inverse) = (self.entries.vectors_mut::<S>(), self.inverse.vectors_mut::<S>());
-        for p in 0..n {
-            let pivot = o.0.div_f64s(one, a[p * stride + p]);
-            inverse[p] = pivot;
-            let (upper, below) = a.split_at_mut((p + 1) * stride);
-            let row = &upper[p * stride..][..n];
-            for (i, other) in (p + 1..n).zip(below.chunks_mut(stride)) {
-                let (first, l) = if symmetric {
-                    (i, o.mul(row[i], pivot))
-                } else {
-                    (p + 1, o.mul(other[p], pivot))
-                };
-                for (x, y) in other[first..n].iter_mut().zip(&row[first..]) {
-                    *x = o.less(*x, l, *y);
+        for i in 0..n {
+            let (above, row) = a.split_at_mut(i * stride);
+            let row = &mut row[..n];
+            if symmetric {
+                for p in 0..i {
+                    row[p] = o.mul(above[p * stride + i], inverse[p]);
                 }
-                other[p] = l;
+                let (l, rest) = row.split_at_mut(i);
+                take_rows(o, above, stride, (l, i), rest);
+            } else {
+                for p in 0..i {
+                    let l = o.mul(row[p], inverse[p]);
+                    row[p] = l;
+                    for (x, y) in row[p + 1..].iter_mut().zip(&above[p * stride + p + 1..]) {
+                        *x = o.less(*x, l, *y);
+                    }
+                }
             }
+            inverse[i] = o.0.div_f64s(one, row[i]);
         }
     }
 
@@ -79,6 +82,54 @@ impl SmallMatrix {
             }
         }
     }
+}
+
+/// Takes the rows above from the entries of a row from column `first` on, each times its factor. As many entries at once as
+/// registers hold.
+#[inline(always)]
+fn take_rows<S: Simd>(
+    o: Ops<S>,
+    above: &[S::f64s],
+    stride: usize,
+    (factors, first): (&[S::f64s], usize),
+    row: &mut [S::f64s],
+) {
+    let mut at = 0;
+    while at + 8 <= row.len() {
+        take_entries::<S, 8>(o, above, stride, (factors, first + at), &mut row[at..]);
+        at += 8;
+    }
+    if at + 4 <= row.len() {
+        take_entries::<S, 4>(o, above, stride, (factors, first + at), &mut row[at..]);
+        at += 4;
+    }
+    if at + 2 <= row.len() {
+        take_entries::<S, 2>(o, above, stride, (factors, first + at), &mut row[at..]);
+        at += 2;
+    }
+    if at < row.len() {
+        take_entries::<S, 1>(o, above, stride, (factors, first + at), &mut row[at..]);
+    }
+}
+
+/// As [`take_rows`], the first `MANY` entries.
+#[inline(always)]
+fn take_entries<S: Simd, const MANY: usize>(
+    o: Ops<S>,
+    above: &[S::f64s],
+    stride: usize,
+    (factors, first): (&[S::f64s], usize),
+    row: &mut [S::f64s],
+) {
+    let mut sums = [o.splat(0.0); MANY];
+    sums.copy_from_slice(&row[..MANY]);
+    for (p, factor) in factors.iter().enumerate() {
+        let of = &above[p * stride + first..][..MANY];
+        for i in 0..MANY {
+            sums[i] = o.less(sums[i], *factor, of[i]);
+        }
+    }
+    row[..MANY].copy_from_slice(&sums);
 }
 
 #[cfg(test)]

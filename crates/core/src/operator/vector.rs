@@ -33,14 +33,16 @@ impl<S: Simd> Ops<S> {
         self.0.negate_mul_add_f64s(a, b, c)
     }
 
+    // the library's own are not always inlined
+
     #[inline(always)]
     pub(super) fn neg(self, a: S::f64s) -> S::f64s {
-        self.0.neg_f64s(a)
+        self.0.xor_f64s(a, self.0.splat_f64s(-0.0))
     }
 
     #[inline(always)]
     pub(super) fn abs(self, a: S::f64s) -> S::f64s {
-        self.0.abs_f64s(a)
+        self.0.and_f64s(a, self.0.splat_f64s(f64::from_bits(!(1 << 63))))
     }
 
     #[inline(always)]
