@@ -9,7 +9,7 @@ mod warm;
 
 use crate::connector::State;
 pub(crate) use dashpot::{BackwardRate, Dashpot, DashpotTrail};
-pub(crate) use link::{LinkLaw, Uptake, ask, rest_force_n};
+pub(crate) use link::{Branch, LinkLaw, Uptake, ask, rest_force_n};
 use nalgebra::{DMatrix, DVector};
 pub(crate) use warm::WarmContact;
 

@@ -3,7 +3,7 @@
 //! Knows the links that are active in any lane, matrices and forces. Does not know when a lane has settled.
 
 use super::lane_array::LaneArray;
-use super::panel::{MOST_LANES, lanes_mut};
+use super::listed_links::ListedLinks;
 use super::rider_block::RiderBlock;
 use super::small_matrix::SmallMatrix;
 use super::vector::Ops;
@@ -38,30 +38,16 @@ pub(super) struct LinearSystem {
     pub(super) forces: LaneArray,
     /// Scaled rider forces q'; 0 of those that are off the deck.
     pub(super) riders: LaneArray,
-    /// Links that are active in any lane; for each of them in which lanes, then what its branch adds to the diagonal, and its stiffness
-    /// and offset.
-    pub(super) active: Vec<usize>,
+    /// The links that are active in any lane.
+    pub(super) links: ListedLinks,
     all: Vec<usize>,
-    is_active: LaneArray,
-    own: LaneArray,
-    stiffness: LaneArray,
-    offset: LaneArray,
     /// In which lanes each rider is on the deck, and whether one is off it in any.
     is_on: LaneArray,
     any_lifted: bool,
     matrix: SmallMatrix,
     rhs: LaneArray,
-    /// The lanes and the states that `matrix` was factored for, without riders.
-    factored_lanes: Vec<usize>,
-    factored_states: Vec<State>,
-    /// The lanes and the states of their links that `active` and what hangs on it were listed for.
-    listed_lanes: Vec<usize>,
-    listed_states: Vec<State>,
-    /// Whether any of these lanes has a link open that another has not.
-    any_left_out: bool,
-    /// Elongations between which the links of the lanes listed stay in their states `[m]`.
-    least: LaneArray,
-    most: LaneArray,
+    /// Whether `matrix` was factored for the links as they are listed, without riders.
+    is_factored: bool,
 }
 
 /// What a step asks of the systems of some lanes.
@@ -89,41 +75,31 @@ impl LinearSystem {
             found: of(links),
             forces: of(links),
             riders: of(riders),
-            active: Vec::with_capacity(links),
+            links: ListedLinks::new(links, lanes),
             all: (0..links).collect(),
-            is_active: of(links),
-            own: of(links),
-            stiffness: of(links),
-            offset: of(links),
             is_on: of(riders),
             any_lifted: false,
             matrix: SmallMatrix::new(links + riders, lanes),
             rhs: of(links + riders),
-            factored_lanes: Vec::with_capacity(lanes),
-            factored_states: Vec::with_capacity(lanes * links),
-            listed_lanes: Vec::with_capacity(lanes),
-            listed_states: Vec::with_capacity(lanes * links),
-            any_left_out: false,
-            least: of(links),
-            most: of(links),
+            is_factored: false,
         }
     }
 
-    /// Forgets what was listed, for laws of dashpots that change their offsets in every step.
+    /// Laws of dashpots change their offsets in every step.
     #[inline(always)]
-    pub(super) fn forget_list(&mut self) {
-        self.listed_lanes.clear();
+    pub(super) fn forget_laws(&mut self) {
+        self.links.forget_laws();
     }
 
     /// Forgets what was factored and listed for other laws or another step length.
     pub(super) fn forget(&mut self) {
-        self.factored_lanes.clear();
-        self.listed_lanes.clear();
+        self.links.forget();
+        self.is_factored = false;
     }
 
     /// Links that have forces in some lane: those that are active, or all where forces count from a state at rest.
     pub(super) fn pressed(&self, from_rest: bool) -> &[usize] {
-        if from_rest { &self.all } else { &self.active }
+        if from_rest { &self.all } else { &self.links.active }
     }
 
     /// One Newton solution (C2): riders first, then the active links, eliminated in that order. Symmetric and positive
@@ -132,52 +108,40 @@ impl LinearSystem {
     #[inline(always)]
     pub(super) fn solve<S: Simd>(&mut self, o: Ops<S>, lanes: &[LaneStates], input: ContactInput) {
         let nr = input.riders.count();
-        self.activate(lanes, input);
-        let n = nr + self.active.len();
-        if !(nr == 0 && self.is_factored(lanes, input)) {
+        if self.activate(lanes, input) {
+            self.is_factored = false;
+        }
+        let n = nr + self.links.active.len();
+        if !(nr == 0 && self.is_factored) {
             self.assemble(o, input);
             self.matrix.factor(o, n, input.riders.symmetric());
-            self.factored_lanes.clear();
-            self.factored_states.clear();
-            if nr == 0 {
-                self.factored_lanes.extend(input.lanes);
-                let states = input.lanes.iter().flat_map(|&lane| &lanes[lane].states);
-                self.factored_states.extend(states);
-            }
+            self.is_factored = nr == 0;
         }
         let (rhs, e) = (&mut self.rhs.vectors_mut::<S>()[..n], input.e.vectors::<S>());
         let (free, is_on) = (input.riders.free.vectors::<S>(), self.is_on.vectors::<S>());
         for (i, to) in rhs[..nr].iter_mut().enumerate() {
             *to = o.mul(is_on[i], free[i]);
         }
-        let (is_active, stiffness) = (self.is_active.vectors::<S>(), self.stiffness.vectors::<S>());
-        let offset = self.offset.vectors::<S>();
-        for (p, &i) in self.active.iter().enumerate() {
-            let beyond = o.sub(e[i], o.0.div_f64s(offset[p], stiffness[p]));
-            rhs[nr + p] = o.mul(is_active[p], beyond);
+        let (is_active, begins) = (self.links.is_active.vectors::<S>(), self.links.begins.vectors::<S>());
+        for (p, &i) in self.links.active.iter().enumerate() {
+            rhs[nr + p] = o.mul(is_active[i], o.sub(e[i], begins[i]));
         }
         self.matrix.solve(o, rhs);
         self.riders.vectors_mut::<S>()[..nr].copy_from_slice(&rhs[..nr]);
         let forces = self.forces.vectors_mut::<S>();
         forces.fill(o.splat(0.0));
-        for (p, &i) in self.active.iter().enumerate() {
+        for (p, &i) in self.links.active.iter().enumerate() {
             // of a lane that leaves the link out 0, and not -0, as where no lane has it
             forces[i] = o.add(rhs[nr + p], o.splat(0.0));
         }
     }
 
-    fn is_factored(&self, lanes: &[LaneStates], input: ContactInput) -> bool {
-        let states = || input.lanes.iter().flat_map(|&lane| &lanes[lane].states);
-        self.factored_lanes == input.lanes && self.factored_states.iter().eq(states())
-    }
-
-    /// Lists what is active in any lane, and how.
+    /// Lists what is active in any lane, and how; whether links are active that were not, or the other way.
     #[inline(always)]
-    fn activate(&mut self, lanes: &[LaneStates], input: ContactInput) {
+    fn activate(&mut self, lanes: &[LaneStates], input: ContactInput) -> bool {
         let (nr, links) = (input.riders.count(), input.compliance.nrows());
-        if !self.is_listed(lanes, input) {
-            self.list(lanes, input);
-        }
+        let states = |lane: usize| &lanes[lane].states[..];
+        let changed = self.links.take((input.lanes, input.laws), states, input.weight);
         for r in 0..nr {
             self.is_on.row_mut(r).fill(1.0);
         }
@@ -191,93 +155,27 @@ impl LinearSystem {
                 }
             }
         }
-    }
-
-    /// Whether the links' states are those that were listed.
-    fn is_listed(&self, lanes: &[LaneStates], input: ContactInput) -> bool {
-        let links = input.compliance.nrows();
-        let mut listed = self.listed_states.chunks_exact(links.max(1));
-        let is_same = |&lane: &usize| {
-            listed
-                .next()
-                .is_some_and(|states| lanes[lane].states[..links] == *states)
-        };
-        self.listed_lanes == input.lanes && input.lanes.iter().all(is_same)
-    }
-
-    /// Takes up to where links stay in states that are others than those listed.
-    fn bound_states(&mut self, lanes: &[LaneStates], input: ContactInput) {
-        let (links, are_known) = (input.compliance.nrows(), self.listed_lanes == input.lanes);
-        for (number, (&lane, laws)) in input.lanes.iter().zip(input.laws).enumerate() {
-            for (i, &state) in lanes[lane].states[..links].iter().enumerate() {
-                if are_known && self.listed_states[number * links + i] == state {
-                    continue;
-                }
-                [*self.least.at_mut(i, lane), *self.most.at_mut(i, lane)] = laws[i].within_m(state);
-            }
-        }
-    }
-
-    /// Lists the active links.
-    fn list(&mut self, lanes: &[LaneStates], input: ContactInput) {
-        let links = input.compliance.nrows();
-        self.bound_states(lanes, input);
-        self.listed_lanes.clear();
-        self.listed_lanes.extend(input.lanes);
-        self.listed_states.clear();
-        let states = input.lanes.iter().flat_map(|&lane| &lanes[lane].states[..links]);
-        self.listed_states.extend(states);
-        self.active.clear();
-        self.any_left_out = false;
-        for i in 0..links {
-            if !input.lanes.iter().any(|&lane| lanes[lane].states[i] != State::Open) {
-                continue;
-            }
-            let p = self.active.len();
-            self.active.push(i);
-            let rows = [
-                &mut self.is_active,
-                &mut self.own,
-                &mut self.stiffness,
-                &mut self.offset,
-            ];
-            let [is_active, own, stiffness, offset] = rows.map(|of| of.row_mut(p));
-            // of a lane that has the link open, or is not asked for: a row that couples with no other
-            is_active.fill(0.0);
-            own.fill(1.0);
-            stiffness.fill(1.0);
-            offset.fill(0.0);
-            for (&lane, laws) in input.lanes.iter().zip(input.laws) {
-                let state = lanes[lane].states[i];
-                if state == State::Open {
-                    self.any_left_out = true;
-                    continue;
-                }
-                let branch = laws[i].branch(state);
-                is_active[lane] = 1.0;
-                own[lane] = 1.0 / (input.weight * branch.stiffness);
-                (stiffness[lane], offset[lane]) = (branch.stiffness, branch.offset);
-            }
-        }
+        changed
     }
 
     /// Writes the matrices of the active sets; below the diagonal only where they are not symmetric.
     #[inline(always)]
     fn assemble<S: Simd>(&mut self, o: Ops<S>, input: ContactInput) {
-        // lanes that are not asked for may then have any numbers
-        if !self.any_left_out && !self.any_lifted {
-            self.write_matrices::<S, false>(o, input);
-        } else {
-            self.write_matrices::<S, true>(o, input);
+        match (self.links.any_left_out, self.any_lifted) {
+            (false, false) => self.write_matrices::<S, false, false>(o, input),
+            (true, false) => self.write_matrices::<S, true, false>(o, input),
+            (_, true) => self.write_matrices::<S, true, true>(o, input),
         }
     }
 
-    /// As [`Self::assemble`]; `LEFT_OUT` where a lane may leave unknowns out that another has.
+    /// As [`Self::assemble`]; what a lane leaves out, links that are open and riders off the deck, stands in it with 1 on the diagonal
+    /// and 0 beside it.
     #[inline(always)]
-    fn write_matrices<S: Simd, const LEFT_OUT: bool>(&mut self, o: Ops<S>, input: ContactInput) {
+    fn write_matrices<S: Simd, const LEFT_OUT: bool, const LIFTED: bool>(&mut self, o: Ops<S>, input: ContactInput) {
         let (riders, nr, one) = (input.riders, input.riders.count(), o.splat(1.0));
-        let n = nr + self.active.len();
-        let (is_active, is_on) = (self.is_active.vectors::<S>(), self.is_on.vectors::<S>());
+        let active = &self.links.active[..];
+        let n = nr + active.len();
+        let (is_active, is_on) = (self.links.is_active.vectors::<S>(), self.is_on.vectors::<S>());
         let (beside, own_of_riders) = (riders.beside.vectors::<S>(), riders.own.vectors::<S>());
         for i in 0..nr {
             let row = self.matrix.row_mut::<S>(i, n);
@@ -287,42 +185,47 @@ impl LinearSystem {
                     Some(at) => o.add(o.splat(*seen), beside[at]),
                     None => o.splat(*seen),
                 };
-                row[j] = match (i == j, LEFT_OUT) {
+                row[j] = match (i == j, LIFTED) {
                     (true, false) => o.add(seen, own_of_riders[i]),
-                    // 1 of a rider that is off the deck
                     (true, true) => o.fma(is_on[i], o.add(seen, own_of_riders[i]), o.sub(one, is_on[i])),
                     (false, false) => seen,
                     (false, true) => o.mul(o.mul(is_on[i], is_on[j]), seen),
                 };
             }
             let of = riders.of_links(i);
-            for (p, (entry, &j)) in row[nr..].iter_mut().zip(&self.active).enumerate() {
+            for (entry, &j) in row[nr..].iter_mut().zip(active) {
                 *entry = o.splat(of[j]);
                 if LEFT_OUT {
-                    *entry = o.mul(o.mul(is_on[i], is_active[p]), *entry);
+                    *entry = o.mul(is_active[j], *entry);
+                }
+                if LIFTED {
+                    *entry = o.mul(is_on[i], *entry);
                 }
             }
         }
-        let own = self.own.vectors::<S>();
-        for (p, &i) in self.active.iter().enumerate() {
+        let own = self.links.own.vectors::<S>();
+        for (p, &i) in active.iter().enumerate() {
             let row = self.matrix.row_mut::<S>(nr + p, n);
             if !riders.symmetric() {
                 for (r, entry) in row[..nr].iter_mut().enumerate() {
                     *entry = o.splat(riders.on_links(r)[i]);
                     if LEFT_OUT {
-                        *entry = o.mul(o.mul(is_on[r], is_active[p]), *entry);
+                        *entry = o.mul(is_active[i], *entry);
+                    }
+                    if LIFTED {
+                        *entry = o.mul(is_on[r], *entry);
                     }
                 }
             }
             let seen = column(input.compliance, i);
             let from = if riders.symmetric() { p } else { 0 };
-            for (q, (entry, &j)) in row[nr..].iter_mut().zip(&self.active).enumerate().skip(from) {
+            for (entry, &j) in row[nr..].iter_mut().zip(active).skip(from) {
                 *entry = o.splat(seen[j]);
                 if LEFT_OUT {
-                    *entry = o.mul(o.mul(is_active[p], is_active[q]), *entry);
+                    *entry = o.mul(o.mul(is_active[i], is_active[j]), *entry);
                 }
             }
-            row[nr + p] = o.add(row[nr + p], own[p]);
+            row[nr + p] = o.add(row[nr + p], own[i]);
         }
     }
 
@@ -347,11 +250,12 @@ impl LinearSystem {
         }
         let found = self.found.vectors_mut::<S>();
         let forces = self.forces.vectors::<S>();
-        let (is_active, stiffness) = (self.is_active.vectors::<S>(), self.stiffness.vectors::<S>());
-        let (offset, unscaled) = (self.offset.vectors::<S>(), o.splat(1.0 / input.weight));
-        for (p, &i) in self.active.iter().enumerate() {
-            let on_branch = o.0.div_f64s(o.fma(forces[i], unscaled, offset[p]), stiffness[p]);
-            let here = o.0.greater_than_f64s(is_active[p], o.splat(0.0));
+        let links = &self.links;
+        let (is_active, stiffness) = (links.is_active.vectors::<S>(), links.stiffness.vectors::<S>());
+        let (offset, unscaled) = (links.offset.vectors::<S>(), o.splat(1.0 / input.weight));
+        for &i in &links.active {
+            let on_branch = o.0.div_f64s(o.fma(forces[i], unscaled, offset[i]), stiffness[i]);
+            let here = o.0.greater_than_f64s(is_active[i], o.splat(0.0));
             found[i] = o.0.select_f64s(here, on_branch, found[i]);
         }
     }
@@ -364,28 +268,13 @@ impl LinearSystem {
         let e = &input.e.vectors::<S>()[from..][..MANY];
         sums.copy_from_slice(e);
         // a lane that leaves a link out has no force of it
-        for &j in &self.active {
+        for &j in &self.links.active {
             take_from(o, &mut sums, &column(input.compliance, j)[from..], forces[j]);
         }
         for (r, force) in riders[..input.riders.count()].iter().enumerate() {
             take_from(o, &mut sums, &input.riders.on_links(r)[from..], *force);
         }
         self.found.vectors_mut::<S>()[from..][..MANY].copy_from_slice(&sums);
-    }
-
-    /// The lanes whose links all stay well within their states; whether others do is for [`Self::ask`] to find out.
-    #[inline(always)]
-    pub(super) fn staying<S: Simd>(&self, o: Ops<S>) -> [f64; MOST_LANES] {
-        let (found, least) = (self.found.vectors::<S>(), self.least.vectors::<S>());
-        let most = &self.most.vectors::<S>()[..least.len()];
-        let mut left = o.splat(0.0);
-        for (e, (least, most)) in found.iter().zip(least.iter().zip(most)) {
-            let inside = o.0.and_m64s(o.0.less_than_f64s(*least, *e), o.0.less_than_f64s(*e, *most));
-            left = o.0.select_f64s(inside, left, o.splat(1.0));
-        }
-        let mut staying = [0.0; MOST_LANES];
-        lanes_mut::<S>(&mut staying)[0] = o.sub(o.splat(1.0), left);
-        staying
     }
 
     /// What a lane's forces ask for: the end of its solution, or other states, which it then has.

@@ -177,7 +177,7 @@ impl Coupling {
         }
         let laws = &laws[..group.lanes.len()];
         if group.lanes.iter().any(|&lane| lanes[lane].dashpots.is_some()) {
-            contact.linear.forget_list();
+            contact.linear.forget_laws();
         }
         let input = ContactInput {
             lanes: &group.lanes,

@@ -75,7 +75,7 @@ impl ContactSystem {
     /// solution; factors that were kept are counted as if they were made.
     pub(super) fn flop(&self, lanes: &[usize], riders: usize) -> f64 {
         let solutions: usize = lanes.iter().map(|&lane| self.lanes[lane].iterations).sum();
-        let (c, n) = (self.links, self.linear.active.len() + riders);
+        let (c, n) = (self.links, self.linear.links.active.len() + riders);
         (solutions * (n * n * n / 3 + 2 * n * n + 2 * c * n)) as f64
     }
 
@@ -92,7 +92,7 @@ impl ContactSystem {
         loop {
             self.linear.solve(o, &self.lanes, input);
             self.linear.elongate(o, input);
-            let staying = self.linear.staying(o);
+            let staying = self.linear.links.staying(o, &self.linear.found);
             let mut all = true;
             for (&lane, laws) in input.lanes.iter().zip(input.laws) {
                 let of = &mut self.lanes[lane];

@@ -30,6 +30,7 @@ mod lane_array;
 mod lane_group;
 mod lane_waves;
 mod line_mass;
+mod listed_links;
 mod loads;
 mod local_residual;
 mod modes;

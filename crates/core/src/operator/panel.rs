@@ -79,8 +79,13 @@ pub(super) fn write_sums<T: Copy, const MANY: usize>(sums: &[T; MANY], to: &mut 
         *to = *sums;
         return;
     }
-    for i in 0..to.len().min(MANY) {
-        to[i] = sums[i];
+    let (fours, rest) = to.as_chunks_mut::<4>();
+    for (to, sums) in fours.iter_mut().zip(sums.as_chunks::<4>().0) {
+        *to = *sums;
+    }
+    let from = MANY.min(4 * fours.len());
+    for (to, sum) in rest.iter_mut().zip(&sums[from..]) {
+        *to = *sum;
     }
 }
 
