@@ -220,7 +220,7 @@ impl DeckCell {
 /// The interval of `lines` that holds `at`, the place in it from 0 to 1, and its length; the outermost interval outside.
 #[inline(always)]
 fn interval(lines: &[f64], at: f64) -> (usize, f64, f64) {
-    let i = lines.windows(2).position(|w| at <= w[1]).unwrap_or(lines.len() - 2);
+    let i = lines[1..].partition_point(|line| *line < at).min(lines.len() - 2);
     let length = lines[i + 1] - lines[i];
     let place = ((at - lines[i]) / length).clamp(0.0, 1.0);
     let snapped = if place < 1e-9 {

@@ -21,7 +21,7 @@ const ROWS: usize = 8;
 pub(super) struct LaneStates {
     /// State of each link, behind them of each one-sided rider: at work in compression, or open.
     pub(super) states: Vec<State>,
-    /// The states before, and active sets met in this step, one after the other.
+    /// The states before the step where they have changed in it, and active sets met in this step, one after the other.
     pub(super) before: Vec<State>,
     pub(super) seen: Vec<State>,
     /// Newton solutions so far, and whether that was all.
@@ -308,6 +308,9 @@ impl LinearSystem {
         let iterations = of.iterations;
         if iterations >= limit || met.chunks_exact(count).any(|earlier| earlier == asked) {
             return Some(Err(NotSettled { connector, iterations }));
+        }
+        if iterations == 1 {
+            of.before.clone_from(&of.states);
         }
         of.states.copy_from_slice(asked);
         None

@@ -85,7 +85,6 @@ impl ContactSystem {
     pub(super) fn solve<S: Simd>(&mut self, o: Ops<S>, input: ContactInput, limit: usize) {
         for &lane in input.lanes {
             let of = &mut self.lanes[lane];
-            of.before.clone_from(&of.states);
             of.seen.clear();
             (of.iterations, of.ended) = (0, None);
         }
@@ -113,7 +112,7 @@ impl ContactSystem {
         }
         for &lane in input.lanes {
             let of = &mut self.lanes[lane];
-            if let Some(Err(_)) = of.ended {
+            if let (Some(Err(_)), true) = (of.ended, of.iterations > 1) {
                 of.states.clone_from(&of.before);
             }
         }
@@ -124,6 +123,9 @@ impl ContactSystem {
         let of = &self.lanes[lane];
         if let Some(Err(stuck)) = of.ended {
             return Err(stuck);
+        }
+        if of.iterations == 1 {
+            return Ok((1, 0));
         }
         let links = of.states.iter().zip(&of.before).zip(laws);
         let switched = links.filter(|((a, b), _)| a != b);

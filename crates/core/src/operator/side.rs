@@ -36,6 +36,8 @@ pub(crate) struct SideLinks {
     images: Vec<[usize; 2]>,
     /// Of each link of the bridge that of the side.
     of_link: Vec<usize>,
+    /// Links of the side at a joint.
+    per_joint: usize,
 }
 
 impl SideLinks {
@@ -51,7 +53,12 @@ impl SideLinks {
                 images.push(pair);
             }
         }
-        Some(Self { images, of_link })
+        let per_joint = images.len().checked_div(joints).unwrap_or(0);
+        Some(Self {
+            images,
+            of_link,
+            per_joint,
+        })
     }
 
     /// Links of the bridge.
@@ -91,12 +98,11 @@ impl SideLinks {
         (of_side, if a == b { 1.0 } else { 0.5 })
     }
 
-    /// The links of the side that stand for those of a joint, of which the first is given and how many there are.
+    /// The links of the side that stand for those of a joint, of which the first is given.
     #[inline]
-    pub(crate) fn of_joint(&self, first: usize, count: usize) -> Range<usize> {
-        let of_joint = self.images.len() * count / self.of_link.len();
+    pub(crate) fn of_joint(&self, first: usize) -> Range<usize> {
         let start = self.of_link[first];
-        start..start + of_joint
+        start..start + self.per_joint
     }
 
     /// A link of the bridge for one of the side.

@@ -136,7 +136,7 @@ impl<R: JointReading> JointReading for BridgeReading<'_, R> {
         let Some(side) = self.side else {
             return self.of.joint_n(first, count);
         };
-        let of_side = side.links.of_joint(first, count);
+        let of_side = side.links.of_joint(first);
         self.of.joint_n(of_side.start, of_side.len())
     }
 
