@@ -9,10 +9,11 @@ use pulp::{Arch, Simd, WithSimd};
 /// More lanes than any vector has.
 pub(super) const MOST_LANES: usize = 16;
 
-/// Rows that are summed side by side.
+/// Rows that are summed side by side, and where four or fewer are left.
 const ROWS: usize = 8;
+const LAST_ROWS: usize = 4;
 
-/// A matrix in blocks of eight rows, each block column by column.
+/// A matrix in blocks of eight rows, the last one of four where these are enough, each block column by column.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Panel {
     rows: usize,
@@ -23,12 +24,15 @@ pub(super) struct Panel {
 impl Panel {
     /// The matrix with entries `of(row, column)`.
     pub(super) fn new(rows: usize, columns: usize, of: impl Fn(usize, usize) -> f64) -> Self {
-        let blocks = rows.div_ceil(ROWS);
-        let mut data = vec![0.0; blocks * columns * ROWS];
-        for row in 0..rows {
+        let mut data = Vec::new();
+        let mut first = 0;
+        while first < rows {
+            let many = if rows - first > LAST_ROWS { ROWS } else { LAST_ROWS };
             for column in 0..columns {
-                data[((row / ROWS) * columns + column) * ROWS + row % ROWS] = of(row, column);
+                let entry = |row: usize| if row < rows { of(row, column) } else { 0.0 };
+                data.extend((first..first + many).map(entry));
             }
+            first += many;
         }
         Self { rows, columns, data }
     }
@@ -41,35 +45,65 @@ impl Panel {
     /// `y := A x`.
     #[inline(always)]
     pub(super) fn multiply<S: Simd>(&self, o: Ops<S>, x: &[S::f64s], y: &mut [S::f64s]) {
-        let x = &x[..self.columns];
-        let blocks = self.data.chunks_exact(ROWS * self.columns.max(1));
-        for (block, y) in blocks.zip(y[..self.rows].chunks_mut(ROWS)) {
-            let mut sum = [o.splat(0.0); ROWS];
-            for (a, &x) in block.as_chunks::<ROWS>().0.iter().zip(x) {
-                for row in 0..ROWS {
-                    sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
-                }
-            }
-            write_sums(&sum, y);
+        let (x, y, mut data) = (&x[..self.columns], &mut y[..self.rows], &self.data[..]);
+        let mut from = 0;
+        while from + LAST_ROWS < y.len() {
+            let (block, rest) = data.split_at(ROWS * x.len());
+            let end = (from + ROWS).min(y.len());
+            multiply_block::<S, ROWS>(o, block, x, &mut y[from..end]);
+            (data, from) = (rest, end);
+        }
+        if from < y.len() {
+            multiply_block::<S, LAST_ROWS>(o, data, x, &mut y[from..]);
         }
     }
 
     /// `y := A x` over the listed columns, in the list's order.
     #[inline(always)]
     pub(super) fn multiply_listed<S: Simd>(&self, o: Ops<S>, list: &[usize], x: &[S::f64s], y: &mut [S::f64s]) {
-        let blocks = self.data.chunks_exact(ROWS * self.columns.max(1));
-        for (block, y) in blocks.zip(y[..self.rows].chunks_mut(ROWS)) {
-            let mut sum = [o.splat(0.0); ROWS];
-            let block = block.as_chunks::<ROWS>().0;
-            for &column in list {
-                let (a, x) = (&block[column], x[column]);
-                for row in 0..ROWS {
-                    sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
-                }
-            }
-            write_sums(&sum, y);
+        let (y, mut data) = (&mut y[..self.rows], &self.data[..]);
+        let mut from = 0;
+        while from + LAST_ROWS < y.len() {
+            let (block, rest) = data.split_at(ROWS * self.columns);
+            let end = (from + ROWS).min(y.len());
+            multiply_listed_block::<S, ROWS>(o, block, (list, x), &mut y[from..end]);
+            (data, from) = (rest, end);
+        }
+        if from < y.len() {
+            multiply_listed_block::<S, LAST_ROWS>(o, data, (list, x), &mut y[from..]);
         }
     }
+}
+
+/// The product of one block.
+#[inline(always)]
+fn multiply_block<S: Simd, const MANY: usize>(o: Ops<S>, block: &[f64], x: &[S::f64s], y: &mut [S::f64s]) {
+    let mut sum = [o.splat(0.0); MANY];
+    for (a, &x) in block.as_chunks::<MANY>().0.iter().zip(x) {
+        for row in 0..MANY {
+            sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
+        }
+    }
+    write_sums(&sum, y);
+}
+
+/// The product of one block over the listed columns.
+#[inline(always)]
+fn multiply_listed_block<S: Simd, const MANY: usize>(
+    o: Ops<S>,
+    block: &[f64],
+    (list, x): (&[usize], &[S::f64s]),
+    y: &mut [S::f64s],
+) {
+    let mut sum = [o.splat(0.0); MANY];
+    let block = block.as_chunks::<MANY>().0;
+    for &column in list {
+        let (a, x) = (&block[column], x[column]);
+        for row in 0..MANY {
+            sum[row] = o.fma(o.splat(a[row]), x, sum[row]);
+        }
+    }
+    write_sums(&sum, y);
 }
 
 /// Writes as many sums as are asked for. A copy of unknown length is a call for each block.
@@ -194,7 +228,7 @@ mod tests {
     /// entry that is 5 % off is found.
     #[test]
     fn product_of_each_lane_is_the_plain_one() {
-        for (rows, columns) in [(1, 1), (7, 3), (8, 20), (9, 5), (24, 1)] {
+        for (rows, columns) in [(1, 1), (4, 6), (5, 2), (7, 3), (8, 20), (9, 5), (12, 3), (13, 2), (24, 1)] {
             for list in [None, Some(&[0][..])] {
                 let off = apart(rows, columns, list, 1.0);
                 assert!(off < 1e-13, "{rows} x {columns}, {list:?}: {off:e}");
