@@ -7,7 +7,6 @@ use super::basis::{BridgeOperator, Sizes};
 use super::clock::{StepClock, StepPart};
 use super::connectors::Connectors;
 use super::contact_system::{ContactSystem, LaneLaws};
-use super::dashpots::LaneDashpots;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
 use super::lane_group::LaneGroup;
@@ -172,12 +171,11 @@ impl Coupling {
         }
         let mut laws: LaneLaws<'_> = [&[]; MOST_LANES];
         for (laws, &lane) in laws.iter_mut().zip(&group.lanes) {
-            let own = lanes[lane].crossing.as_ref().map_or(&[][..], |crossing| &crossing.laws);
-            *laws = lanes[lane].dashpots.as_ref().map_or(own, LaneDashpots::laws);
+            *laws = lanes[lane].laws().unwrap_or_default();
         }
         let laws = &laws[..group.lanes.len()];
         if group.lanes.iter().any(|&lane| lanes[lane].dashpots.is_some()) {
-            contact.linear.forget_laws();
+            contact.forget_laws();
         }
         let input = ContactInput {
             lanes: &group.lanes,

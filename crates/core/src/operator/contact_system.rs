@@ -7,10 +7,13 @@
 //! changes no bit of the others.
 
 use super::active_sets::{ContactInput, LaneStates, LinearSystem};
+use super::lane_array::LaneArray;
 use super::panel::MOST_LANES;
+use super::state_bounds::{StateBounds, are_same};
 use super::vector::Ops;
 use crate::connector::State;
 use crate::contact::{LinkLaw, NotSettled};
+use crate::scheme::Arithmetic;
 use pulp::Simd;
 
 /// The small systems of all lanes, kept from step to step.
@@ -21,6 +24,9 @@ pub(super) struct ContactSystem {
     links: usize,
     /// What is solved on the active sets.
     pub(super) linear: LinearSystem,
+    bounds: StateBounds,
+    /// Elongations that are expected `[m]`.
+    expected: LaneArray,
 }
 
 impl ContactSystem {
@@ -28,8 +34,9 @@ impl ContactSystem {
     pub(super) fn new(links: usize, riders: usize, newton_limit: usize, lanes: usize) -> Self {
         let states = LaneStates {
             states: vec![State::Open; links],
-            before: Vec::with_capacity(links + riders),
+            before: vec![State::Open; links],
             seen: Vec::with_capacity(links * (newton_limit + 1)),
+            is_expected: false,
             iterations: 0,
             ended: None,
         };
@@ -37,12 +44,22 @@ impl ContactSystem {
             lanes: vec![states; lanes],
             links,
             linear: LinearSystem::new(links, riders, lanes),
+            bounds: StateBounds::new(links, lanes),
+            expected: LaneArray::new(links, lanes),
         }
     }
 
     /// Forgets what was factored for other laws or another step length.
     pub(super) fn forget(&mut self) {
         self.linear.forget();
+        self.bounds.forget();
+    }
+
+    /// Laws of dashpots change in every step.
+    #[inline(always)]
+    pub(super) fn forget_laws(&mut self) {
+        self.linear.forget_laws();
+        self.bounds.forget();
     }
 
     /// Changes the states of two lanes of systems.
@@ -71,6 +88,37 @@ impl ContactSystem {
         states.extend(pressing.map(|presses| if presses { State::Compression } else { State::Open }));
     }
 
+    /// Begins a step with the states that links have where elongations `e` change as they did in the last step, see (C2); of lanes at
+    /// work the laws.
+    #[inline(always)]
+    pub(super) fn expect<'l, S: Simd>(
+        &mut self,
+        o: Ops<S>,
+        laws: impl Fn(usize) -> Option<&'l [LinkLaw]>,
+        [e, change]: [&LaneArray; 2],
+    ) {
+        let (e, change) = (e.vectors::<S>(), change.vectors::<S>());
+        for (i, to) in self.expected.vectors_mut::<S>().iter_mut().enumerate() {
+            *to = o.add(e[i], change[i]);
+        }
+        for lane in 0..self.lanes.len() {
+            let of = &mut self.lanes[lane];
+            of.before.copy_from_slice(&of.states[..self.links]);
+            of.is_expected = false;
+            if let Some(laws) = laws(lane) {
+                self.bounds.take(lane, &of.states, laws);
+            }
+        }
+        let staying = self.bounds.staying(o, &self.expected);
+        for (lane, of) in self.lanes.iter_mut().enumerate().filter(|(lane, _)| staying[*lane] == 0.0) {
+            let Some(laws) = laws(lane) else { continue };
+            for (i, law) in laws.iter().enumerate() {
+                of.states[i] = law.state(self.expected.at(i, lane));
+            }
+            of.is_expected = !are_same(&of.states[..self.links], &of.before);
+        }
+    }
+
     /// Operations of a solution with so many riders, of one of so many lanes: factors, substitutions and elongations of each Newton
     /// solution; factors that were kept are counted as if they were made.
     pub(super) fn flop(&self, lanes: &[usize], riders: usize) -> f64 {
@@ -91,7 +139,10 @@ impl ContactSystem {
         loop {
             self.linear.solve(o, &self.lanes, input);
             self.linear.elongate(o, input);
-            let staying = self.linear.links.staying(o, &self.linear.found);
+            for (&lane, laws) in input.lanes.iter().zip(input.laws) {
+                self.bounds.take(lane, &self.lanes[lane].states, laws);
+            }
+            let staying = self.bounds.staying(o, &self.linear.found);
             let mut all = true;
             for (&lane, laws) in input.lanes.iter().zip(input.laws) {
                 let of = &mut self.lanes[lane];
@@ -104,6 +155,12 @@ impl ContactSystem {
                     true => Some(Ok(())),
                     false => self.linear.ask(lane, of, laws, input, limit),
                 };
+                if let (Some(Err(_)), true) = (of.ended, of.is_expected) {
+                    // from the states before it may be found
+                    of.states[..self.links].copy_from_slice(&of.before[..self.links]);
+                    of.seen.clear();
+                    (of.iterations, of.ended, of.is_expected) = (0, None, false);
+                }
                 all &= of.ended.is_some();
             }
             if all {
@@ -112,8 +169,8 @@ impl ContactSystem {
         }
         for &lane in input.lanes {
             let of = &mut self.lanes[lane];
-            if let (Some(Err(_)), true) = (of.ended, of.iterations > 1) {
-                of.states.clone_from(&of.before);
+            if let Some(Err(_)) = of.ended {
+                of.states[..self.links].copy_from_slice(&of.before[..self.links]);
             }
         }
     }
@@ -124,7 +181,7 @@ impl ContactSystem {
         if let Some(Err(stuck)) = of.ended {
             return Err(stuck);
         }
-        if of.iterations == 1 {
+        if of.iterations == 1 && !of.is_expected {
             return Ok((1, 0));
         }
         let links = of.states.iter().zip(&of.before).zip(laws);

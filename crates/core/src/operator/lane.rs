@@ -119,6 +119,13 @@ impl Lane {
         self.crossing.as_ref().is_some_and(|of| of.asks_for_corners)
     }
 
+    /// The laws of its links in the step under way; none where nothing crosses.
+    #[inline(always)]
+    pub(super) fn laws(&self) -> Option<&[LinkLaw]> {
+        let crossing = self.crossing.as_ref()?;
+        Some(self.dashpots.as_ref().map_or(&crossing.laws[..], LaneDashpots::laws))
+    }
+
     /// Whether anything rides along.
     #[inline(always)]
     pub(super) fn has_masses(&self) -> bool {

@@ -3,12 +3,9 @@
 //! Knows states and laws of links, and what changes with them. Does not know how forces are found.
 
 use super::lane_array::LaneArray;
-use super::panel::{MOST_LANES, lanes_mut};
-use super::vector::Ops;
+use super::state_bounds::are_same;
 use crate::connector::State;
 use crate::contact::{Branch, LinkLaw};
-use crate::scheme::Arithmetic;
-use pulp::Simd;
 
 /// The links of some lanes as they were listed last.
 #[derive(Debug)]
@@ -22,9 +19,6 @@ pub(super) struct ListedLinks {
     pub(super) stiffness: LaneArray,
     pub(super) offset: LaneArray,
     pub(super) begins: LaneArray,
-    /// Elongations between which the links stay in their states `[m]`.
-    least: LaneArray,
-    most: LaneArray,
     /// The lanes and the states of their links.
     lanes: Vec<usize>,
     states: Vec<State>,
@@ -47,8 +41,6 @@ impl ListedLinks {
             stiffness: of(),
             offset: of(),
             begins: of(),
-            least: of(),
-            most: of(),
             lanes: Vec::with_capacity(lanes),
             states: Vec::with_capacity(lanes * links),
             count: vec![0; links],
@@ -83,7 +75,7 @@ impl ListedLinks {
         let (links, mut changed) = (self.count.len(), is_new);
         for (number, (&lane, laws)) in lanes.iter().zip(laws).enumerate() {
             let (from, now) = (number * links, &states(lane)[..links]);
-            if !self.is_stale && self.states[from..][..links] == *now {
+            if !self.is_stale && are_same(&self.states[from..][..links], now) {
                 continue;
             }
             for (i, &state) in now.iter().enumerate() {
@@ -132,7 +124,6 @@ impl ListedLinks {
 
     /// Puts the state of a link in a lane.
     fn put(&mut self, (link, lane): (usize, usize), law: &LinkLaw, state: State, weight: f64) {
-        [*self.least.at_mut(link, lane), *self.most.at_mut(link, lane)] = law.within_m(state);
         let is_open = state == State::Open;
         let Branch { stiffness, offset } = if is_open {
             Branch {
@@ -147,20 +138,5 @@ impl ListedLinks {
         *self.stiffness.at_mut(link, lane) = stiffness;
         *self.offset.at_mut(link, lane) = offset;
         *self.begins.at_mut(link, lane) = offset / stiffness;
-    }
-
-    /// The lanes in which all links stay well within their states at elongations `e`; others may stay as well.
-    #[inline(always)]
-    pub(super) fn staying<S: Simd>(&self, o: Ops<S>, e: &LaneArray) -> [f64; MOST_LANES] {
-        let (least, most) = (self.least.vectors::<S>(), self.most.vectors::<S>());
-        let (e, most) = (&e.vectors::<S>()[..least.len()], &most[..least.len()]);
-        let (mut staying, none) = (o.splat(1.0), o.splat(0.0));
-        for i in 0..least.len() {
-            let inside = o.0.and_m64s(o.0.less_than_f64s(least[i], e[i]), o.0.less_than_f64s(e[i], most[i]));
-            staying = o.0.select_f64s(inside, staying, none);
-        }
-        let mut lanes = [0.0; MOST_LANES];
-        lanes_mut::<S>(&mut lanes)[0] = staying;
-        lanes
     }
 }

@@ -48,6 +48,7 @@ mod rides;
 mod riding_places;
 mod side;
 mod small_matrix;
+mod state_bounds;
 mod step;
 mod step_constants;
 mod sums;
