@@ -306,6 +306,66 @@ mod tests {
         assert_eq!(law.uptakes().map(|of| of.stiffness), [K; 2]);
     }
 
+    /// Strictly between its bounds a state is the one that is asked for, and a state that is asked for lies within its bounds: of gaps, of
+    /// gaps with stops, of both trusses at work, of one truss, and of a lost connector. A bound that is 5 % off is found.
+    #[test]
+    fn states_stay_between_their_bounds() {
+        let truss = |gap_m, stop| Truss {
+            stiffness_n_m: K,
+            gap_m,
+            damping_n_s_m: 0.0,
+            stop,
+        };
+        let stop = |gap_m| {
+            Some(EndStop {
+                gap_m,
+                stiffness_n_m: 2.0 * K,
+            })
+        };
+        let gaps = |tension, compression| LinkLaw::new(&ConnectorLaw::Gaps { tension, compression });
+        let laws = [
+            gaps(truss(0.03, None), truss(0.01, None)),
+            gaps(truss(0.03, stop(0.05)), truss(0.01, stop(0.02))),
+            gaps(truss(0.0, None), truss(0.0, None)),
+            gaps(
+                truss(0.02, None),
+                Truss {
+                    stiffness_n_m: 0.0,
+                    ..truss(0.0, None)
+                },
+            ),
+            gaps(truss(0.03, stop(0.05)), truss(0.01, None)).counted_from(0.04),
+            LinkLaw::connector(K, Connection::Linear),
+            LinkLaw::LOST,
+        ];
+        let states = [
+            State::Open,
+            State::Tension,
+            State::TensionStop,
+            State::Compression,
+            State::CompressionStop,
+            State::Both,
+        ];
+        let mut wrong = 0;
+        for law in laws {
+            let steps = (-2000..=2000).map(|i| f64::from(i) * 5e-5);
+            for e in steps.chain([f64::MIN, f64::MAX]) {
+                let asked = law.state(e);
+                let [least, most] = law.within_m(asked);
+                assert!(
+                    (least..=most).contains(&e),
+                    "{asked:?} at {e} m, between {least} and {most}"
+                );
+                for state in states {
+                    let [least, most] = law.within_m(state);
+                    assert!(!(least < e && e < most) || asked == state, "{state:?} at {e} m");
+                    wrong += usize::from(1.05 * least < e && e < 1.05 * most && asked != state);
+                }
+            }
+        }
+        assert!(wrong > 0, "wrong bounds pass");
+    }
+
     /// Without gaps and with both trusses at work `N = 2 k e`, whatever the sign.
     #[test]
     fn linear_connector_has_both_trusses_at_work() {

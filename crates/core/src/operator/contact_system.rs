@@ -110,7 +110,12 @@ impl ContactSystem {
             }
         }
         let staying = self.bounds.staying(o, &self.expected);
-        for (lane, of) in self.lanes.iter_mut().enumerate().filter(|(lane, _)| staying[*lane] == 0.0) {
+        for (lane, of) in self
+            .lanes
+            .iter_mut()
+            .enumerate()
+            .filter(|(lane, _)| staying[*lane] == 0.0)
+        {
             let Some(laws) = laws(lane) else { continue };
             for (i, law) in laws.iter().enumerate() {
                 of.states[i] = law.state(self.expected.at(i, lane));
@@ -207,13 +212,13 @@ mod tests {
 
     const WEIGHT: f64 = 0.6;
 
-    struct Solve<'a>(&'a mut ContactSystem, ContactInput<'a>);
+    struct Solve<'a>(&'a mut ContactSystem, ContactInput<'a>, usize);
 
     impl WithSimd for Solve<'_> {
         type Output = ();
 
         fn with_simd<S: Simd>(self, simd: S) {
-            self.0.solve(Ops(simd), self.1, 20);
+            self.0.solve(Ops(simd), self.1, self.2);
         }
     }
 
@@ -298,7 +303,7 @@ mod tests {
             weight: WEIGHT,
             riders: &block,
         };
-        Arch::new().dispatch(Solve(&mut system, input));
+        Arch::new().dispatch(Solve(&mut system, input, 20));
         system.outcome(lane, &wrong).expect("settled");
         let linear = &system.linear;
         let forces = linear.forces.lane(lane).map(|f| f / WEIGHT);
@@ -310,6 +315,68 @@ mod tests {
             (reference.states, of_reference),
             (system.states(lane).to_vec(), numbers),
         ]
+    }
+
+    /// A step of the last lane after states and changes of elongations `[m]`, of at most `limit` solutions: the states expected, those
+    /// found, the outcome, and the bits of forces and elongations.
+    fn expected(before: [State; 4], change: [f64; 4], limit: usize) -> ([Vec<State>; 2], (usize, usize), Vec<u64>) {
+        struct Expect<'a>(&'a mut ContactSystem, &'a [LinkLaw], [&'a LaneArray; 2]);
+        impl WithSimd for Expect<'_> {
+            type Output = ();
+            fn with_simd<S: Simd>(self, simd: S) {
+                let lane = S::F64_LANES - 1;
+                self.0.expect(Ops(simd), |of| (of == lane).then_some(self.1), self.2);
+            }
+        }
+        let (laws, n) = (laws(), 4);
+        let compliance = DMatrix::from_fn(n, n, |i, j| if i == j { 0.4 } else { 0.05 });
+        let width = InstructionPath::of_this_machine().lanes;
+        let lane = width - 1;
+        let of_links = |values: &[f64]| {
+            let mut array = LaneArray::new(n, width);
+            values.iter().enumerate().for_each(|(i, x)| *array.at_mut(i, lane) = *x);
+            array
+        };
+        let mut system = ContactSystem::new(n, 0, 20, width);
+        system.put_states(lane, before);
+        let arrays = [of_links(&[0.05, -0.02, 0.0, 0.4]), of_links(&change)];
+        Arch::new().dispatch(Expect(&mut system, &laws, [&arrays[0], &arrays[1]]));
+        let begun = system.states(lane).to_vec();
+        let input = ContactInput {
+            lanes: &[lane],
+            laws: &[&laws],
+            e: &of_links(&[0.7, -0.6, 0.3, 0.4]),
+            compliance: &compliance,
+            weight: WEIGHT,
+            riders: &RiderBlock::new(0, n, width),
+        };
+        Arch::new().dispatch(Solve(&mut system, input, limit));
+        let outcome = system.outcome(lane, &laws).expect("settled");
+        let linear = &system.linear;
+        let numbers = linear.forces.lane(lane).chain(linear.found.lane(lane));
+        let bits = numbers.map(f64::to_bits).collect();
+        ([begun, system.states(lane).to_vec()], outcome, bits)
+    }
+
+    /// Whatever elongations are expected, what is found is the same to the last bit, and switches count from the states before. Where the
+    /// expectation holds one solution is enough.
+    #[test]
+    fn expected_states_change_nothing_but_the_number_of_solutions() {
+        const FOUND: [State; 4] = [State::Tension, State::Compression, State::Both, State::Open];
+        const RIGHT: [f64; 4] = [0.4, -0.4, 0.2, 0.0];
+        let open = [State::Open; 4];
+        let ([_, found], (_, switches), bits) = expected(open, [0.0; 4], 20);
+        assert_eq!((&found[..], switches), (&FOUND[..], 3));
+        for change in [[9.0; 4], [-9.0; 4], [0.01, 0.0, 0.0, -3.0], RIGHT] {
+            let ([begun, states], (solutions, switched), other) = expected(open, change, 20);
+            assert_eq!((&states, switched, &other), (&found, switches, &bits), "{change:?}");
+            assert_eq!(solutions == 1, begun == states, "{change:?}");
+        }
+        assert_eq!(expected(open, RIGHT, 20).1.0, 1);
+        // one solution may be made: from these expected states it is not enough, from those before it is
+        let ([begun, states], (solutions, switched), other) = expected(FOUND, [9.0; 4], 1);
+        assert_ne!(begun, states);
+        assert_eq!((&states, solutions, switched, &other), (&found, 1, 0, &bits));
     }
 
     fn apart([(states, a), (lane_states, b)]: [(Vec<State>, Vec<f64>); 2]) -> f64 {

@@ -228,7 +228,17 @@ mod tests {
     /// entry that is 5 % off is found.
     #[test]
     fn product_of_each_lane_is_the_plain_one() {
-        for (rows, columns) in [(1, 1), (4, 6), (5, 2), (7, 3), (8, 20), (9, 5), (12, 3), (13, 2), (24, 1)] {
+        for (rows, columns) in [
+            (1, 1),
+            (4, 6),
+            (5, 2),
+            (7, 3),
+            (8, 20),
+            (9, 5),
+            (12, 3),
+            (13, 2),
+            (24, 1),
+        ] {
             for list in [None, Some(&[0][..])] {
                 let off = apart(rows, columns, list, 1.0);
                 assert!(off < 1e-13, "{rows} x {columns}, {list:?}: {off:e}");

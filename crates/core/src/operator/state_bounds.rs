@@ -62,7 +62,8 @@ impl StateBounds {
         let (e, most) = (&elongation.vectors::<S>()[..least.len()], &most[..least.len()]);
         let (mut staying, none) = (o.splat(1.0), o.splat(0.0));
         for i in 0..least.len() {
-            let inside = o.0.and_m64s(o.0.less_than_f64s(least[i], e[i]), o.0.less_than_f64s(e[i], most[i]));
+            let inside =
+                o.0.and_m64s(o.0.less_than_f64s(least[i], e[i]), o.0.less_than_f64s(e[i], most[i]));
             staying = o.0.select_f64s(inside, staying, none);
         }
         let mut lanes = [0.0; MOST_LANES];
