@@ -188,10 +188,14 @@ impl Connectors {
         d: &LaneArray,
         [d_load, d_connector]: [&LaneArray; 2],
     ) {
-        let (e_now, e) = (self.e_now.vectors_mut::<S>(), self.e.vectors::<S>());
+        let count = self.e.rows();
+        let (e_now, e) = (
+            &mut self.e_now.vectors_mut::<S>()[..count],
+            &self.e.vectors::<S>()[..count],
+        );
         constants.panels.b.multiply(o, d.vectors::<S>(), e_now);
-        let (d_load, d_connector) = (d_load.vectors::<S>(), d_connector.vectors::<S>());
-        for i in 0..e.len() {
+        let (d_load, d_connector) = (&d_load.vectors::<S>()[..count], &d_connector.vectors::<S>()[..count]);
+        for i in 0..count {
             e_now[i] = o.add(e[i], o.add(e_now[i], o.sub(d_load[i], d_connector[i])));
         }
     }
@@ -232,10 +236,14 @@ impl Connectors {
         if self.dashpots.any {
             self.account_with_dashpots(o, f, terms);
         } else {
-            let (n_now, n) = (self.n_now.vectors::<S>(), self.n.vectors::<S>());
-            let (e_now, e) = (self.e_now.vectors::<S>(), self.e.vectors_mut::<S>());
-            let change = self.change.vectors_mut::<S>();
-            for i in 0..n.len() {
+            let count = self.n.rows();
+            let (n_now, n) = (&self.n_now.vectors::<S>()[..count], &self.n.vectors::<S>()[..count]);
+            let (e_now, e) = (
+                &self.e_now.vectors::<S>()[..count],
+                &mut self.e.vectors_mut::<S>()[..count],
+            );
+            let change = &mut self.change.vectors_mut::<S>()[..count];
+            for i in 0..count {
                 change[i] = o.sub(e_now[i], e[i]);
                 terms.take_connector(o, change[i], f.at(o, n_now[i], n[i]));
                 e[i] = e_now[i];

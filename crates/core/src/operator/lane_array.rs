@@ -178,13 +178,13 @@ impl Trace {
         ]
     }
 
-    /// Its rows as vectors.
+    /// Its first rows as vectors: slices whose length a loop knows are looked at once, and not in each row.
     #[inline(always)]
-    pub(super) fn vectors_mut<S: Simd>(&mut self) -> TraceRows<'_, S> {
+    pub(super) fn first_mut<S: Simd>(&mut self, rows: usize) -> TraceRows<'_, S> {
         TraceRows {
-            x: self.x.vectors_mut::<S>(),
-            x1: self.x1.vectors_mut::<S>(),
-            x2: self.x2.vectors_mut::<S>(),
+            x: &mut self.x.vectors_mut::<S>()[..rows],
+            x1: &mut self.x1.vectors_mut::<S>()[..rows],
+            x2: &mut self.x2.vectors_mut::<S>()[..rows],
         }
     }
 }

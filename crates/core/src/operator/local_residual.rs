@@ -184,12 +184,21 @@ impl LocalResidual {
         let s = &constants.scheme;
         let (f, m_old) = (Mean::<S>::of(o, s.alpha_f), o.splat(s.alpha_m));
         let rule = ResidualRule::of(o, constants);
-        let (now, weights) = (self.weights_now.vectors::<S>(), self.weights.vectors::<S>());
-        let (inertia, contact) = (self.inertia.vectors::<S>(), self.contact.vectors::<S>());
-        let x = self.x.vectors_mut::<S>();
-        for (i, free) in self.free.vectors_mut::<S>()[..count].iter_mut().enumerate() {
+        let (now, weights) = (
+            &self.weights_now.vectors::<S>()[..count],
+            &self.weights.vectors::<S>()[..count],
+        );
+        let (inertia, contact) = (
+            &self.inertia.vectors::<S>()[..count],
+            &self.contact.vectors::<S>()[..count],
+        );
+        let (x, free) = (
+            self.x.first_mut::<S>(count),
+            &mut self.free.vectors_mut::<S>()[..count],
+        );
+        for i in 0..count {
             let force = o.fma(f.old, contact[i], o.fma(m_old, inertia[i], f.at(o, now[i], weights[i])));
-            *free = o.0.select_f64s(mask, x.change(o, &rule, i, o.neg(force)), *free);
+            free[i] = o.0.select_f64s(mask, x.change(o, &rule, i, o.neg(force)), free[i]);
         }
     }
 
@@ -335,9 +344,11 @@ impl LocalResidual {
         }
         let (by_m, by_f) = (o.splat(1.0 - s.alpha_m), o.splat(1.0 - s.alpha_f));
         let (rho, newmark) = (o.splat(constants.rho), Newmark::of(o, s));
-        let (inertia, contact) = (self.inertia.vectors::<S>(), self.contact.vectors::<S>());
-        let free = self.free.vectors::<S>();
-        let mut x = self.x.vectors_mut::<S>();
+        let (inertia, contact) = (
+            &self.inertia.vectors::<S>()[..count],
+            &self.contact.vectors::<S>()[..count],
+        );
+        let (free, mut x) = (&self.free.vectors::<S>()[..count], self.x.first_mut::<S>(count));
         for i in 0..count {
             let late = o.fma(by_m, inertia[i], o.mul(by_f, contact[i]));
             x.advance_where(o, mask, &newmark, i, o.less(free[i], rho, late));

@@ -85,23 +85,29 @@ impl Residual {
         let (m, nc) = (constants.c.len(), connectors.count());
         let (f, m_old) = (Mean::<S>::of(o, s.alpha_f), o.splat(s.alpha_m));
         let rule = ResidualRule::of(o, constants);
-        let (n, rn) = (connectors.n.vectors::<S>(), connectors.rn.vectors::<S>());
-        let (d_force, d_connector) = (self.d_force.vectors_mut::<S>(), self.d_connector.vectors_mut::<S>());
-        let followed = self.followed_force.vectors_mut::<S>();
-        let connector = self.connector_residual.vectors_mut::<S>();
+        let (n, rn) = (
+            &connectors.n.vectors::<S>()[..nc],
+            &connectors.rn.vectors::<S>()[..nc],
+        );
+        let d_force = &mut self.d_force.vectors_mut::<S>()[..nc];
+        let d_connector = &mut self.d_connector.vectors_mut::<S>()[..nc];
+        let followed = self.followed_force.first_mut::<S>(nc);
+        let connector = self.connector_residual.first_mut::<S>(nc);
         for i in 0..nc {
             d_force[i] = followed.change(o, &rule, i, o.mul(f.old, n[i]));
             d_connector[i] = connector.change(o, &rule, i, o.mul(f.old, rn[i]));
         }
         let (w_now, w_old) = (
-            &loads.weights_now.vectors::<S>()[m..],
-            &loads.weights.vectors::<S>()[m..],
+            &loads.weights_now.vectors::<S>()[m..][..nc],
+            &loads.weights.vectors::<S>()[m..][..nc],
         );
-        let inertia = &loads.inertia.vectors::<S>()[m..];
-        let load = self.load_residual.vectors_mut::<S>();
-        for (i, d) in self.d_load.vectors_mut::<S>().iter_mut().enumerate() {
+        let inertia = &loads.inertia.vectors::<S>()[m..][..nc];
+        let load = self.load_residual.first_mut::<S>(nc);
+        // nothing asks for those of observed rows before the step's end
+        let d_load = &mut self.d_load.vectors_mut::<S>()[..nc];
+        for i in 0..nc {
             let down = o.fma(m_old, inertia[i], f.at(o, w_now[i], w_old[i]));
-            *d = load.change(o, &rule, i, o.neg(down));
+            d_load[i] = load.change(o, &rule, i, o.neg(down));
         }
     }
 
@@ -124,20 +130,25 @@ impl Residual {
         );
         let rho = o.splat(constants.rho);
         let (rho_f, rho_m) = (o.mul(rho, f.new), o.mul(rho, by_m.new));
-        let (n, rn) = (connectors.n_now.vectors::<S>(), connectors.rn_now.vectors::<S>());
+        let (n, rn) = (
+            &connectors.n_now.vectors::<S>()[..nc],
+            &connectors.rn_now.vectors::<S>()[..nc],
+        );
+        let (rows, rule) = (self.d_load.rows(), ResidualRule::of(o, constants));
         let (w_now, w_old) = (
-            &loads.weights_now.vectors::<S>()[m..],
-            &loads.weights.vectors::<S>()[m..],
+            &loads.weights_now.vectors::<S>()[m..][..rows],
+            &loads.weights.vectors::<S>()[m..][..rows],
         );
         let (i_now, i_old) = (
-            &loads.inertia_now.vectors::<S>()[m..],
-            &loads.inertia.vectors::<S>()[m..],
+            &loads.inertia_now.vectors::<S>()[m..][..rows],
+            &loads.inertia.vectors::<S>()[m..][..rows],
         );
-        let (d_force, d_connector) = (self.d_force.vectors::<S>(), self.d_connector.vectors::<S>());
-        let d_load = self.d_load.vectors_mut::<S>();
-        let mut followed = self.followed_force.vectors_mut::<S>();
-        let mut connector = self.connector_residual.vectors_mut::<S>();
-        let mut load = self.load_residual.vectors_mut::<S>();
+        let d_force = &self.d_force.vectors::<S>()[..nc];
+        let d_connector = &self.d_connector.vectors::<S>()[..nc];
+        let d_load = &mut self.d_load.vectors_mut::<S>()[..rows];
+        let mut followed = self.followed_force.first_mut::<S>(nc);
+        let mut connector = self.connector_residual.first_mut::<S>(nc);
+        let mut load = self.load_residual.first_mut::<S>(rows);
         for i in 0..nc {
             let d_force = o.fma(rho_f, n[i], d_force[i]);
             let d_connector = o.fma(rho_f, rn[i], d_connector[i]);
@@ -155,8 +166,9 @@ impl Residual {
                 (connector.at(i)[0], f, down),
             );
         }
-        for i in nc..d_load.len() {
-            d_load[i] = o.less(d_load[i], rho_m, i_now[i]);
+        for i in nc..rows {
+            let down = o.fma(by_m.old, i_old[i], f.at(o, w_now[i], w_old[i]));
+            d_load[i] = o.less(load.change(o, &rule, i, o.neg(down)), rho_m, i_now[i]);
             load.advance(o, &newmark, i, d_load[i]);
         }
     }
