@@ -21,11 +21,9 @@ const ROWS: usize = 8;
 pub(super) struct LaneStates {
     /// State of each link, behind them of each one-sided rider: at work in compression, or open.
     pub(super) states: Vec<State>,
-    /// The states before the step, and active sets met in this step, one after the other.
+    /// The states before the step where they have changed in it, and active sets met in this step, one after the other.
     pub(super) before: Vec<State>,
     pub(super) seen: Vec<State>,
-    /// Whether the solution began with states that were expected and not with those before.
-    pub(super) is_expected: bool,
     /// Newton solutions so far, and whether that was all.
     pub(super) iterations: usize,
     pub(super) ended: Option<Result<(), NotSettled>>,
@@ -310,6 +308,9 @@ impl LinearSystem {
         let iterations = of.iterations;
         if iterations >= limit || met.chunks_exact(count).any(|earlier| earlier == asked) {
             return Some(Err(NotSettled { connector, iterations }));
+        }
+        if iterations == 1 {
+            of.before.clone_from(&of.states);
         }
         of.states.copy_from_slice(asked);
         None

@@ -25,8 +25,6 @@ pub(super) struct Connectors {
     /// Elongation `[m]`, and in the step under way first without, then with its forces.
     pub(super) e: LaneArray,
     pub(super) e_now: LaneArray,
-    /// What it changed by in the last step `[m]`.
-    pub(super) change: LaneArray,
     /// Force at rest `[N]`, and in which lanes there is one at all.
     pub(super) rest: LaneArray,
     from_rest: Vec<bool>,
@@ -100,7 +98,6 @@ impl Connectors {
             rn_now: zeros(),
             e: zeros(),
             e_now: zeros(),
-            change: zeros(),
             rest: zeros(),
             from_rest: vec![false; lanes],
             any_rest: false,
@@ -137,9 +134,9 @@ impl Connectors {
     }
 
     /// What a lane carries from step to step.
-    pub(super) fn carried(&mut self) -> [&mut LaneArray; 6] {
+    pub(super) fn carried(&mut self) -> [&mut LaneArray; 5] {
         let DashpotForces { before, part, .. } = &mut self.dashpots;
-        [&mut self.n, &mut self.rn, &mut self.e, &mut self.change, before, part]
+        [&mut self.n, &mut self.rn, &mut self.e, before, part]
     }
 
     /// What a step leaves in a lane that no crossing writes any more.
@@ -242,10 +239,8 @@ impl Connectors {
                 &self.e_now.vectors::<S>()[..count],
                 &mut self.e.vectors_mut::<S>()[..count],
             );
-            let change = &mut self.change.vectors_mut::<S>()[..count];
             for i in 0..count {
-                change[i] = o.sub(e_now[i], e[i]);
-                terms.take_connector(o, change[i], f.at(o, n_now[i], n[i]));
+                terms.take_connector(o, o.sub(e_now[i], e[i]), f.at(o, n_now[i], n[i]));
                 e[i] = e_now[i];
             }
         }
@@ -263,12 +258,11 @@ impl Connectors {
         let (part_now, part) = (dashpots.part_now.vectors::<S>(), dashpots.part.vectors::<S>());
         let above_law = dashpots.above_law.vectors::<S>();
         let (by_law, springs) = (dashpots.by_law.vectors_mut::<S>(), dashpots.springs.vectors_mut::<S>());
-        let (before, change) = (dashpots.before.vectors_mut::<S>(), self.change.vectors_mut::<S>());
+        let before = dashpots.before.vectors_mut::<S>();
         for i in 0..n.len() {
             springs[i] = o.sub(n_now[i], part_now[i]);
             by_law[i] = o.sub(n_now[i], above_law[i]);
             let (lengthening, spring) = (o.sub(e_now[i], e[i]), o.sub(n[i], part[i]));
-            change[i] = lengthening;
             terms.take_connector(o, lengthening, f.at(o, springs[i], spring));
             terms.take_dashpot(o, lengthening, f.at(o, part_now[i], part[i]));
             (before[i], e[i]) = (e[i], e_now[i]);

@@ -7,13 +7,11 @@
 //! changes no bit of the others.
 
 use super::active_sets::{ContactInput, LaneStates, LinearSystem};
-use super::lane_array::LaneArray;
 use super::panel::MOST_LANES;
-use super::state_bounds::{StateBounds, are_same};
+use super::state_bounds::StateBounds;
 use super::vector::Ops;
 use crate::connector::State;
 use crate::contact::{LinkLaw, NotSettled};
-use crate::scheme::Arithmetic;
 use pulp::Simd;
 
 /// The small systems of all lanes, kept from step to step.
@@ -25,8 +23,6 @@ pub(super) struct ContactSystem {
     /// What is solved on the active sets.
     pub(super) linear: LinearSystem,
     bounds: StateBounds,
-    /// Elongations that are expected `[m]`.
-    expected: LaneArray,
 }
 
 impl ContactSystem {
@@ -34,9 +30,8 @@ impl ContactSystem {
     pub(super) fn new(links: usize, riders: usize, newton_limit: usize, lanes: usize) -> Self {
         let states = LaneStates {
             states: vec![State::Open; links],
-            before: vec![State::Open; links],
+            before: Vec::with_capacity(links + riders),
             seen: Vec::with_capacity(links * (newton_limit + 1)),
-            is_expected: false,
             iterations: 0,
             ended: None,
         };
@@ -45,7 +40,6 @@ impl ContactSystem {
             links,
             linear: LinearSystem::new(links, riders, lanes),
             bounds: StateBounds::new(links, lanes),
-            expected: LaneArray::new(links, lanes),
         }
     }
 
@@ -88,42 +82,6 @@ impl ContactSystem {
         states.extend(pressing.map(|presses| if presses { State::Compression } else { State::Open }));
     }
 
-    /// Begins a step with the states that links have where elongations `e` change as they did in the last step, see (C2); of lanes at
-    /// work the laws.
-    #[inline(always)]
-    pub(super) fn expect<'l, S: Simd>(
-        &mut self,
-        o: Ops<S>,
-        laws: impl Fn(usize) -> Option<&'l [LinkLaw]>,
-        [e, change]: [&LaneArray; 2],
-    ) {
-        let (e, change) = (e.vectors::<S>(), change.vectors::<S>());
-        for (i, to) in self.expected.vectors_mut::<S>().iter_mut().enumerate() {
-            *to = o.add(e[i], change[i]);
-        }
-        for lane in 0..self.lanes.len() {
-            let of = &mut self.lanes[lane];
-            of.before.copy_from_slice(&of.states[..self.links]);
-            of.is_expected = false;
-            if let Some(laws) = laws(lane) {
-                self.bounds.take(lane, &of.states, laws);
-            }
-        }
-        let staying = self.bounds.staying(o, &self.expected);
-        for (lane, of) in self
-            .lanes
-            .iter_mut()
-            .enumerate()
-            .filter(|(lane, _)| staying[*lane] == 0.0)
-        {
-            let Some(laws) = laws(lane) else { continue };
-            for (i, law) in laws.iter().enumerate() {
-                of.states[i] = law.state(self.expected.at(i, lane));
-            }
-            of.is_expected = !are_same(&of.states[..self.links], &of.before);
-        }
-    }
-
     /// Operations of a solution with so many riders, of one of so many lanes: factors, substitutions and elongations of each Newton
     /// solution; factors that were kept are counted as if they were made.
     pub(super) fn flop(&self, lanes: &[usize], riders: usize) -> f64 {
@@ -160,12 +118,6 @@ impl ContactSystem {
                     true => Some(Ok(())),
                     false => self.linear.ask(lane, of, laws, input, limit),
                 };
-                if let (Some(Err(_)), true) = (of.ended, of.is_expected) {
-                    // from the states before it may be found
-                    of.states[..self.links].copy_from_slice(&of.before[..self.links]);
-                    of.seen.clear();
-                    (of.iterations, of.ended, of.is_expected) = (0, None, false);
-                }
                 all &= of.ended.is_some();
             }
             if all {
@@ -174,8 +126,8 @@ impl ContactSystem {
         }
         for &lane in input.lanes {
             let of = &mut self.lanes[lane];
-            if let Some(Err(_)) = of.ended {
-                of.states[..self.links].copy_from_slice(&of.before[..self.links]);
+            if let (Some(Err(_)), true) = (of.ended, of.iterations > 1) {
+                of.states.clone_from(&of.before);
             }
         }
     }
@@ -186,7 +138,7 @@ impl ContactSystem {
         if let Some(Err(stuck)) = of.ended {
             return Err(stuck);
         }
-        if of.iterations == 1 && !of.is_expected {
+        if of.iterations == 1 {
             return Ok((1, 0));
         }
         let links = of.states.iter().zip(&of.before).zip(laws);
@@ -315,68 +267,6 @@ mod tests {
             (reference.states, of_reference),
             (system.states(lane).to_vec(), numbers),
         ]
-    }
-
-    /// A step of the last lane after states and changes of elongations `[m]`, of at most `limit` solutions: the states expected, those
-    /// found, the outcome, and the bits of forces and elongations.
-    fn expected(before: [State; 4], change: [f64; 4], limit: usize) -> ([Vec<State>; 2], (usize, usize), Vec<u64>) {
-        struct Expect<'a>(&'a mut ContactSystem, &'a [LinkLaw], [&'a LaneArray; 2]);
-        impl WithSimd for Expect<'_> {
-            type Output = ();
-            fn with_simd<S: Simd>(self, simd: S) {
-                let lane = S::F64_LANES - 1;
-                self.0.expect(Ops(simd), |of| (of == lane).then_some(self.1), self.2);
-            }
-        }
-        let (laws, n) = (laws(), 4);
-        let compliance = DMatrix::from_fn(n, n, |i, j| if i == j { 0.4 } else { 0.05 });
-        let width = InstructionPath::of_this_machine().lanes;
-        let lane = width - 1;
-        let of_links = |values: &[f64]| {
-            let mut array = LaneArray::new(n, width);
-            values.iter().enumerate().for_each(|(i, x)| *array.at_mut(i, lane) = *x);
-            array
-        };
-        let mut system = ContactSystem::new(n, 0, 20, width);
-        system.put_states(lane, before);
-        let arrays = [of_links(&[0.05, -0.02, 0.0, 0.4]), of_links(&change)];
-        Arch::new().dispatch(Expect(&mut system, &laws, [&arrays[0], &arrays[1]]));
-        let begun = system.states(lane).to_vec();
-        let input = ContactInput {
-            lanes: &[lane],
-            laws: &[&laws],
-            e: &of_links(&[0.7, -0.6, 0.3, 0.4]),
-            compliance: &compliance,
-            weight: WEIGHT,
-            riders: &RiderBlock::new(0, n, width),
-        };
-        Arch::new().dispatch(Solve(&mut system, input, limit));
-        let outcome = system.outcome(lane, &laws).expect("settled");
-        let linear = &system.linear;
-        let numbers = linear.forces.lane(lane).chain(linear.found.lane(lane));
-        let bits = numbers.map(f64::to_bits).collect();
-        ([begun, system.states(lane).to_vec()], outcome, bits)
-    }
-
-    /// Whatever elongations are expected, what is found is the same to the last bit, and switches count from the states before. Where the
-    /// expectation holds one solution is enough.
-    #[test]
-    fn expected_states_change_nothing_but_the_number_of_solutions() {
-        const FOUND: [State; 4] = [State::Tension, State::Compression, State::Both, State::Open];
-        const RIGHT: [f64; 4] = [0.4, -0.4, 0.2, 0.0];
-        let open = [State::Open; 4];
-        let ([_, found], (_, switches), bits) = expected(open, [0.0; 4], 20);
-        assert_eq!((&found[..], switches), (&FOUND[..], 3));
-        for change in [[9.0; 4], [-9.0; 4], [0.01, 0.0, 0.0, -3.0], RIGHT] {
-            let ([begun, states], (solutions, switched), other) = expected(open, change, 20);
-            assert_eq!((&states, switched, &other), (&found, switches, &bits), "{change:?}");
-            assert_eq!(solutions == 1, begun == states, "{change:?}");
-        }
-        assert_eq!(expected(open, RIGHT, 20).1.0, 1);
-        // one solution may be made: from these expected states it is not enough, from those before it is
-        let ([begun, states], (solutions, switched), other) = expected(FOUND, [9.0; 4], 1);
-        assert_ne!(begun, states);
-        assert_eq!((&states, solutions, switched, &other), (&found, 1, 0, &bits));
     }
 
     fn apart([(states, a), (lane_states, b)]: [(Vec<State>, Vec<f64>); 2]) -> f64 {

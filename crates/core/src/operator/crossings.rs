@@ -395,9 +395,6 @@ impl Crossings {
         let axles = groups.all().iter().map(|group| group.axles.len()).max().unwrap_or(0);
         beyond_weight.ensure_rows(axles);
         beyond_weight.clear_rows(axles);
-        coupling
-            .contact
-            .expect(o, |lane| lanes[lane].laws(), [&connectors.e, &connectors.change]);
         for group in groups.settled() {
             let ports = Ports {
                 free: &modes.free,

@@ -192,10 +192,7 @@ impl LocalResidual {
             &self.inertia.vectors::<S>()[..count],
             &self.contact.vectors::<S>()[..count],
         );
-        let (x, free) = (
-            self.x.first_mut::<S>(count),
-            &mut self.free.vectors_mut::<S>()[..count],
-        );
+        let (x, free) = (self.x.first_mut::<S>(count), &mut self.free.vectors_mut::<S>()[..count]);
         for i in 0..count {
             let force = o.fma(f.old, contact[i], o.fma(m_old, inertia[i], f.at(o, now[i], weights[i])));
             free[i] = o.0.select_f64s(mask, x.change(o, &rule, i, o.neg(force)), free[i]);

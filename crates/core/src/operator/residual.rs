@@ -85,10 +85,7 @@ impl Residual {
         let (m, nc) = (constants.c.len(), connectors.count());
         let (f, m_old) = (Mean::<S>::of(o, s.alpha_f), o.splat(s.alpha_m));
         let rule = ResidualRule::of(o, constants);
-        let (n, rn) = (
-            &connectors.n.vectors::<S>()[..nc],
-            &connectors.rn.vectors::<S>()[..nc],
-        );
+        let (n, rn) = (&connectors.n.vectors::<S>()[..nc], &connectors.rn.vectors::<S>()[..nc]);
         let d_force = &mut self.d_force.vectors_mut::<S>()[..nc];
         let d_connector = &mut self.d_connector.vectors_mut::<S>()[..nc];
         let followed = self.followed_force.first_mut::<S>(nc);
