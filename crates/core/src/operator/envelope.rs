@@ -8,7 +8,7 @@ use super::corners::{CornerView, Corners, ROUNDING_M};
 use super::energy::Energy;
 use super::lane::Lane;
 use super::lane_array::LaneArray;
-use super::lane_group::{LaneGroups, UnitForce};
+use super::lane_group::LaneGroups;
 use super::modes::Modes;
 use super::panel::{MOST_LANES, lanes_mut};
 use super::placed::Placed;
@@ -332,12 +332,18 @@ fn bound_edges<S: Simd>(
     let riding = |of: &Lane| of.rider_forces.iter().map(|(.., force)| force.abs()).sum();
     load.write_row(each.iter().map(riding));
     for group in groups.all() {
-        for lane in group.numbers() {
-            let Some(crossing) = &each[lane].crossing else { continue };
-            // a line of the weights stands for all lines with the same points
-            let lines = |of: &UnitForce| crossing.wheels.weights[of.line].lines.len() as f64;
-            let weight = |of: &UnitForce| lines(of) * of.share * group.load_in(of.vehicle, lane);
-            *load.at_mut(0, lane) += group.weights.iter().map(weight).sum::<f64>();
+        let Some(crossing) = &each[group.base + group.first()].crossing else {
+            continue;
+        };
+        for forces in group.weights.chunk_by(|a, b| a.vehicle == b.vehicle) {
+            let mut share = 0.0;
+            for of in forces {
+                // a line of the weights stands for all lines with the same points
+                share += crossing.wheels.weights[of.line].lines.len() as f64 * of.share;
+            }
+            for lane in group.numbers() {
+                *load.at_mut(0, lane) += share * group.load_in(forces[0].vehicle, lane);
+            }
         }
     }
     let modal = o.0.sqrt_f64s(energy.modal_strain.vectors::<S>()[0]);
