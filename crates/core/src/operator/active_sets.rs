@@ -161,6 +161,7 @@ impl LinearSystem {
     /// Writes the matrices of the active sets; below the diagonal only where they are not symmetric.
     #[inline(always)]
     fn assemble<S: Simd>(&mut self, o: Ops<S>, input: ContactInput) {
+        // where nothing is left out, lanes that are not asked for may have any numbers
         match (self.links.any_left_out, self.any_lifted) {
             (false, false) => self.write_matrices::<S, false, false>(o, input),
             (true, false) => self.write_matrices::<S, true, false>(o, input),
